@@ -2,6 +2,7 @@
 
 import json
 import struct
+import time
 import urllib.error
 import urllib.request
 import warnings
@@ -20,6 +21,7 @@ from websockets.sync.client import connect
 import ravemj
 from ravemj.core.transforms import rows_from_wxyz
 from ravemj.graphics.rendering import Camera, open_renderer
+from ravemj.gui.viewers.sharpness import REST
 from ravemj.gui.viewers.viewer import LOCKED
 from ravemj.gui.viewers.web.feed import DRAWINGS, FIGURES, FRAME
 
@@ -233,6 +235,7 @@ class TestWhatIsSent:
         env.StopSimulation()
         with Page(viewer) as page:
             page.settled()
+            seen, values = page.poses[3].copy(), robot.GetDOFValues()
             with env:
                 await_that(lambda: env.simulation.published.is_wanted)
                 robot.SetDOFValues([0, 0.5])
@@ -242,6 +245,11 @@ class TestWhatIsSent:
                 while page.frame().bodies != [3]:
                     pass
                 np.testing.assert_allclose(rows_from_wxyz(page.poses[3][3:]), published[:3, :3], atol=1e-4)
+                robot.SetDOFValues(values)
+                time.sleep(3 * REST)
+            while page.frame().bodies != [3]:
+                pass
+            np.testing.assert_allclose(page.poses[3], seen, atol=1e-4)
 
     def test_a_body_is_removed_and_another_comes(self, env, viewer):
         with Page(viewer) as page:

@@ -177,6 +177,35 @@ def test_the_prompt_and_the_window_do_not_wait_for_each_other(display, folder):
     await_that(lambda: not display.windows(), "the window stays")
 
 
+def test_a_window_shows_what_a_script_publishes_while_it_has_the_environment(display, folder):
+    (folder / "publishes.py").write_text("""
+import json, math
+import openravepy
+env = openravepy.Environment()
+env.Load('env.xml')
+env.SetViewer('qtcoin')
+viewer, robot = env.GetViewer(), env.GetRobots()[0]
+camera = json.load(open('camera.json'))
+viewer.SetCamera(camera)
+input()
+with env:
+    while not env.simulation.published.is_wanted:
+        pass
+    robot.SetDOFValues([math.pi / 2, 0])
+    env.UpdatePublishedBodies()
+    robot.SetDOFValues([math.pi, 0])  # nobody publishes this
+    input()
+    robot.SetDOFValues([0, 0])
+input()
+""")
+    terminal = on_terminal(folder, "-m", "ravemj", "run", "publishes.py", DISPLAY=display.name)
+    window = display.await_window()
+    for name in ("hanging", "level", "hanging"):
+        display.await_pose(window, name)
+        terminal.sendline("")
+    assert finish(terminal)[1] == 0
+
+
 def test_viewers_replace_each_other_and_two_environments_have_two_windows(display, folder):
     (folder / "two.py").write_text("""
 import time, openravepy

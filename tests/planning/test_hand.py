@@ -413,3 +413,27 @@ def test_constraints_that_are_none_are_refused(robot, options, problem):
     here = robot.GetActiveManipulator().GetTransform()
     with pytest.raises(ravemj.openrave_exception, match=problem):
         ravemj.interfaces.BaseManipulation(robot).MoveToHandPosition(matrices=[here], execute=False, **options)
+
+
+def test_numbers_of_what_follows_are_not_negative(robot):
+    module = ravemj.interfaces.BaseManipulation(robot).prob
+    here = ravemj.matrixSerialization(robot.GetActiveManipulator().GetTransform())
+    for text, problem in (
+        ("MoveActiveJoints goals -1 0", "goals: -1 should be how many follow"),
+        (f"MoveToHandPosition matrices -1 {here}", "matrices: -1 should be how many follow"),
+        (f"MoveToHandPosition seedik -1 matrix {here}", "seedik is -1"),
+        (f"MoveToHandPosition goalsamples -2 matrix {here}", "goalsamples -2"),
+    ):
+        with pytest.raises(ravemj.openrave_exception, match=problem):
+            module.SendCommand(text)
+
+
+def test_a_point_for_the_tool_is_a_goal_of_the_command_too(robot):
+    kind = IkParameterization.Type.Translation3D
+    ravemj.databases.inversekinematics.InverseKinematicsModel(robot, iktype=kind).load()
+    point = robot.GetActiveManipulator().GetTransform()[:3, 3] + [0, 0.1, 0]
+    words = " ".join(map(repr, point.tolist()))
+    module = ravemj.interfaces.BaseManipulation(robot).prob
+    reply = module.SendCommand(f"MoveToHandPosition translation {words} execute 0 outputtraj")
+    found = ravemj.RaveCreateTrajectory(robot.GetEnv(), "").deserialize(reply.split(maxsplit=1)[1])
+    assert tool_at(robot, waypoints(robot, found)[-1])[:3, 3] == pytest.approx(point, abs=1e-6)

@@ -555,3 +555,19 @@ def test_trajectories_are_executed_and_verified_from_their_text(robot):
         helper.VerifyTrajectory(text)
     with pytest.raises(ravemj.openrave_exception):
         helper.TrajFromData("no trajectory")
+
+
+def test_a_base_that_turns_about_any_axis_gets_around_a_wall():
+    env = ravemj.load(ravemj.model_path("pendulum"))
+    robot = env.GetRobots()[0]
+    box(env, "wall", [1.5, 0, 0, 0.05, 0.4, 0.4])
+    parts = ravemj.DOFAffine
+    robot.SetActiveDOFs([], parts.X | parts.Y | parts.Z | parts.Rotation3D)
+    robot.SetAffineTranslationLimits([-4] * 3, [4] * 3)
+    robot.SetAffineTranslationResolution([0.05] * 3)
+    params = Planner.PlannerParameters()
+    params.SetRobotActiveJoints(robot)
+    params.SetGoalConfig([3.0, 0, 0, 0.3, 0.2, 1.0])
+    params.SetMaxIterations(300)
+    status, _ = planned(robot, params)
+    assert status == PlannerStatus.HasSolution, status.description

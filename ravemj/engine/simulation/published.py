@@ -30,11 +30,13 @@ class Published:
             mujoco.mj_copyData(self._data, model, data)
             self.number += 1
 
-    def copy_to(self, data: mujoco.MjData, model: mujoco.MjModel) -> None:
-        """Write the state into that of a viewer, unless it is of another model."""
+    def copy_to(self, data: mujoco.MjData, model: mujoco.MjModel) -> bool:
+        """Write the state into that of a viewer; return False, and leave it, if it is of another model."""
         with self._lock:
-            if self._data is not None and self._model is model:
-                mujoco.mj_copyData(data, model, self._data)
+            if self._data is None or self._model is not model:
+                return False
+            mujoco.mj_copyData(data, model, self._data)
+            return True
 
     def poses(self, model: mujoco.MjModel) -> tuple[Floats, Floats] | None:
         """Return positions, shape (B, 3) [m], and quaternions wxyz, shape (B, 4), of the bodies in the world.

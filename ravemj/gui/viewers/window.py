@@ -174,7 +174,9 @@ class WindowViewer(Viewer):
         self._size = window.size
         self._thread_callbacks.call()
         now = time.monotonic()
-        if self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
+        is_free = self._simulation.lock.acquire(timeout=_PERIOD)  # who holds it may wait for this thread to end
+        self._simulation.published.is_wanted = not is_free
+        if is_free:
             self._free_at = now
             try:
                 is_changed = self._take_in(window, painter)
@@ -199,7 +201,9 @@ class WindowViewer(Viewer):
         self.interaction.pass_time_without_bodies(now)
         line = LOCKED if now - self._free_at > PATIENCE else ""
         surface = self._surface(window)
-        return (surface is not None and painter.look_again(self.interaction, surface, line)) or window.is_lost
+        if surface is None:
+            return window.is_lost
+        return painter.look_again(self.interaction, surface, line, self._simulation.published) or window.is_lost
 
     def _surface(self, window: GlfwWindow) -> Surface | None:
         """Return what is drawn on; None while it is minimised."""

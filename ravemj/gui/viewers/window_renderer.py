@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.engine.simulation import Simulation
+from ravemj.engine.simulation.published import Published
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
+from ravemj.graphics.rendering.style import Style
 from ravemj.gui.interaction import Interaction, Overlay, View
 from ravemj.gui.viewers.sharpness import CRISP, Level, Sharpness
 from ravemj.gui.viewers.window_overlay import OverlayPainter
-from ravemj.model.drawing import Primitives, merge
+from ravemj.model.drawing import NOTHING, Primitives, merge
 
 _WINDOW = mujoco.mjtFramebuffer.mjFB_WINDOW.value
 _OFFSCREEN = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
@@ -54,6 +56,9 @@ class WindowRenderer:
         self._seen_view: object = None
         self._line = ""
         self._bodies: object = None
+        self._model: mujoco.MjModel | None = None
+        self._primitives = NOTHING
+        self._published = 0
         self._drawn: object = None
         self._overlay: Overlay | None = None
         self._view: View | None = None
@@ -79,38 +84,53 @@ class WindowRenderer:
             return False
         self._seen, self._line = seen, ""
         self._overlay, self._view = interaction.overlay(), interaction.drawn_view
-        self._seen_view = self._view.camera, self._view.size, interaction.mode, surface
-        primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
+        self._published = simulation.published.number
+        self._seen_view = self._view.camera, self._view.size, interaction.mode, surface, self._published
+        self._primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
         stage = self._prepared_scene(compiled.model, simulation.version)
-        stage.fill(compiled.data, self._view.camera, surface.pixels, primitives, self._overlay.style)
+        stage.fill(compiled.data, self._view.camera, surface.pixels, self._primitives, self._overlay.style)
         self._bodies = looks, _content(self._overlay.primitives), self._overlay.style
         return True
 
-    def look_again(self, interaction: Interaction, surface: Surface, line: str) -> bool:
-        """Take over how the view is now, while others have the simulation: bodies stay as they were seen last.
+    def look_again(self, interaction: Interaction, surface: Surface, line: str, published: Published) -> bool:
+        """Take over how the view is now, while others have the simulation.
+
+        Bodies are where they were seen last, or where they were published since.
 
         Args:
             interaction: The view.
             surface: What it is drawn on.
             line: What is said about that.
+            published: Where bodies were published.
 
         Returns:
             Whether anything looks different from last time.
         """
         view = interaction.drawn_view
-        seen = view.camera, view.size, interaction.mode, surface
+        seen = view.camera, view.size, interaction.mode, surface, published.number
         if self._gl_scene is None or self._overlay is None or (seen == self._seen_view and line == self._line):
             return False
+        if published.number != self._published:
+            self._take_published(self._gl_scene, published, view, surface, self._overlay.style)
         self._seen_view, self._line, self._view = seen, line, view
         lines = tuple(other for other in self._overlay.lines if other != line)
         self._overlay = self._overlay._replace(lines=(line, *lines) if line else lines)
         self._gl_scene.aim(view.camera, surface.pixels)
         return True
 
+    def _take_published(self, stage: GlScene, published: Published, view: View, surface: Surface, style: Style) -> None:
+        assert self._model is not None, "there is a scene of it"
+        data = mujoco.MjData(self._model)
+        self._published = published.number
+        if published.copy_to(data, self._model):
+            stage.fill(data, view.camera, surface.pixels, self._primitives, style)
+            self._bodies = self._published
+            self._seen = None  # whoever has the simulation may put the bodies back to where they were seen
+
     def _prepared_scene(self, model: mujoco.MjModel, key: object) -> GlScene:
         if self._gl_scene is None or self._scene_key != key:
             self.close()
-            self._gl_scene, self._scene_key = GlScene(model, Quality(1, 1)), key
+            self._gl_scene, self._model, self._scene_key = GlScene(model, Quality(1, 1)), model, key
         return self._gl_scene
 
     def is_due(self, now: float) -> bool:

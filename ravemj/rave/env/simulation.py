@@ -121,7 +121,8 @@ class Simulating(Contents):
     def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
         """Publish the state of the bodies for ``GetPublishedBodies``.
 
-        Viewers show every change at once. While a script locks the environment, pages show the published state.
+        Viewers show every change at once. While a script locks the environment, viewers show the state that this method
+        or a step of simulation time published last.
 
         Args:
             timeout: Not used.

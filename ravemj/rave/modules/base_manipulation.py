@@ -109,7 +109,10 @@ class BaseManipulation(Manipulation):
 
         Raises:
             PlanningError: no motion was found.
+            ArgumentError: a number of solutions is negative.
         """
+        if min(first, samples) < 0:
+            raise ArgumentError(f"seedik is {first} and goalsamples {samples}, and both should be 0 or more")
         manip = self._solvable()
         stream = (row for goal in goals for row in solutions(manip, goal, IkFilterOptions.CheckEnvCollisions))
         found = list(islice(stream, min(first, samples)))

@@ -137,9 +137,13 @@ class BaseCommands(_Commands[BaseManipulation]):
         readers |= {"goalsamples": Tokens.integer, "goalmaxsamples": Tokens.integer, "steplength": Tokens.number}
         readers |= {"seedik": Tokens.integer, "goalsampleprob": Tokens.number}
         readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Tokens.number)
+        readers |= {"translation": lambda tokens: tokens.numbers(3), "rotation": lambda tokens: tokens.numbers(4)}
         options = read_options(arguments, {**readers, **_CONSTRAINT})
         poses = [*([options["matrix"]] if "matrix" in options else []), *options.get("matrices", ())]
-        goals = [IkParameterization(pose, IkParameterization.Type.Transform6D) for pose in poses]
+        kind = IkParameterization.Type
+        goals = [IkParameterization(pose, kind.Transform6D) for pose in poses]
+        names = {"translation": kind.Translation3D, "rotation": kind.Rotation3D}
+        goals += [IkParameterization(options[name], names[name]) for name in names if name in options]
         names = {
             "seedik": "first",
             "goalmaxsamples": "samples",
@@ -271,20 +275,20 @@ def _pose(tokens: Tokens) -> Floats:
 
 
 def _poses(tokens: Tokens) -> list[Floats]:
-    return [_pose(tokens) for _ in range(tokens.integer())]
+    return [_pose(tokens) for _ in range(tokens.count())]
 
 
 def _table(tokens: Tokens) -> Floats:
-    rows, width = tokens.integer(), tokens.integer()
+    rows, width = tokens.count(), tokens.count()
     return tokens.numbers(rows * width).reshape(rows, width)
 
 
 def _matrices(tokens: Tokens) -> list[Floats]:
-    return [tokens.matrix() for _ in range(tokens.integer())]
+    return [tokens.matrix() for _ in range(tokens.count())]
 
 
 def _hand(tokens: Tokens) -> tuple[Floats, list[int]]:
-    count = tokens.integer()
+    count = tokens.count()
     return tokens.numbers(count), [tokens.integer() for _ in range(count)]
 
 

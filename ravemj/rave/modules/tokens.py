@@ -47,17 +47,24 @@ class Tokens:
             raise ArgumentError(f"{number:g} should be a whole number")
         return int(number)
 
+    def count(self) -> int:
+        """Return the next token as a number of things that follow."""
+        count = self.integer()
+        if count < 0:
+            raise ArgumentError(f"{count} should be how many follow, 0 or more")
+        return count
+
     def numbers(self, count: int) -> Floats:
         """Return the next tokens as numbers, shape (count,)."""
         return np.array([self.number() for _ in range(count)])
 
     def rows(self, width: int) -> Floats:
         """Return rows of numbers, shape (n, width); the number of rows is the first token."""
-        return self.numbers(self.integer() * width).reshape(-1, width)
+        return self.numbers(self.count() * width).reshape(-1, width)
 
     def list(self) -> Floats:
         """Return numbers, shape (n,); the number of them is the first token."""
-        return self.numbers(self.integer())
+        return self.numbers(self.count())
 
     def matrix(self) -> Floats:
         """Return a pose, shape (4, 4), from 12 numbers by columns, as OpenRAVE writes it."""

@@ -36,6 +36,9 @@ _RESOLUTION = 0.02
 
 _ROUND = np.pi  # samples of a circular joint are drawn from [-pi, pi], since the joint has no limits of its own
 
+_FULL_TURN = 2 * np.pi
+"""Limits of rotation vectors, for samples [rad]: OpenRAVE's are 10000, where hardly a sample is near the start."""
+
 
 @dataclass(frozen=True)
 class _Part:
@@ -230,4 +233,7 @@ def space_of(coordinates: Coordinates, lower: Floats, upper: Floats, weights: Fl
     resolution = np.where(resolution > 0, resolution, _RESOLUTION)
     lower = np.where(coordinates.circular, -_ROUND, lower)
     upper = np.where(coordinates.circular, _ROUND, upper)
+    if len(coordinates.rotation) == 3:
+        columns = list(coordinates.rotation)
+        lower[columns], upper[columns] = np.clip([lower[columns], upper[columns]], -_FULL_TURN, _FULL_TURN)
     return Space(coordinates, lower, upper, weights, resolution)

@@ -233,6 +233,7 @@ class Client:
         if not self._is_due(now, has_changed=seen != self._seen_view or is_long != self._says_locked):
             return None
         self._seen_view, self._says_locked = seen, is_long
+        self._seen = None  # what is published may not be where the bodies are when the simulation is free again
         lines = tuple(line for line in self._overlay.lines if line != LOCKED)
         self._overlay = self._overlay._replace(lines=(LOCKED, *lines) if is_long else lines)
         if self._feed is not None and self._stage is not None:
