@@ -7,7 +7,7 @@ TO_STANDARD_OUTPUT = "-"
 """The name that stands for standard output in place of a file."""
 
 _LONGEST_SIDE = 16384  # what OpenGL's frame buffers can have on most machines
-_MOST_DIGITS = 9  # of a seed: numpy's older generators take 32 bits
+_MOST_DIGITS = 9  # so that a seed fits into 32 bits
 
 
 def target(text: str) -> str:

@@ -13,18 +13,29 @@ from ravemj.cli.parser import make_parser
 _HEAD = """\
 # The command line
 
-`scripts/docs` makes this page from the output of `ravemj COMMAND --help`; a test compares.
+<!-- scripts/docs makes this page from the help of the commands; a test compares. -->
 
-Commands write results to standard output and everything else to standard error, in ASCII where an encoding lacks
-characters. Exit codes: 0 done; 1 the input is bad, or the output cannot be written; 2 the command was not understood;
-128 + n a signal ended the command, as 130 for Ctrl-C and 143 for SIGTERM. Each mistake in a model is one line with file
-and line number; `--strict` treats warnings as errors.
+`ravemj COMMAND --help` shows the same in a terminal.
 
-Files and folders that commands write appear whole or not at all. Until they are whole they are called
-`.ravemj-….tmp`. If a process is killed, the next one that writes into the folder removes what it left.
-
-| command | |
+| command | what it does |
 |---|---|
+"""
+
+
+_RULES = """
+Commands write results to standard output and everything else to standard error, in ASCII if the encoding of the
+terminal lacks characters. Each mistake in a model is one line with file and line number; `--strict` treats warnings as
+errors.
+
+| exit code | meaning |
+|---|---|
+| 0 | the command has done its work |
+| 1 | the input is wrong, or the output cannot be written |
+| 2 | the command line is wrong |
+| 128 + n | signal n has ended the command: 130 for Ctrl-C, 143 for SIGTERM |
+
+A file or folder that a command writes appears as a whole or not at all. Meanwhile its name is `.ravemj-….tmp`. If a
+process is killed, the next one that writes into the same folder removes such a file.
 """
 
 
@@ -34,14 +45,14 @@ def markdown() -> str:
     summaries = {choice.dest: choice.help or "" for choice in commands._choices_actions}
     index = [f"| [`{name}`](#ravemj-{name}) | {_cell(summary)} |\n" for name, summary in summaries.items()]
     pages = [_page(name, commands.choices[name]) for name in summaries]
-    return _HEAD + "".join(index) + "".join(pages)
+    return _HEAD + "".join(index) + _RULES + "".join(pages)
 
 
 def _page(name: str, parser: argparse.ArgumentParser) -> str:
     words = [_metavar(action) for action in parser._actions if not action.option_strings]
     usage = " ".join(["ravemj", name, "[OPTION …]", *words])
     rows = [f"| {_label(action)} | {_cell(action.help or '')} |" for action in _arguments(parser)]
-    table = ["| argument | |", "|---|---|", *rows, ""] if rows else []
+    table = ["| argument | meaning |", "|---|---|", *rows, ""] if rows else []
     examples = [line.removeprefix("  ") for line in (parser.epilog or "").splitlines()[1:]]
     return "\n".join(
         [

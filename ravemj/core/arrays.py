@@ -36,8 +36,10 @@ def checked_numbers(values: ArrayLike, name: str) -> Floats:
     """Return a copy as floats, at least one-dimensional.
 
     Raises:
-        ArgumentError: they are no numbers.
+        ArgumentError: the values are not numbers.
     """
+    if values is None:  # pyright: ignore[reportUnnecessaryComparison] - users give it; numpy takes it for NaN
+        raise ArgumentError(f"{name}: is None, and should be numbers")
     try:
         return np.array(values, dtype=np.float64, ndmin=1)
     except (TypeError, ValueError):
@@ -55,7 +57,7 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     """Return a copy of a finite vector.
 
     Raises:
-        ArgumentError: it has another length, or something in it is no finite number.
+        ArgumentError: it has another length, or a number is not finite.
     """
     if type(values) is np.ndarray and values.dtype is FLOAT:
         vector: Floats = values.copy()
@@ -87,7 +89,7 @@ def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
     """Return the first numbers of a vector, which may have more, as OpenRAVE takes velocities and accelerations.
 
     Raises:
-        ArgumentError: it has fewer, or one of them is no finite number.
+        ArgumentError: there are fewer numbers, or one is not finite.
     """
     given = _floats(values, name)
     return checked_vector(given[:length] if given.ndim == 1 and len(given) > length else given, length, name)
@@ -115,7 +117,7 @@ def checked_point(values: ArrayLike, name: str) -> Floats:
 
     Raises:
         ValueError: it has another shape, as in OpenRAVE, whose bindings let Python's own error through.
-        ArgumentError: something in it is no finite number.
+        ArgumentError: a number is not finite.
     """
     given = values if type(values) is np.ndarray else checked_numbers(values, name)
     if given.shape != (3,):
@@ -127,7 +129,7 @@ def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name
     """Return indices as an array; None stands for none, ``...`` for all.
 
     Raises:
-        ArgumentError: they are no whole numbers.
+        ArgumentError: the indices are not whole numbers.
         IndexError: one is not from 0 to ``count - 1``.
     """
     if indices is ...:
@@ -163,11 +165,11 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
     Args:
         transform: Shape (4, 4) or (3, 4), or a pose [w, x, y, z, tx, ty, tz]. The quaternion is normalised, and so is
             a rotation that is scaled, as in OpenRAVE.
-        name: What to call it in errors.
+        name: The name of the argument, for error messages.
 
     Raises:
-        ValueError: it has another shape, as in OpenRAVE, whose bindings let Python's own error through.
-        ArgumentError: it is not finite, or its rotation is none.
+        ValueError: it has another shape; this is Python's own error, as in OpenRAVE.
+        ArgumentError: a number is not finite, or the rotation matrix is not orthonormal.
     """
     given = checked_numbers(transform, name)
     if not math.isfinite(sum(given.ravel().tolist())) and not np.isfinite(given).all():
@@ -205,5 +207,5 @@ def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
         squares = max(abs(dot(x, x) - 1), abs(dot(y, y) - 1), abs(dot(z, z) - 1))
         off = max(squares, abs(dot(x, y)), abs(dot(y, z)), abs(dot(z, x)))
     if not off <= NOT_RIGID:
-        raise ArgumentError(f"{name}: the rotation {rows} is none: its rows should be orthonormal")
+        raise ArgumentError(f"{name}: the rotation {rows} is not one: its rows should be orthonormal")
     return off < ROUNDING and abs(determinant - 1) < ROUNDING

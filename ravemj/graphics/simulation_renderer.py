@@ -35,11 +35,11 @@ _MOST_PIXELS = 8_300_000
 
 
 class Format(NamedTuple):
-    """What a picture costs and how it looks.
+    """The size and the quality of a picture.
 
     Attributes:
-        width: Columns [pixels].
-        height: Rows [pixels].
+        width: The width [pixels].
+        height: The height [pixels].
         shadows: Whether lights cast shadows; too slow for videos without a graphics card.
         samples: Samples per pixel against jagged edges: 4, or 0 for speed.
         scale: Its columns as a part of those that it is shown with: points and lines are so much narrower.
@@ -50,6 +50,18 @@ class Format(NamedTuple):
     shadows: bool = False
     samples: int = 4
     scale: float = 1.0
+
+    @property
+    def aspect(self) -> float:
+        """The width divided by the height.
+
+        Raises:
+            ArgumentError: the size is not in whole pixels, at least 1 x 1.
+        """
+        for side in (self.width, self.height):
+            if side < 1 or side != int(side):
+                raise ArgumentError(f"picture size {self.width} x {self.height}: expected whole pixels, at least 1 x 1")
+        return self.width / self.height
 
 
 class SimulationRenderer:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_transform
+from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, inverse, pose_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool, moved_goal
@@ -266,9 +266,13 @@ class ArmIk(ArmPart):
         """
         solver = self.ik_solver(iktype)
         T_base_world = inverse(self._T_world_base())
-        given = np.asarray(goals, dtype=float)
+        given = checked_numbers(goals, "ik: goals")
+        size = (4, 4) if iktype == _Type.Transform6D else (goal_size(iktype),)
+        if given.shape[-len(size) :] != size or given.ndim > len(size) + 1:
+            wanted = f"(N, {', '.join(map(str, size))}) for goals of type {_Type(iktype).name}"
+            raise ArgumentError(f"ik: goals: has shape {given.shape}, and should have shape {wanted}")
         if iktype == _Type.Transform6D:
-            local = T_base_world @ given.reshape(-1, *given.shape[-2:])
+            local = T_base_world @ given.reshape(-1, 4, 4)
         else:
             rows = given.reshape(-1, goal_size(iktype))
             local = np.array([moved_goal(iktype, row, pose_of(T_base_world)) for row in rows]).reshape(rows.shape)

@@ -81,10 +81,11 @@ def record(  # noqa: PLR0913 - keyword arguments
 
     body = moving_body(env) if robot is None else robot
     allowed = within_limits(body, motion)
+    form = Format(width, height)
     shot = Shot(
-        camera_for_motion(env, body, allowed, width / height) if camera is None else Camera.from_matrix(camera),
+        camera_for_motion(env, body, allowed, form.aspect) if camera is None else Camera.from_matrix(camera),
         env.background if background is None else checked_colour(background),
-        Format(width, height),
+        form,
         fps,
     )
     return write_frames(path, draw_frames(env, body, allowed, shot), fps, on_frame=on_frame)

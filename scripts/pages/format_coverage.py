@@ -17,12 +17,12 @@ _NONE: Meanings = MappingProxyType({})
 _HEAD = """\
 # Coverage of OpenRAVE's XML
 
-`scripts/docs` makes this page from the reader's own tables; a test compares.
+<!-- scripts/docs makes this page from the tables of the reader; a test compares. -->
 
-*read*: the tag has OpenRAVE's effect. *left out*: OpenRAVE knows the tag, and ravemj ignores it for the reason given,
-with a warning (`ignored-tag`, `ignored-attribute`). OpenRAVE does not know what is in no table; ravemj skips it, with
-a warning (`unknown-tag`, `unknown-attribute`). The letter case of tags and attributes does not matter.
-`ravemj check FILE` lists what applies to a file.
+These are all tags and attributes that OpenRAVE knows. A tag that is *read* has OpenRAVE's effect. One that is *left out*
+has none, for the reason given, and is reported as a warning (`ignored-tag`, `ignored-attribute`). Tags and attributes in
+no table are unknown to OpenRAVE, too; ravemj skips them with a warning (`unknown-tag`, `unknown-attribute`). Their letter
+case does not matter. `ravemj check FILE` lists all warnings about a file.
 """
 
 
@@ -134,7 +134,7 @@ def markdown() -> str:
 
 def _table(section: Section) -> str:
     rows = [f"## {section.element}\n\n{section.place[0].upper()}{section.place[1:]}.\n"]
-    rows += ["| attribute or child | | meaning or reason |", "|---|---|---|"]
+    rows += ["| attribute or child | status | meaning or reason |", "|---|---|---|"]
     rows += [f'| `{name}="…"` | read | {meaning} |' for name, meaning in sorted(section.attributes.items())]
     rows += [f'| `{name}="…"` | left out | {reason} |' for name, reason in section.left_out_attributes.items()]
     rows += [f"| `<{tag}>` | read | {meaning} |" for tag, meaning in section.tags.items()]

@@ -216,7 +216,7 @@ class TestDofValues:
             ([math.inf, 0], "finite"),
             ([-math.inf, 0], "finite"),
             (["a", "b"], "numbers"),
-            (None, "2 DOFs"),
+            (None, "is None, and should be numbers"),
         ],
     )
     @pytest.mark.parametrize("checklimits", [0, 1])

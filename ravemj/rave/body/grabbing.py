@@ -42,8 +42,8 @@ def check_holdable(state: BodyState, held: BodyState) -> None:
 
 def _check_not_carried_by(state: BodyState, held: BodyState) -> None:
     if held.carries(state):
-        name = held.scene.name
-        raise ArgumentError(f"Grab: '{state.scene.name}' cannot hold '{name}', by which it is held itself")
+        reason = "itself" if held is state else f"'{held.scene.name}', by which it is held itself"
+        raise ArgumentError(f"Grab: '{state.scene.name}' cannot hold {reason}")
 
 
 def grab_of(state: BodyState, held: BodyState) -> GrabbedBody | None:

@@ -1,9 +1,9 @@
 """Simulation time, physics, and the state of bodies that is published meanwhile."""
 
-import math
 from typing import Any
 
 from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_vector
 from ravemj.engine.clock import Clock
 from ravemj.engine.simulation import DEFAULT_GRAVITY
 from ravemj.errors import ArgumentError, RavemjError
@@ -206,10 +206,11 @@ class Simulating(Contents):
 
 
 def _checked_step(timestep: float, name: str, least: float = 0.0) -> float:
-    if not (math.isfinite(timestep) and timestep >= least):
+    (checked,) = checked_vector([timestep], 1, f"{name}: timestep").tolist()
+    if checked < least:
         wanted = f"at least {least:g} s" if least else "0 s or more"
         raise ArgumentError(f"{name}: timestep is {timestep}, and should be a finite number, {wanted}")
-    return float(timestep)
+    return checked
 
 
 def _state(body: KinBody) -> State:

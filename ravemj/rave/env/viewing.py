@@ -166,9 +166,10 @@ class Viewing(EnvironmentPart):
             >>> imageio.v3.imwrite("pendulum.png", env.render(640, 480))
         """
         self._check_alive()
-        view = self.default_camera(width / height) if camera is None else Camera.from_matrix(camera)
+        form = Format(width, height, shadows=True)
+        view = self.default_camera(form.aspect) if camera is None else Camera.from_matrix(camera)
         colour = self.background if background is None else checked_colour(background)
-        return self._renderer.render(view, colour, Format(width, height, shadows=True))
+        return self._renderer.render(view, colour, form)
 
     def animation(
         self,
