@@ -21,8 +21,8 @@ _STATEMENTS = {"with_env": ravemj.Environment, "with_robot": ravemj.KinBody}
 _HEAD = """\
 # Coverage of OpenRAVE's API
 
-<!-- scripts/docs, or python scripts/pages/api_coverage.py > docs/api-coverage.md alone, makes this page from the program
-itself; a test compares. -->
+<!-- scripts/docs, or python scripts/pages/api_coverage.py > docs/api-coverage.md alone, makes this page from the
+program itself; a test compares. -->
 
 The names are all public ones of openravepy 0.149.1: modules, classes, methods, properties, arguments and members of
 enumerations. A name is *there* when it exists, members of enumerations with OpenRAVE's number. What only raises

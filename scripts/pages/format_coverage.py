@@ -19,10 +19,10 @@ _HEAD = """\
 
 <!-- scripts/docs makes this page from the tables of the reader; a test compares. -->
 
-These are all tags and attributes that OpenRAVE knows. A tag that is *read* has OpenRAVE's effect. One that is *left out*
-has none, for the reason given, and is reported as a warning (`ignored-tag`, `ignored-attribute`). Tags and attributes in
-no table are unknown to OpenRAVE, too; ravemj skips them with a warning (`unknown-tag`, `unknown-attribute`). Their letter
-case does not matter. `ravemj check FILE` lists all warnings about a file.
+These are all tags and attributes that OpenRAVE knows. A tag that is *read* has OpenRAVE's effect. One that is *left
+out* has none, for the reason given, and is reported as a warning (`ignored-tag`, `ignored-attribute`). Tags and
+attributes in no table are unknown to OpenRAVE, too; ravemj skips them with a warning (`unknown-tag`,
+`unknown-attribute`). Their letter case does not matter. `ravemj check FILE` lists all warnings about a file.
 """
 
 
