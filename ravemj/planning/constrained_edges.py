@@ -1,4 +1,4 @@
-"""Lines on a constraint: between two configurations, what lies in between is moved onto it.
+"""Lines on a constraint: the configurations between two others are projected onto it.
 
 After D. Berenson, S. Srinivasa, D. Ferguson and J. Kuffner, "Manipulation planning on constraint manifolds", ICRA 2009.
 """
@@ -15,23 +15,23 @@ from ravemj.planning.projection import PROJECTION_STEPS, Error, project
 from ravemj.planning.space import Space
 
 _PROJECTED = 0.1
-"""Projections end at this part of the threshold."""
+"""Projections end at this fraction of the threshold."""
 
 _INSIDE = 0.5
-"""Configurations that are beyond this part of the threshold are projected, so that lines between others stay inside."""
+"""Configurations beyond this fraction of the threshold are projected, so that lines between the others stay inside."""
 
 _DETOUR = 0.8
-"""Each half of a line is at most this long, relative to the line: others jump from one part of the constraint away."""
+"""The largest length of each half of a line, relative to the line. A longer half is a jump on the constraint."""
 
 _SHORTEST = 1e-3
-"""Shorter parts of a line are not halved."""
+"""Parts of a line that are shorter than this fraction of it are not halved."""
 
 
 class Manifold(NamedTuple):
     """The configurations that keep a constraint.
 
     Attributes:
-        error: What others lack.
+        error: The error function, which is zero for these configurations.
         threshold: The norm of the error up to which a constraint is kept.
     """
 
@@ -51,9 +51,9 @@ class ConstrainedEdges(Edges):
     """Tests lines that are bent onto a constraint, in steps of the space's resolution.
 
     Args:
-        space: Where the lines are.
-        allowed: Tests one configuration; it need not look at the constraint.
-        manifold: What keeps the constraint.
+        space: The configuration space.
+        allowed: The test of one configuration; it need not test the constraint.
+        manifold: The configurations that keep the constraint.
     """
 
     def __init__(self, space: Space, allowed: Allowed, manifold: Manifold) -> None:

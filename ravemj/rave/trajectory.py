@@ -364,6 +364,7 @@ class Trajectory(Interface):
     def __len__(self) -> int:
         return self.GetNumWaypoints()
 
+    @also_named(indices="index")
     def __getitem__(self, index: int | slice) -> Floats:
         """Return a waypoint, shape (dof,), or for a slice several, shape (n, dof)."""
         return self.GetAllWaypoints2D()[index] if isinstance(index, slice) else self.GetWaypoint(index)

@@ -30,8 +30,8 @@ class InverseKinematicsError(Exception):
         super().__init__(parameter)
         self.parameter = parameter
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, InverseKinematicsError) and self.parameter == other.parameter
+    def __eq__(self, r: object) -> bool:
+        return isinstance(r, InverseKinematicsError) and self.parameter == r.parameter
 
     def __hash__(self) -> int:
         return hash(str(self.parameter))

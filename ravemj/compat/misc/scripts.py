@@ -80,7 +80,16 @@ class OpenRAVEGlobalArguments:
         if level:
             logs.RaveSetDebugLevel(_LEVELS[level.lower()] if level.lower() in _LEVELS else int(level))
 
-    parseGlobal = parseGlobalArguments
+    @staticmethod
+    def parseGlobal(options: Any, **kwargs: object) -> None:  # noqa: ANN401 - as above
+        """Apply the options that concern no environment.
+
+        Args:
+            options: What ``optparse`` or ``argparse`` returned.
+            kwargs: Not used.
+        """
+        del kwargs
+        OpenRAVEGlobalArguments.parseGlobalArguments(options)
 
     @staticmethod
     def parseEnvironment(

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_rows, checked_transform
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.moving import batch_collides
@@ -16,7 +15,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import AABB, OrientedBox, OrientedBoxFromAABB
 from ravemj.model.bounds import enclosing_box, links_bounds
 from ravemj.rave.body.structure import Structure
-from ravemj.rave.enums import AdjacentOptions
+from ravemj.rave.enums import AdjacentOptions, InterfaceType
 from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.interface import Interface
 
@@ -64,10 +63,10 @@ class BodyCollision(Structure, Interface):
         Args:
             collisionchecker: The checker; None selects that of the environment.
         """
-        from ravemj.rave.collision import CollisionChecker  # noqa: PLC0415 - it imports this module
-
-        if collisionchecker is not None:
-            checked_kind(collisionchecker, CollisionChecker, "SetSelfCollisionChecker: collisionchecker")
+        kind = getattr(collisionchecker, "GetInterfaceType", lambda: None)()
+        if collisionchecker is not None and kind is not InterfaceType.collisionchecker:
+            found = f"is a {type(collisionchecker).__name__}, and should be a CollisionChecker"
+            raise ArgumentError(f"SetSelfCollisionChecker: collisionchecker: {found}")
         self._self_checker = collisionchecker
 
     def GetSelfCollisionChecker(self) -> "CollisionChecker | None":

@@ -27,6 +27,14 @@ class PlanningError(Exception):
         self.parameter = parameter
         self.recoverySuggestions = list(recoverySuggestions or ())
 
+    def __eq__(self, r: object) -> bool:
+        if not isinstance(r, PlanningError):
+            return NotImplemented
+        return (self.parameter, self.recoverySuggestions) == (r.parameter, r.recoverySuggestions)
+
+    def __hash__(self) -> int:
+        return hash(str(self.parameter))
+
 
 class PlannerStatus(ApiObject):
     """The result of planning, with the reason on failure.

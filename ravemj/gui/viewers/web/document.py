@@ -1,4 +1,4 @@
-"""The page as one document: a slow way to the server is gone only once."""
+"""The page as one HTML document with its styles and scripts, so that a browser fetches it in one round trip."""
 
 import base64
 import hashlib
