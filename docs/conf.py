@@ -36,7 +36,7 @@ nitpick_ignore_regex = [  # pages of others, which a build without network knows
     # Names of types: of JSON, of functions that scripts hand in, of what modules take.
     (
         "py:class",
-        r"(Grasp)?Answer|BodyCallback|Command|Constraint|FilterFunction|Json|PlanCallback|SaveArguments|State",
+        r"Argument|(Grasp)?Answer|BodyCallback|Command|Constraint|FilterFunction|Json|PlanCallback|SaveArguments|State",
     ),
     ("py:class", r"Animation|View"),  # results with a line or two to say
     (
