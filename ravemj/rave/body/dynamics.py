@@ -346,6 +346,8 @@ class Dynamics(Limits):
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
     """Return columns of a Jacobian, along its last axis; zeros for an index that is not a DOF."""
+    if indices is None:
+        return jacobian
     chosen = checked_whole_numbers(indices, "indices")
     if not chosen.size:
         return jacobian
@@ -357,7 +359,8 @@ def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
 
 
 def _both_columns(hessian: Floats, indices: "ArrayLike | None") -> Floats:
-    return _columns(_columns(hessian, indices).T, indices).T
+    """Return columns of a Hessian, along its first and its last axis; see ``_columns``."""
+    return hessian if indices is None else _columns(_columns(hessian, indices).T, indices).T
 
 
 def _checked_out(out: Floats | None, shape: tuple[int, ...]) -> Floats:
