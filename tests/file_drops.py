@@ -4,25 +4,12 @@ import ctypes
 import ctypes.util
 from pathlib import Path
 
-from screens import Display
+from screens import ClientMessage, Display
 from waiting import await_that
 
 _CLIENT_MESSAGE, _SELECTION_REQUEST, _SELECTION_NOTIFY = 33, 30, 31
 _VERSION = 5
 _NOW = 0
-
-
-class _Message(ctypes.Structure):
-    _fields_ = (
-        ("type", ctypes.c_int),
-        ("serial", ctypes.c_ulong),
-        ("send_event", ctypes.c_int),
-        ("display", ctypes.c_void_p),
-        ("window", ctypes.c_ulong),
-        ("message_type", ctypes.c_ulong),
-        ("format", ctypes.c_int),
-        ("data", ctypes.c_long * 5),
-    )
 
 
 class _Request(ctypes.Structure):
@@ -56,7 +43,7 @@ class _Answer(ctypes.Structure):
 class _XEvent(ctypes.Union):
     _fields_ = (
         ("type", ctypes.c_int),
-        ("message", _Message),
+        ("message", ClientMessage),
         ("request", _Request),
         ("answer", _Answer),
         ("whole", ctypes.c_long * 24),
@@ -99,7 +86,7 @@ class _Source:
 
     def say(self, name: str, *numbers: int) -> None:
         data = (ctypes.c_long * 5)(self._own.value, *numbers)
-        event = _XEvent(message=_Message(_CLIENT_MESSAGE, 0, 1, None, self._window, self.atom(name), 32, data))
+        event = _XEvent(message=ClientMessage(_CLIENT_MESSAGE, 0, 1, None, self._window, self.atom(name), 32, data))
         self._send(self._window, event)
 
     def hears(self, name: str) -> bool:

@@ -64,7 +64,9 @@ class Display:
         return self.picture(window)
 
 
-class _ClientMessage(ctypes.Structure):
+class ClientMessage(ctypes.Structure):
+    """What one program sends to the window of another, as large as any event of X."""
+
     _fields_ = (
         ("type", ctypes.c_int),
         ("serial", ctypes.c_ulong),
@@ -99,7 +101,7 @@ def _send_close(display_name: str, window: int) -> None:
     display = xlib.XOpenDisplay(display_name.encode())
     protocols, delete = (xlib.XInternAtom(display, name, 0) for name in (b"WM_PROTOCOLS", b"WM_DELETE_WINDOW"))
     client_message = 33
-    message = _ClientMessage(client_message, 0, 1, display, window, protocols, 32, (ctypes.c_long * 5)(delete))
+    message = ClientMessage(client_message, 0, 1, display, window, protocols, 32, (ctypes.c_long * 5)(delete))
     assert xlib.XSendEvent(display, window, 0, 0, ctypes.byref(message))
     xlib.XCloseDisplay(display)
 

@@ -6,10 +6,9 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.model.expressions import joint_variables, parse, substitute
+from ravemj.model.mimic_texts import mimic_texts
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.environment import Environment
-from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 
@@ -81,7 +80,8 @@ def _links(body0: KinBody, body1: KinBody, geometries: bool, physics: bool, epsi
 def _joints(body0: KinBody, body1: KinBody, epsilon: float) -> None:
     first, second = ([*body.GetJoints(), *body.GetPassiveJoints()] for body in (body0, body1))
     _alike([joint.GetName() for joint in first], [joint.GetName() for joint in second], "joints")
-    for joint0, joint1 in zip(first, second, strict=True):
+    equations = [mimic_texts(body.simulation_state.scene) for body in (body0, body1)]
+    for joint0, joint1, mimic0, mimic1 in zip(first, second, *equations, strict=True):
         name = f"joint '{joint0.GetName()}'"
         _alike(joint0.GetType(), joint1.GetType(), f"{name}: types")
         _near(joint0.GetLimits(), joint1.GetLimits(), epsilon, f"{name}: limits")
@@ -90,14 +90,7 @@ def _joints(body0: KinBody, body1: KinBody, epsilon: float) -> None:
         _near(joint0.GetTorqueLimits(), joint1.GetTorqueLimits(), epsilon, f"{name}: torque limits")
         _near(joint0.GetWeights(), joint1.GetWeights(), epsilon, f"{name}: weights")
         _near(joint0.GetResolutions(), joint1.GetResolutions(), epsilon, f"{name}: resolutions")
-        _alike(_equation(joint0, first), _equation(joint1, second), f"{name}: equations")
-
-
-def _equation(joint: Joint, joints: Iterable[Joint]) -> str:
-    """Return the equation that a joint follows as one text for all ways of writing it; empty for none."""
-    text = joint.GetMimicEquation()
-    variables = joint_variables([one.GetName() for one in joints])
-    return str(parse(substitute(text, variables), set(variables.values()))) if text else ""
+        _alike(mimic0.get("follows"), mimic1.get("follows"), f"{name}: equations")
 
 
 def _manipulators(robot0: Robot, robot1: Robot, epsilon: float) -> None:

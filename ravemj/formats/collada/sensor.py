@@ -1,4 +1,4 @@
-"""Sensors: OpenRAVE's ``<sensor>``, which says what one is like, and those of ours that no robot carries."""
+"""Sensors: OpenRAVE's ``<sensor>``, and the extra of ravemj for sensors that no robot carries."""
 
 import math
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ from ravemj.model.scene import SENSOR_COLOR, AttachedSensor, Device, needs_link,
 
 
 class SensorReader:
-    """Reads what sensors are like."""
+    """Reads the descriptions of sensors."""
 
     def __init__(self, library: Library, references: References) -> None:
         self._library = library
@@ -29,10 +29,10 @@ class SensorReader:
         """Read a sensor.
 
         Args:
-            place: The element that has its name.
-            technique: The element with its ``<instance_sensor>``; without one it is a frame without a device.
-            link: Index of the link that carries it, or None.
-            T_link_sensor: Its pose in the link; of a sensor that no robot carries, in the world.
+            place: The element with the name of the sensor.
+            technique: The element with the ``<instance_sensor>``; without one, the sensor is a frame without a device.
+            link: The index of the link that carries the sensor, or None.
+            T_link_sensor: The pose of the sensor in the link; without a link, in the world.
         """
         instance = child(technique, "instance_sensor")
         sensor = None if instance is None else self._library.follow(instance, "sensor")
@@ -57,7 +57,7 @@ class SensorReader:
                 yield replace(sensor, is_on=sensor.is_on and can_measure)
 
     def _device(self, sensor: Element, device: Device) -> Device:
-        """Return a device as a ``<sensor>`` describes it; elements that only handle pictures say nothing here."""
+        """Return the device that a ``<sensor>`` describes. Elements that are no property of the device are skipped."""
         tags = {name.lower(): tag for name, tag in sensor_tags(device).items()}
         for element in children(sensor):
             tag = tags.get(local_name(element).lower())
@@ -74,7 +74,7 @@ class SensorReader:
         return device
 
     def _looks(self, sensor: Element, built: AttachedSensor) -> AttachedSensor:
-        """Return a sensor with the colour in which it is drawn, and on if it should be and can."""
+        """Return a sensor with its colour, and switched on if the file says so and the sensor can measure."""
         color = numbers(child(sensor, "color")).tolist()
         if len(color) >= 3 and all(map(math.isfinite, color)):
             built = replace(built, color=(color[0], color[1], color[2]))
@@ -88,7 +88,7 @@ class SensorReader:
 
 
 def _device_type(sensor: Element) -> str:
-    """Return the name of the device that a ``<sensor>`` is: the interface that it names, else its type."""
+    """Return the name of the device: the interface that a ``<sensor>`` names, else its type."""
     for technique in children(child(sensor, "interface_type"), "technique"):
         named = " ".join(words(child(technique, "interface")))
         if named:
@@ -97,13 +97,13 @@ def _device_type(sensor: Element) -> str:
 
 
 def write_device(out: XmlText, library: XmlText, name: str, sensor: AttachedSensor) -> None:
-    """Write what a sensor is like, and the reference to that.
+    """Write the description of a sensor into the library, and a reference to it.
 
     Args:
-        out: Takes the reference.
+        out: The document, which gets the reference.
         library: The library of sensors.
-        name: The id of the sensor in it.
-        sensor: The sensor; of a frame without a device nothing is written.
+        name: The id of the sensor in the library.
+        sensor: The sensor. For a frame without a device, nothing is written.
     """
     if sensor.type is None:
         return
