@@ -41,7 +41,7 @@ def loaded(file: str) -> Environment:
 
 
 def hold_bases(env: Environment) -> None:
-    """Let robots keep their bases where nothing is static: with physics all would fall, for ever."""
+    """Keep the bases of robots fixed where nothing is static. Otherwise everything would fall for ever with physics."""
     if not any(link.IsStatic() for body in env.GetBodies() for link in body.GetLinks()):
         for robot in env.GetRobots():
             robot.GetLinks()[0].SetStatic(True)

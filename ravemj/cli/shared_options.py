@@ -12,7 +12,7 @@ from ravemj.formats.shipped import SHIPPED_MODELS
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
 
 VIDEOS = ".mp4, .gif, .webp, or a folder for PNG frames"
-"""What ``-o`` of commands that write videos takes."""
+"""The files that ``-o`` accepts in commands that write videos."""
 
 
 def command(commands: Commands, name: str, summary: str, *examples: str) -> argparse.ArgumentParser:

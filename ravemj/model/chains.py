@@ -15,7 +15,7 @@ from ravemj.model.scene import Joint, KinBody, Manipulator
 
 
 class Connections:
-    """How joints connect links, in tables, since scripts ask for it in loops.
+    """Tables of how joints connect links, made once, because scripts look them up in loops.
 
     Attributes:
         joints: The joints.

@@ -87,8 +87,8 @@ class ConstrainedEdges(Edges):
         """Return the configurations along a bent line, so near that straight lines between them keep the constraint.
 
         Args:
-            start: Where it starts; it is allowed.
-            end: Where it ends.
+            start: The first configuration, which is allowed.
+            end: The last configuration.
 
         Returns:
             Shape (m, n); None where one of them is not allowed.

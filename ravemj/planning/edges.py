@@ -10,7 +10,7 @@ from ravemj.core.transforms import Floats
 from ravemj.planning.space import Space
 
 RANGE = 1.0
-"""How far [rad or m] one line of a tree goes at most."""
+"""The largest length [rad or m] of one line of a tree."""
 
 Allowed = Callable[[Floats], bool]
 """Whether a configuration is without collisions, and keeps the user's constraints."""

@@ -168,26 +168,27 @@ class BaseManipulation(TrajectoryText):
         """Move the arm of the active manipulator so that its tool reaches a goal, without collisions.
 
         Args:
-            matrices: Poses ``T_world_tool``, any of which will do: 4x4, 3x4 or 7 numbers each.
+            matrices: Goal poses ``T_world_tool``: 4x4, 3x4 or 7 numbers each. The motion ends at one of them.
             affinedofs: Not used.
-            maxiter: Iterations of the planner; None: 4000.
-            maxtries: How often it is asked; None: 3.
-            translation: A point for the tool, in place of a pose.
-            rotation: A quaternion for the tool, in place of a pose.
-            seedik: How many solutions of inverse kinematics are goals from the start; None: 8.
-            constraintfreedoms: What the tool keeps all the way: 1 for each rotation about x, y, z and each way along
-                them that ``constraintmatrix @ T_world_tool @ constrainttaskmatrix`` does not have, 0 for those that
-                are free, shape (6,); None: all are.
-            constraintmatrix: ``T_task_world``, the task frame, whose axes count; by default the world.
-            constrainterrorthresh: The error [m and rad] up to which the constraint is kept; None: 0.001.
+            maxiter: The maximum number of iterations of the planner; by default 4000.
+            maxtries: The number of calls of the planner; by default 3.
+            translation: A goal point of the tool, in place of a pose.
+            rotation: A goal quaternion of the tool, in place of a pose.
+            seedik: The number of IK solutions that are goals from the start; by default 8.
+            constraintfreedoms: The constraint of the tool along the whole motion, shape (6,): 1 forbids, 0 allows
+                the rotations about x, y, z, then the translations along them, of ``constraintmatrix @ T_world_tool @
+                constrainttaskmatrix``. By default all are allowed.
+            constraintmatrix: ``T_task_world``, the task frame, to whose axes ``constraintfreedoms`` refers; by default
+                the world.
+            constrainterrorthresh: The tolerance of the constraint [m and rad]; by default 0.001.
             execute: False leaves the robot alone.
             outputtraj: Whether to return the motion's text.
             steplength: Not used.
-            goalsamples: How many solutions of inverse kinematics are goals at most; None: 40.
+            goalsamples: The largest number of IK solutions that are goals; by default 40.
             ikparam: A goal of any type.
-            ikparams: Several of them.
-            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.03. With a
-                constraint they are not moved.
+            ikparams: Several goals of any type.
+            jitter: The largest change of each value of a start or goal in collision [rad or m]; by default 0.03. With
+                a constraint, starts and goals are not changed.
             minimumgoalpaths: Not used.
             outputtrajobj: Whether to return the motion.
             postprocessing: The smoother and its parameters; None: OpenRAVE's.
@@ -195,7 +196,7 @@ class BaseManipulation(TrajectoryText):
             constrainttaskmatrix: ``T_tool_point``, the constrained frame; by default the frame of the tool that is the
                 task frame at the start, so that the tool keeps what it has there.
             constrainttaskpose: The same as 7 numbers.
-            goalsampleprob: The part of the iterations in which a further one is asked for; None: 0.1.
+            goalsampleprob: The fraction of the iterations that ask for a further IK solution; by default 0.1.
             goalmaxsamples: As ``goalsamples``.
             goalmaxtries: Not used.
             releasegil: Not used.

@@ -22,8 +22,8 @@ class ManipulatorIKGoalSampler(ApiObject):
         manip: The arm.
         parameterizations: The goals.
         nummaxsamples: How many solutions of each goal are given at most.
-        nummaxtries: How often a goal is moved aside.
-        jitter: How far [m] along each axis a goal that has no solution is moved aside, at random; 0: it is left out.
+        nummaxtries: The number of attempts to move a goal aside.
+        jitter: The largest random displacement [m], along each axis, of a goal that has no solution; 0 for none.
         searchfreeparameters: For OpenRAVE.
         ikfilteroptions: Which solutions count, ``IkFilterOptions``.
         freevalues: Values of the arm's free joints, as ``FindIKSolutions`` takes them; None or []: all are searched.

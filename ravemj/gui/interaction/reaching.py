@@ -29,10 +29,10 @@ _MOST_STEPS = 100
 """Most of such steps to the value of a slider."""
 
 _CLOSE = 1e-4
-"""How near to that the joint comes [rad or m]."""
+"""The tolerance of the joint value [rad or m]."""
 
 _STUCK = 0.1
-"""Where a step moves the joint by a smaller part of what it should, limits of other joints hold the arm."""
+"""A step that moves the joint by a smaller fraction of its length shows that limits of other joints stop the arm."""
 
 _SAME = 0.05
 """Configurations whose joints all differ by less [rad or m] are the same to the eye."""

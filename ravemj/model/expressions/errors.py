@@ -9,7 +9,7 @@ class ExpressionError(ArgumentError):
     """An equation that cannot be read; one line that names the place.
 
     Attributes:
-        problem: What is wrong, without the place.
+        problem: The error, without the place.
         position: Index of the character in the text, from 0; where the text ends too early, its length.
         expected: What could have stood there; may be empty.
     """

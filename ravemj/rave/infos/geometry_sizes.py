@@ -287,7 +287,7 @@ _SIZES_JSON = {GeometryType[one.name]: tuple(_of_sizes(one.shape)) for one in sc
         Entry("sideWalls", "_vSideWalls", _WALLS, optional=True),
     ),
 }
-"""How JSON says the sizes; of the last three types, which no shape is of, only infos know them."""
+"""The keys of sizes in JSON. No shape has one of the last three types; only infos know them."""
 
 
 def _mesh_json(mesh: TriMesh, scale: float) -> Json:

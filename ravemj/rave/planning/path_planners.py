@@ -29,7 +29,7 @@ _ITERATIONS = 10000
 """OpenRAVE's default for the maximum number of iterations."""
 
 _SHORTCUTS = 100
-"""That are tried on a constraint: OpenRAVE's number."""
+"""The maximum number of projection steps onto a constraint, as in OpenRAVE."""
 
 _SPACING = 10
 """The largest distance of the waypoints of a path that no planner processes, in step lengths."""

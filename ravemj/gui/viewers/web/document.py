@@ -16,7 +16,7 @@ def document(scene: str) -> tuple[bytes, str]:
     """Return the page with its styles and scripts in it, and the policy that lets browsers run these and nothing else.
 
     Args:
-        scene: Name of the surfaces that it fetches while it connects; empty: it waits to be told.
+        scene: The name of the surfaces that the page fetches while it connects; empty if it has to wait for their name.
     """
     hashes: dict[str, list[str]] = {"style": [], "script": []}
 
