@@ -99,7 +99,18 @@ class Mallinfo2(ctypes.Structure):
 
     _fields_ = [
         (name, ctypes.c_size_t)
-        for name in "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost".split()
+        for name in [
+            "arena",
+            "ordblks",
+            "smblks",
+            "hblks",
+            "hblkhd",
+            "usmblks",
+            "fsmblks",
+            "uordblks",
+            "fordblks",
+            "keepcost",
+        ]
     ]
 
 
@@ -130,7 +141,7 @@ CYCLES = {
 @pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "mallinfo2"), reason="only glibc tells what is in use")
 @pytest.mark.parametrize("work", CYCLES, ids=lambda work: work.__name__)
 def test_memory_does_not_grow(env, work, shown):
-    """The first round fills caches; the smaller growth of two others counts, and one object a call would be too much."""
+    """The first round fills caches; of two others the smaller growth counts. One object a call is too much."""
     numbers, growths = iter(range(10**9)), []
     for _ in range(3):
         before = memory()
