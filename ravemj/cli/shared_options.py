@@ -11,7 +11,7 @@ from ravemj.formats.shipped import SHIPPED_MODELS
 
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
 
-VIDEOS = ".mp4, .gif, .webp, or a folder for PNG frames"
+VIDEOS = ".mp4, .avi, .mpg, .gif, .webp, or a folder for PNG frames"
 """The files that ``-o`` accepts in commands that write videos."""
 
 

@@ -4,13 +4,15 @@ A frame is a uint8 array (height, width, 3): sRGB, the top row first. The name o
 
 ======================  =====================================================================================
 ``.mp4``                H.264, which every browser plays
+``.avi``, ``.mpg``      H.264 and MPEG-2 for scripts that were written for OpenRAVE; browsers do not play them. MPG
+                        has 30 frames a second and repeats frames to keep the time
 ``.gif``                256 colours a frame; delays are multiples of 10 ms, so the frames of a 30 fps video take
                         30 or 40 ms and the whole keeps its time
 ``.webp``               all colours, smaller than GIF; delays are multiples of 1 ms
 no suffix or a final /  a folder of ``frame_00000.png``, ``frame_00001.png``, …
 ======================  =====================================================================================
 
-MP4 and PNG take the same memory for any number of frames; GIF and WebP hold all of them.
+MP4, AVI, MPG and PNG take the same memory for any number of frames; GIF and WebP hold all of them.
 
 A target appears whole or not at all; see ``ravemj.core.output``.
 """
@@ -28,6 +30,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -48,6 +51,7 @@ _FRAMES_BETWEEN_THREADS = 4
 _LOWEST_FPS = 0.01
 _FOLDER = ""  # the suffix that stands for a folder of PNG files
 _FILES_OF_FOLDER = "frame_*.png"
+_MPG_FPS = 30
 _BT709, _SRGB = 1, 13  # ITU-T H.273
 _LIMITED, _FULL = 1, 2  # FFmpeg's AVColorRange
 _MANY_FRAMES = 300
@@ -79,9 +83,9 @@ def write_frames(
 
     Args:
         path: The target; its suffix selects the format.
-        frames: uint8 arrays (height, width, 3) of one size. MP4 repeats the last row or column of an odd size.
+        frames: uint8 arrays (height, width, 3) of one size. Videos repeat the last row or column of an odd size.
         fps: Frames a second, from 0.01 to 1000; to 50 for GIF and to 90 for WebP, since browsers play shorter delays
-            at 10 frames a second.
+            at 10 frames a second; to 30 for MPG.
         on_frame: Called in the caller's thread after each frame with the number of frames so far.
 
     Returns:
@@ -147,12 +151,21 @@ def _imwrite(target: Path | io.BytesIO, frame: Frame, **options: Any) -> None:  
     imageio.v3.imwrite(target, frame, plugin="pillow", **options)
 
 
-def _write_mp4(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
+_H264 = {"crf": "20", "preset": "veryfast"}
+_CONTAINERS = {  # codec, its options, options of the file
+    "mp4": ("libx264", _H264, {"movflags": "+faststart"}),
+    "avi": ("libx264", _H264 | {"bf": "0"}, {}),  # AVI has no times for frames that are stored out of order
+    "mpeg": ("mpeg2video", {"b": "8M"}, {}),
+}
+
+
+def _write_video(frames: Iterator[Frame], temporary: Path, rate: Fraction, kind: str) -> None:
     import av  # noqa: PLC0415 - slow to import
 
     first = next(frames)
-    with av.open(str(temporary), "w", format="mp4", options={"movflags": "+faststart"}) as container:
-        stream = container.add_stream("libx264", rate, {"crf": "20", "preset": "veryfast"})
+    codec_name, codec_options, options = _CONTAINERS[kind]
+    with av.open(str(temporary), "w", format=kind, options=options) as container:
+        stream = container.add_stream(codec_name, rate, codec_options)
         stream.height, stream.width = (size + size % 2 for size in first.shape[:2])
         stream.pix_fmt = "yuv420p"
         codec = stream.codec_context
@@ -167,6 +180,17 @@ def _write_mp4(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None
             picture.pts = number
             container.mux(stream.encode(picture))
         container.mux(stream.encode(None))
+
+
+def _write_mpg(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
+    """MPEG-2 allows few frame rates, so the video has the most usual one."""
+
+    def repeated() -> Iterator[Frame]:
+        for number, frame in enumerate(frames):
+            begin, end = (math.ceil(count * _MPG_FPS / rate) for count in (number, number + 1))
+            yield from itertools.repeat(frame, end - begin)
+
+    _write_video(repeated(), temporary, Fraction(_MPG_FPS), "mpeg")
 
 
 def _write_gif(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
@@ -205,7 +229,9 @@ def _write_png_folder(frames: Iterator[Frame], temporary: Path, _: Fraction) -> 
 
 _Encoder = Callable[[Iterator[Frame], Path, Fraction], None]
 VIDEO_FORMATS: dict[str, tuple[_Encoder, int]] = {
-    ".mp4": (_write_mp4, 1000),
+    ".mp4": (partial(_write_video, kind="mp4"), 1000),
+    ".avi": (partial(_write_video, kind="avi"), 1000),
+    ".mpg": (_write_mpg, _MPG_FPS),
     ".gif": (_write_gif, 50),
     ".webp": (_write_webp, 90),
     _FOLDER: (_write_png_folder, 1000),

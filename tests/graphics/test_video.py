@@ -26,7 +26,7 @@ import ravemj.graphics.video
 from ravemj.errors import ArgumentError, OutputError
 from ravemj.graphics.video import check_target, write_frames, write_picture
 
-TARGETS = ["video.mp4", "video.gif", "video.webp", "video"]
+TARGETS = ["video.mp4", "video.avi", "video.mpg", "video.gif", "video.webp", "video"]
 SKY = (204, 217, 230)
 
 
@@ -120,6 +120,20 @@ def test_odd_sizes_are_padded_not_scaled(tmp_path, size):
     assert picture.shape[:2] == tuple(n + n % 2 for n in size)
     padded = np.pad(frame, [(0, n % 2) for n in size] + [(0, 0)], mode="edge")
     assert np.abs(picture - padded).mean() < 6
+
+
+@pytest.mark.parametrize(("suffix", "codec"), [(".avi", "h264"), (".mpg", "mpeg2video")])
+@pytest.mark.parametrize("fps", [30, 12.5, 0.5])
+def test_formats_of_old_scripts_keep_colours_and_time(tmp_path, suffix, codec, fps):
+    write_frames(tmp_path / f"a{suffix}", shades(9), fps)
+    stream, pictures = decode(tmp_path / f"a{suffix}")
+    assert stream.codec_context.name == codec
+    assert suffix == ".avi" or stream.average_rate == 30
+    times = np.array([picture.time for picture in pictures[:-1]])  # the last one of an MPG has no exact time
+    reds = [rgb(picture)[..., 0].mean() for picture in pictures[:-1]]
+    shown = np.floor((times - times[0]) * fps + 1e-6)
+    assert reds == pytest.approx(10 + 20 * shown, abs=3)
+    assert len(pictures) == pytest.approx(9 * float(stream.average_rate) / fps, abs=1)
 
 
 # GIF, WebP, PNG
@@ -244,8 +258,8 @@ def test_write_picture_refuses(tmp_path):
 
 def test_unknown_suffix_lists_the_known_ones(tmp_path):
     for call in (check_target, lambda path: write_frames(path, shades(1), 30)):
-        with pytest.raises(ArgumentError, match=r"'.avi' is none of .mp4, .gif, .webp, a folder"):
-            call(tmp_path / "a.avi")
+        with pytest.raises(ArgumentError, match=r"'.ogg' is none of .mp4, .avi, .mpg, .gif, .webp, a folder"):
+            call(tmp_path / "a.ogg")
 
 
 @pytest.mark.parametrize("fps", [0, -1, float("nan"), float("inf"), 0.001, 1001])
