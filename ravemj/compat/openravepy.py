@@ -35,17 +35,23 @@ _LEAKS = {
 }
 _NAMES: list[str] = [name for name in dir(ravemj) if name not in _OWN and not name.startswith("_")]
 
-builtins.__dict__["__openravepy_build_doc__"] = False
+_ELSEWHERE = {  # where earlier versions had these, too
+    "OpenRAVEGlobalArguments": ("misc", "OpenRAVEGlobalArguments"),
+    "OpenRAVEModel": ("databases", "DatabaseGenerator"),
+}
+
+builtins.__dict__["__openravepy_build_doc__"] = __build_doc__ = False
 __path__: list[str] = []  # sub-modules are found by ravemj.compat.names
-_ALL = [*_NAMES, *legacy.__all__, *ONLY_OPENRAVEPY, *_LEAKS]
+_ALL = [*_NAMES, *legacy.__all__, *ONLY_OPENRAVEPY, *_ELSEWHERE, *_LEAKS]
 globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, __all__=_ALL)
 globals().update({name: getattr(legacy, name) for name in legacy.__all__})
 
 
 def __getattr__(name: str) -> object:
     """Import a module of openravepy's when it is asked for, or give what is ravemj's own."""
-    if name == "OpenRAVEModel":
-        return importlib.import_module("ravemj.compat.databases").DatabaseGenerator
+    if name in _ELSEWHERE:
+        module, its_name = _ELSEWHERE[name]
+        return getattr(importlib.import_module(f"ravemj.compat.{module}"), its_name)
     if name in ONLY_OPENRAVEPY:
         return importlib.import_module(f"ravemj.compat.{name}")
     return getattr(ravemj, name)

@@ -179,6 +179,7 @@ class Sensor(DescribedSensor):
                 where = self.description.source
                 raise RavemjError(f"Configure: sensor '{self.GetName()}' ({where}) cannot be switched on: {problem}")
             self._restart()
+            self._env.clock.wake()  # scripts wait for the stamp of the data to change
         elif not isinstance(self.device, _DRAWN[switch]):
             return
         self._switched[switch] = True

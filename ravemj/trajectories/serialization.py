@@ -87,12 +87,13 @@ def read(data: bytes | str) -> Stored:
     """
     if not isinstance(data, str | bytes):  # pyright: ignore[reportUnnecessaryIsInstance] - users give it
         raise ArgumentError(f"data: is a {type(data).__name__}, and should be bytes or a text")
-    if isinstance(data, str) and data.startswith(_MAGIC.decode("latin-1")):
-        data = data.encode("latin-1", errors="replace")
-    if isinstance(data, bytes) and data.startswith(_MAGIC):
+    if isinstance(data, str):
+        is_latin1 = data.startswith(_MAGIC.decode("latin-1"))
+        data = data.encode("latin-1", "replace") if is_latin1 else data.encode(errors="surrogateescape")
+    if data.startswith(_MAGIC):
         return _from_bytes(data)
     try:
-        return _from_text(data if isinstance(data, str) else data.decode())
+        return _from_text(data.decode())
     except UnicodeDecodeError:
         raise ArgumentError("data: is no trajectory; its bytes are neither of the binary form nor text") from None
 

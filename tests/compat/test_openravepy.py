@@ -52,6 +52,7 @@ def test_the_star_brings_openraves_names_and_what_slips_out(openravepy):
         assert space[name] is getattr(legacy, name)
     for name in ("databases", "interfaces", "metaclass", "misc", "openravepy_int", "planningutils"):
         assert space[name] is sys.modules[f"ravemj.compat.{name}"]
+    assert space["OpenRAVEGlobalArguments"] is sys.modules["ravemj.compat.misc"].OpenRAVEGlobalArguments
     assert space["numpy"] is np
     assert space["sys"] is sys
     assert isinstance(space["log"], logging.Logger)
@@ -64,7 +65,8 @@ def test_the_star_brings_openraves_names_and_what_slips_out(openravepy):
 def test_every_name_of_openraves_is_in_ravemj_too(openravepy):
     for name in dir(openravepy):
         leaks = {"itertools", "log", "logging", "numpy", "os", "pickle", "sys"}
-        assert hasattr(ravemj, name) or name in {*leaks, *legacy.__all__, *names.ONLY_OPENRAVEPY}
+        moved = {"OpenRAVEGlobalArguments", "OpenRAVEModel"}
+        assert hasattr(ravemj, name) or name in {*leaks, *moved, *legacy.__all__, *names.ONLY_OPENRAVEPY}
 
 
 def test_sub_modules_are_ours(openravepy):
@@ -79,7 +81,7 @@ def test_sub_modules_are_ours(openravepy):
 
 
 def test_importing_sets_the_flag_and_has_a_version_that_can_be_compared(openravepy):
-    assert builtins.__openravepy_build_doc__ is False
+    assert builtins.__openravepy_build_doc__ is openravepy.__build_doc__ is False
     assert [int(part) for part in openravepy.__version__.split(".")] >= [0, 9, 0]
 
 

@@ -400,6 +400,21 @@ def test_files_take_and_give_text_and_bytes(tmp_path, monkeypatch):
     assert (space["same"], space["asked"]) == (b"\xe4\n", "\xe4\n")
 
 
+def test_trajectories_are_stored_as_text(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    space = run("""
+from ravemj import *
+trajectory = RaveCreateTrajectory(Environment(), '')
+spec = ConfigurationSpecification(); spec.AddGroup('deltatime', 1, 'linear')
+trajectory.Init(spec); trajectory.Insert(0, [0.5])
+text = '<x>%s</x>' % trajectory.serialize(0)
+f = open('motion', 'w'); f.write(trajectory.serialize()); f.close()
+same = RaveCreateTrajectory(Environment(), '').deserialize(open('motion').read()).GetWaypoint(0)
+""")
+    assert space["text"].startswith("<x><trajectory")
+    assert space["same"] == [0.5]
+
+
 def test_arrays_that_python_2_pickled_can_be_read(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     pickled = (

@@ -281,12 +281,16 @@ def test_joint_forces_hold_what_hangs(env):
     np.testing.assert_allclose(torque, 0, atol=1e-6)
 
 
-def test_velocity_controllers_drive_joints_within_their_torque(env):
+@pytest.mark.parametrize("by_command", [False, True])
+def test_velocity_controllers_drive_joints_within_their_torque(env, by_command):
     robot = pendulum(env)
     controller = ravemj.RaveCreateController(env, "odevelocity")
     assert robot.SetController(controller, [0], 0)
     env.StopSimulation()
-    controller.SetDesired([0.5])
+    if by_command:
+        assert controller.SendCommand("setvelocity 0.5") == ""
+    else:
+        controller.SetDesired([0.5])
     run(env, 0.5)
     assert robot.GetDOFVelocities()[0] == pytest.approx(0.5, abs=1e-4)
     assert robot.GetDOFValues()[0] == pytest.approx(0.25, abs=2e-2)  # the motor takes a moment

@@ -130,6 +130,15 @@ def to_the_walls(origin, directions):
         return ((np.sign(directions) * HALF - origin) / directions).min(axis=1, initial=np.inf, where=directions != 0)
 
 
+def test_a_sensor_that_is_on_lets_time_pass():
+    """Scripts wait for the stamp of the data to change, and command nothing else."""
+    env = ravemj.Environment()
+    env.LoadData(f"<Environment>{robot(on_link(LASER))}</Environment>")
+    laser = switched_on(env)
+    await_that(lambda: laser.GetSensorData().stamp > 0, "time stood still")
+    env.Destroy()
+
+
 LASER = """<Sensor type="BaseLaser2D"><min_angle>-180</min_angle><max_angle>179</max_angle><resolution>1</resolution>
 <max_range>1.5</max_range><time_scan>0.1</time_scan></Sensor>"""
 

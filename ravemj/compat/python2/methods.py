@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from ravemj.compat.python2.files import as_bytes, as_text
+from ravemj.rave import Trajectory
+from ravemj.trajectories.serialization import AS_TEXT
 
 
 def sort(iterable: Iterable[Any], cmp: Any = None, key: Any = None, reverse: bool = False) -> list[Any]:  # noqa: ANN401
@@ -44,7 +46,7 @@ _GONE: dict[str, Callable[..., Any]] = {
 }
 """Replacements of methods, for objects that do not have them."""
 _LISTED = {"items", "keys", "values"}
-NAMES = {*_GONE, *_LISTED, "encode", "sort"}
+NAMES = {*_GONE, *_LISTED, "encode", "serialize", "sort"}
 """Names of the methods that translated scripts call by ``call``."""
 
 
@@ -54,6 +56,8 @@ def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:  # noqa: ANN
         return _sort(owner, *args, **options)
     if name == "encode" and isinstance(owner, str):
         return as_text(owner.encode(*args, **options))
+    if name == "serialize" and isinstance(owner, Trajectory):  # XML, which scripts put into the texts of parameters
+        return owner.serialize(AS_TEXT).decode()
     if name in _GONE and not hasattr(owner, name):
         return _GONE[name](*args) if isinstance(owner, type) else _GONE[name](owner, *args)
     result = getattr(owner, name)(*args, **options)

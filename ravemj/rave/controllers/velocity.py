@@ -1,7 +1,10 @@
 """A controller of joint velocities."""
 
+from typing import ClassVar
+
 import numpy as np
 
+from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
@@ -12,7 +15,7 @@ class VelocityController(Controller):
 
     It keeps the commanded velocities until the next command. With physics, motors at the joints drive them to the
     velocities, within the torque limits. Without physics, the joints move at the velocities and stop at their limits.
-    ``IsDone()`` is always True.
+    ``IsDone()`` is always True. ``SendCommand("setvelocity 0.5 0")`` is ``SetDesired([0.5, 0])``.
 
     Example:
         >>> controller = RaveCreateController(env, "odevelocity")
@@ -66,3 +69,9 @@ class VelocityController(Controller):
         all_velocities = robot.GetDOFVelocities()
         all_velocities[dofs] = self._velocities
         robot.SetDOFVelocities(all_velocities, checklimits=CheckLimitsAction.Nothing)
+
+    def _set_velocity(self, arguments: str) -> str:
+        self.SetDesired(checked_numbers(arguments.split(), "setvelocity"))
+        return ""
+
+    _commands: ClassVar = {"setvelocity": _set_velocity}
