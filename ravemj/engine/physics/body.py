@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.dynamics.joint_velocities import cross
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.simulation import BodyState
 
@@ -67,7 +68,7 @@ class PhysicalBody:
         data, body_ids = self.data, self.body_ids
         spins = data.cvel[body_ids, :3]
         arms = data.xpos[body_ids] - data.subtree_com[self.model.body_rootid[body_ids]]
-        velocities = np.hstack([data.cvel[body_ids, 3:] + np.cross(spins, arms), spins])
+        velocities = np.concatenate([data.cvel[body_ids, 3:] + cross(spins, arms), spins], axis=1)
         self.state.set_link_velocities(velocities)
         self._known = velocities
 

@@ -54,7 +54,9 @@ class Physics:
 
     def loads(self, state: BodyState) -> Loads:
         """Return what pushes a body during the next step, to be changed."""
-        return self._loads.setdefault(state, Loads(state))
+        if state not in self._loads:
+            self._loads[state] = Loads(state)
+        return self._loads[state]
 
     def step(self, timestep: float) -> None:
         """Let time pass: the bodies move, and the simulation follows.
@@ -70,8 +72,9 @@ class Physics:
         model.opt.timestep = timestep / count
         before = data.qpos.copy()
         data.qfrc_applied[:], data.xfrc_applied[:] = 0.0, 0.0
-        for body in self._bodies.values():
-            self.loads(body.state).apply(body)
+        for state, loads in self._loads.items():
+            if state in self._bodies:
+                loads.apply(self._bodies[state])
         applied, pushed = data.qfrc_applied.copy(), data.xfrc_applied.copy()
         spring = self.spring
         pulled = None if spring is None else self._bodies.get(spring.state)
@@ -89,12 +92,12 @@ class Physics:
 
     def _drive(self, applied: Floats) -> None:
         """Let motors act during the next time step."""
-        driven = [body for body in self._bodies.values() if self.loads(body.state).motor is not None]
+        driven = [state for state, loads in self._loads.items() if loads.motor is not None and state in self._bodies]
         if driven:
             self._data.qfrc_applied[:] = applied
             mujoco.mj_forward(self._model, self._data)
-            for body in driven:
-                self.loads(body.state).drive(body, applied)
+            for state in driven:
+                self._loads[state].drive(self._bodies[state], applied)
 
     def prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over gravity and what users moved."""
