@@ -527,6 +527,27 @@ def test_a_touching_start_is_jittered_and_left(env, robot):
         helper.MoveActiveJoints(goal=[0.5, 1.0], jitter=0)
 
 
+def test_a_base_whose_goal_touches_is_jittered_and_reaches_it(env, robot):
+    affine = ravemj.DOFAffine.X | ravemj.DOFAffine.Y | ravemj.DOFAffine.RotationAxis
+    robot.SetActiveDOFs([], affine, [0, 0, 1])
+    robot.SetAffineTranslationLimits([-3, -3, -3], [3, 3, 3])
+    robot.SetAffineTranslationResolution([0.01] * 3)
+    corner = robot.ComputeAABB().pos() + robot.ComputeAABB().extents()
+    env.Remove(env.GetKinBody("post"))
+    box(env, "wall", [corner[0] + 0.5, 0, 0, 0.105, 3, 3])
+    goal = np.array([0.4, 0.5, 0])
+    with robot:
+        robot.SetActiveDOFValues(goal)
+        assert env.CheckCollision(robot, env.GetKinBody("wall"))
+    helper = ravemj.interfaces.BaseManipulation(robot)
+    trajectory = helper.MoveActiveJoints(goal=goal, execute=False, outputtrajobj=True, jitter=0.05)
+    spec = robot.GetActiveConfigurationSpecification()
+    places = [trajectory.Sample(time, spec) for time in np.linspace(0, trajectory.GetDuration(), 500)]
+    assert places[0] == pytest.approx([0, 0, 0])
+    assert places[-1] == pytest.approx(goal)
+    assert np.abs(np.diff(places, axis=0)).max() < 0.05  # no jump where the way to the goal begins
+
+
 def test_what_joints_do_not_move_is_no_obstacle_of_theirs(env, robot):
     box(env, "floor", [0, 0, -0.1, 0.3, 0.3, 0.1])
     assert env.CheckCollision(robot)  # the base stands on it

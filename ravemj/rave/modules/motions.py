@@ -165,7 +165,8 @@ class Manipulation:
                 rest = np.zeros(len(reached))
                 new = EndWaypoint(traj, spec, asked[nearest], rest)
                 anchor = new.anchor(place, 0)
-                new.join(new.retimed(anchor, (1.0, 1.0), "", ""), anchor)
+                retimer = "LinearTrajectoryRetimer" if self.robot.GetAffineDOF() else ""  # the only one for poses
+                new.join(new.retimed(anchor, (1.0, 1.0), retimer, ""), anchor)
 
     def straight(self, points: Floats) -> Trajectory:
         """Return the fastest motion of the active DOFs along straight lines.

@@ -78,6 +78,7 @@ class Bodies:
         self._goals = [group for group in groups if group.kind == IK[0]]
         self._dof = max((one.columns.stop for one in (*self._parts, *self._goals)), default=0)
         self.bodies = list(dict.fromkeys(part.body for part in self._parts))
+        self._free: set[KinBody] = set()  # whose joints stay as they are, and have no self-collision
 
     def numbers(self, name: str) -> Floats:
         """Return one setting for every value of a configuration, shape (n,).
@@ -150,6 +151,7 @@ class Bodies:
     def kept(self) -> Generator[None]:
         """Hold the lock; on leaving, restore the configurations of all bodies and of the bodies that they hold."""
         with self._simulation.lock:
+            self._free.clear()
             states = [body.simulation_state for body in self.bodies]
             held = [grab.body for state in states for grab in state.grabs]
             saved = [(state, state.configuration()) for state in [*states, *held]]
@@ -184,8 +186,12 @@ class Bodies:
             state, moved = body.simulation_state, self._moved(body)
             if checker.answer(world, body_and_others(world, state, moved), report):
                 return ENV_COLLISION
+            if body in self._free:
+                continue
             if checker.answer(world, itself(world, state, moved), report):
                 return SELF_COLLISION
+            if not any(part.dofs for part in self._parts if part.body is body):
+                self._free.add(body)
         return FREE
 
     def _moved(self, body: "KinBody") -> MovedBy | None:
