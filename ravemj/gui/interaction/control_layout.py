@@ -91,7 +91,7 @@ class ControlLayout(NamedTuple):
         part = min(max((left - _MARGIN - _VALUE) / (_NAME + _TRACK), _NARROWEST), 1.0)
         name_width, track_width = part * _NAME, part * _TRACK
         table_width = name_width + track_width + _VALUE
-        table = Rect(left - table_width, _COLUMN_TOP, table_width, _JOINT_ROW)
+        table = Rect(left - table_width, _COLUMN_TOP + bool(joint_tools) * _JOINT_ROW, table_width, _JOINT_ROW)
         shown = rows[first : first + fitting]
         for number, row in enumerate(shown):
             x, width = table.x + _SCROLL_BAR, table_width - _SCROLL_BAR
@@ -100,8 +100,7 @@ class ControlLayout(NamedTuple):
             places[row] = Rect(x, table.y + number * _JOINT_ROW, width, _JOINT_ROW)
         for column, tool in enumerate(joint_tools):
             width = table_width / len(joint_tools)
-            y = table.y + len(shown) * _JOINT_ROW
-            places[tool] = Rect(table.x + column * width + 2, y + 2, width - 4, _JOINT_ROW - 2)
+            places[tool] = Rect(table.x + column * width + 2, _COLUMN_TOP, width - 4, _JOINT_ROW - 2)
         if shown:
             backs.append(table._replace(height=len(shown) * _JOINT_ROW))
         return cls(places, tuple(backs), first, last, name_width)
@@ -110,6 +109,14 @@ class ControlLayout(NamedTuple):
         """Return the control at a point of the view [points], or None."""
         found = (control for control, rect in self.places.items() if point is not None and rect.contains(*point))
         return next(found, None)
+
+    def field_at(self, point: _Point | None) -> Control | None:
+        """Return what can be typed into at a point of the view [points]: the search, or the value of a joint."""
+        for control, rect in self.places.items():
+            field = rect._replace(x=rect.x + rect.width, width=_VALUE) if control.group == "joints" else rect
+            if (control.group == "joints" or control.name == "search") and point and field.contains(*point):
+                return control
+        return None
 
     def covers(self, point: _Point | None) -> bool:
         """Return whether a point of the view [points] is on the layout, be it between the controls."""
@@ -136,7 +143,8 @@ class ControlLayout(NamedTuple):
             elif control.group in {"playing", "time"}:
                 drawn += _icon(control, rect)
             elif control.group == "tree":
-                drawn.append(Panel(rect, _ON if control.is_on else _CLEAR, control.text, is_left=True))
+                text = _row_text(control.text, int(rect.width / _LETTER))
+                drawn.append(Panel(rect, _ON if control.is_on else _CLEAR, text, is_left=True))
             else:
                 colour = _BACK if not control.is_on else _RECORDING if control.name == "video" else _ON
                 drawn.append(Panel(rect, colour, control.text))
@@ -213,6 +221,13 @@ def shortened(labels: list[str], most: int) -> dict[str, str]:
     return cut
 
 
+def _row_text(text: str, most: int) -> str:
+    """Return an indented name in so many letters: with less before it, and without its middle."""
+    name = text.lstrip()
+    indent = min(len(text) - len(name), most // 3)
+    return indent * " " + shortened([name], most - indent)[name]
+
+
 def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[Panel]:
     """Return groove, knob and text of a slider; those of joints have their name before them."""
     x, y, width, height = rect
@@ -226,7 +241,8 @@ def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[
         clock = Panel(Rect(x + width, y, _CLOCK, height), _CLEAR, control.text)
         return [*drawn, clock] if control.text else drawn
     before = Panel(Rect(x - name_width, y, name_width, height), _CLEAR, name)
-    return [before, *drawn, Panel(Rect(x + width, y, _VALUE, height), _CLEAR, control.text)]
+    number = Panel(Rect(x + width, y, _VALUE, height), _ON if control.is_on else _CLEAR, control.text)
+    return [before, *drawn, number]
 
 
 def _icon(control: Control, rect: Rect) -> list[Panel]:

@@ -38,7 +38,7 @@ class Overlay(NamedTuple):
         chosen: Names of what of the tree is selected.
         style: How the bodies are drawn.
         cursor: How the pointer looks: ``default``, ``grab`` for a view that can be turned, ``pointer`` for a button or
-            something to click on, ``move`` for something to drag.
+            something to click on, ``move`` for something to drag, ``text`` for something to type into.
     """
 
     primitives: Primitives
