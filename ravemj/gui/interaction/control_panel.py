@@ -28,7 +28,7 @@ class ControlPanel:
         self.controls = controls
         self._is_drawn = is_drawn
         self._first_row = 0.0
-        self._followed: object = None  # what was selected when the tree was last scrolled to it
+        self._followed: tuple[str, tuple[str, ...]] = "", ()  # what was unfolded and selected last
         self._field = ""
         self._text = ""
         self._search = ""
@@ -46,16 +46,17 @@ class ControlPanel:
         controls = tuple(map(self._with_typed, (*self.controls.all(), *rows)))
         if self._field not in {control.name for control in controls}:
             self.stop_typing()
+        unfolded, chosen = self.controls.unfolded, self.controls.chosen[-1:]
+        if unfolded != self._followed[0]:
+            self._first_row = 0.0
         layout = ControlLayout.of(controls, size, round(self._first_row))
-        chosen = self.controls.chosen[-1:] if rows else ()
-        if chosen == self._followed:
-            return layout
-        self._followed = chosen
         number = next((number for number, row in enumerate(rows[1:]) if row.name in chosen), None)
-        if number is None or any(control.name in chosen for control in layout.places):
-            return layout
-        self._first_row = number
-        return ControlLayout.of(controls, size, number)
+        is_seen = any(control.name in chosen for control in layout.places)
+        if number is not None and not is_seen and (unfolded, chosen) != self._followed:
+            self._first_row = number
+            layout = ControlLayout.of(controls, size, number)
+        self._followed = unfolded, chosen
+        return layout
 
     def _with_typed(self, control: Control) -> Control:
         return replace(control, text=f"{self._text}|", is_on=True) if control.name == self._field else control

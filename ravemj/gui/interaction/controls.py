@@ -152,11 +152,13 @@ class Controls:
         return names_of(self._selector.selection)
 
     def rows(self, search: str) -> list[Control]:
-        """Return the search and the tree as buttons, for a window.
+        """Return the search and the tree as buttons, or the help as one that hides it, for a window.
 
         Args:
             search: Words that are in the names of the rows.
         """
+        if self.unfolded == "help":
+            return [Control("help", "", group="help")]
         if self.unfolded != "tree":
             return []
         chosen, words = self.chosen, search.lower().split()

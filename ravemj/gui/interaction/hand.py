@@ -150,15 +150,9 @@ class Hand:
 
     def steer(self, event: Event) -> bool:
         """Do what an event asks for if that needs no bodies; return whether it was done."""
+        if self._needs_what_is_shown(event):
+            return False
         match event:
-            case Press() if self.needs_bodies(event):
-                return False
-            case Move() | Release() if self._press is not None or (self._follow is not None and not self._steers):
-                return False
-            case Wheel() if self._reach is not None or self.layout.covers(self.pointer):
-                return False
-            case Key() | Type() if self.panel.is_typing:
-                return False
             case Key(name, True) if name.lower() in KEYS:
                 return self._controls.steer(KEYS[name.lower()])
             case Operate(name):
@@ -166,6 +160,20 @@ class Hand:
             case _:
                 self.do(event)
                 return True
+
+    def _needs_what_is_shown(self, event: Event) -> bool:
+        """Return whether an event is for a body or a control, as far as the event and the hand say."""
+        match event:
+            case Press():
+                return self.needs_bodies(event)
+            case Move() | Release():
+                return self._press is not None or (self._follow is not None and not self._steers)
+            case Wheel():
+                return self._reach is not None or self.layout.covers(self.pointer)
+            case Key() | Type():
+                return self.panel.is_typing
+            case _:
+                return False
 
     def needs_bodies(self, press: Press) -> bool:
         """Return whether it takes the bodies to know what a press does."""
