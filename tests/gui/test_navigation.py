@@ -369,6 +369,7 @@ def test_lines_are_wrapped_to_the_window():
         "a_name_that_has_no_place_to_be_broken_at"
     ]
     assert painter._wrapped("", 50) == [""]
+    assert len(painter._wrapped(line, 230, 26)) > len(rows)
 
 
 @pytest.mark.parametrize("shortcut", DISPLAY, ids=lambda shortcut: shortcut.name)

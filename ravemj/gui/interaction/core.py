@@ -196,6 +196,7 @@ class Interaction:
                     lit=self._lit(hit if takes_link else None),
                 ),
                 cursor="move" if mark is not None else "pointer" if takes_link else hand.cursor(),
+                text_size=self.controls.notices.text_size,
             )
 
     def _mark(self, hit: Hit | None) -> Primitives | None:

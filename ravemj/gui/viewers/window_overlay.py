@@ -70,18 +70,19 @@ class OverlayPainter:
         self._pixels, self._ratio = pixels, ratio
         for x, y, text in overlay.labels_on(view):
             self._text(text, x, y, _DARK, halo=True)
-        self._paint_lines(overlay.lines)
+        self._paint_lines(overlay.lines, overlay.text_size or _SIZE)
         for panel in overlay.panels:
             self._paint_panel(panel)
 
-    def _paint_lines(self, lines: tuple[str, ...]) -> None:
+    def _paint_lines(self, lines: tuple[str, ...], size: float) -> None:
         room = self._pixels[0] / self._ratio - 2 * (_MARGIN + _PADDING) - _BUTTONS
-        rows = [row for line in lines for row in self._wrapped(line, room)]
+        rows = [row for line in lines for row in self._wrapped(line, room, size)]
+        height = _LINE / _SIZE * size
         if rows:
-            width = max(self._width(row) for row in rows) + 2 * _PADDING
-            self._rectangle(Rect(_MARGIN, _MARGIN, width, len(rows) * _LINE + _PADDING), _GLASS)
-        for row, line in enumerate(rows):
-            self._line(line, _MARGIN + _PADDING, _MARGIN + 0.5 * _PADDING + row * _LINE, _WHITE)
+            width = max(self._width(row, size) for row in rows) + 2 * _PADDING
+            self._rectangle(Rect(_MARGIN, _MARGIN, width, len(rows) * height + _PADDING), _GLASS)
+        for number, row in enumerate(rows):
+            self._line(row, _MARGIN + _PADDING, _MARGIN + 0.5 * _PADDING + number * height, _WHITE, size)
 
     def _paint_panel(self, panel: Panel) -> None:
         if panel.rgba[3]:
@@ -93,11 +94,11 @@ class OverlayPainter:
                 return
             self._text(panel.text, x + width / 2, y + height / 2, panel.text_rgb)
 
-    def _wrapped(self, text: str, width: float) -> list[str]:
+    def _wrapped(self, text: str, width: float, size: float = _SIZE) -> list[str]:
         lines = [""]
         for word in text.split(" "):
             longer = f"{lines[-1]} {word}".strip()
-            if lines[-1] and self._width(longer) > width:
+            if lines[-1] and self._width(longer, size) > width:
                 lines.append(word)
             else:
                 lines[-1] = longer
@@ -105,22 +106,21 @@ class OverlayPainter:
 
     # --- in pixels
 
-    @property
-    def _letters(self) -> int:
-        return max(round(_SIZE * self._ratio), 6)
+    def _letters(self, size: float) -> int:
+        return max(round(size * self._ratio), 6)
 
-    def _width(self, text: str) -> float:
-        return float(_font(self._letters).getlength(text)) / self._ratio
+    def _width(self, text: str, size: float = _SIZE) -> float:
+        return float(_font(self._letters(size)).getlength(text)) / self._ratio
 
     def _text(self, text: str, x: float, y: float, rgb: _Rgb, *, halo: bool = False) -> None:
         """Write a text about a point."""
-        image = text_image(text, self._letters, rgb, halo)
+        image = text_image(text, self._letters(_SIZE), rgb, halo)
         rows, columns = image.shape[:2]
         self._image(image, round(x * self._ratio - columns / 2), round(y * self._ratio - rows / 2))
 
-    def _line(self, text: str, x: float, y: float, rgb: _Rgb) -> None:
+    def _line(self, text: str, x: float, y: float, rgb: _Rgb, size: float = _SIZE) -> None:
         """Write a text that begins at a point."""
-        self._image(text_image(text, self._letters, rgb), round(x * self._ratio), round(y * self._ratio))
+        self._image(text_image(text, self._letters(size), rgb), round(x * self._ratio), round(y * self._ratio))
 
     def _rectangle(self, rect: Rect, rgba: tuple[float, float, float, float]) -> None:
         x, y, width, height = rect
