@@ -15,6 +15,7 @@ from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.interaction.navigation import GLIDE, SIDES
 from ravemj.gui.interaction.shortcuts import DISPLAY, GESTURES, KEYS, OTHERS, VIEW, as_markdown, key_text
+from ravemj.gui.viewers.window_overlay import OverlayPainter
 
 ROLLED = ASLANT @ ravemj.matrixFromAxisAngle([0, 0, 1], 0.4)
 
@@ -333,6 +334,42 @@ def test_every_key_is_a_control_and_in_the_help(hand):
     assert not {"s", "escape"} & KEYS.keys(), "these are the tutorial's"
     hand.press_key("f1")
     assert hand.gui.overlay().help == ()
+
+
+@pytest.mark.parametrize("size", [(320, 240), (480, 320), (655, 500), (960, 720), (1920, 1080)])
+def test_a_window_has_all_of_the_help_which_scrolls_and_goes_away_by_a_click(hand, size):
+    hand.gui.handle(Resize(*size))
+    hand.press_key("?")
+    hand.gui.handle(Move(size[0] / 2, size[1] / 2))
+    seen = set()
+    for _ in range(100):
+        texts = [panel for panel in hand.gui._hand.layout.help if panel.text]
+        seen |= {word for panel in texts for word in panel.text.split()}
+        for panel in texts:
+            assert panel.rect.y + panel.rect.height <= size[1]
+            assert panel.rect.x + OverlayPainter()._width(panel.text) <= size[0] - 8, panel.text
+        hand.gui.handle(Wheel(-1))
+    assert seen == {
+        word for _, rows in hand.gui.overlay().help for row in rows for part in row for word in part.split()
+    } | {word for title, _ in hand.gui.overlay().help for word in title.split()}
+    camera = hand.view.camera
+    hand.click((size[0] / 2, size[1] / 2))
+    assert hand.gui.overlay().help == ()
+    assert hand.view.camera is camera
+
+
+def test_lines_are_wrapped_to_the_window():
+    painter = OverlayPainter()
+    line = "link3: (x, y, z) = (0.355, -0.107, 0.991), n = (-0.188, -0.017, 0.982)"
+    rows = painter._wrapped(line, 230)
+    assert " ".join(rows) == line
+    assert 1 < len(rows) < 4
+    assert all(painter._width(row) <= 230 for row in rows)
+    assert painter._wrapped("a_name_that_has_no_place_to_be_broken_at", 50) == [
+        "a_name_that_has_no_place_to_be_broken_at"
+    ]
+    assert painter._wrapped("", 50) == [""]
+    assert len(painter._wrapped(line, 230, 26)) > len(rows)
 
 
 @pytest.mark.parametrize("shortcut", DISPLAY, ids=lambda shortcut: shortcut.name)

@@ -133,7 +133,7 @@ def test_a_paused_motion_is_not_drawn_and_a_playing_one_is(desk):
     await_that(is_still, "it is drawn again and again")
 
 
-def test_sliders_unfold_and_turn_joints(desk):
+def test_sliders_unfold_and_turn_joints_and_numbers_are_typed(desk):
     desk.ask("[viewer.EnvironmentSync(), viewer.EnvironmentSync()]")
     time.sleep(0.5)  # until it is crisp
     plain = desk.picture()
@@ -141,6 +141,10 @@ def test_sliders_unfold_and_turn_joints(desk):
     desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 15, "no sliders")
     desk.drag("dof 1", 0.5, 0.6, 0.75)
     desk.await_value("robot.GetDOFValues().tolist()", lambda q: q[0] == 0 and 1.2 < q[1] < 2.1, "the joint stays")
+    desk.click("dof 0", part=1.3)
+    desk.display.tool("type", "--delay", "50", "0.257")
+    desk.display.tool("key", "BackSpace", "Return")
+    desk.await_value("robot.GetDOFValues()[0].item()", lambda value: value == 0.25, "the number does not come in")
     desk.click("joints")
     desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 9, "the sliders stay")
     desk.ask("robot.SetDOFValues([0, 0])")

@@ -1,6 +1,7 @@
 """Draw calls and viewers as scripts use them: arguments, handles, threads, pictures and videos."""
 
 import gc
+import math
 import threading
 import time
 
@@ -391,3 +392,16 @@ def test_a_viewer_shows_one_text_of_the_user(env):
     assert viewer.interaction.overlay().lines == ("three",)
     viewer.SetUserText("")
     assert viewer.interaction.overlay().lines == ()
+
+
+def test_the_text_in_the_corner_has_another_size(env):
+    viewer = env.GetViewer()
+    assert viewer.interaction.overlay().text_size is None
+    before = viewer.interaction.version
+    viewer.SetTextSize(size=20)
+    assert viewer.interaction.overlay().text_size == 20
+    assert viewer.interaction.version > before, "windows and pages draw it"
+    for size in (0, -1, 1e9, math.nan, "large"):
+        with pytest.raises(RavemjError, match="SetTextSize"):
+            viewer.SetTextSize(size)
+    assert viewer.interaction.overlay().text_size == 20

@@ -24,6 +24,7 @@ from ravemj.gui.interaction.events import (
     Press,
     Release,
     Resize,
+    Type,
     Use,
     Wheel,
 )
@@ -63,6 +64,7 @@ __all__ = [
     "Resize",
     "Selection",
     "Tool",
+    "Type",
     "Use",
     "View",
     "Wheel",

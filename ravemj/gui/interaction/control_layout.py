@@ -6,10 +6,11 @@ are a column of small buttons under those of the modes, and the joints' sliders 
 """
 
 from dataclasses import replace
-from itertools import accumulate
+from itertools import accumulate, count, takewhile
 from typing import NamedTuple
 
 from ravemj.gui.interaction.control import Control
+from ravemj.gui.interaction.help_layout import help_layout
 from ravemj.gui.interaction.mode_buttons import Panel, Rect
 
 _MARGIN, _GAP = 8.0, 4.0
@@ -51,9 +52,10 @@ class ControlLayout(NamedTuple):
     Attributes:
         places: Where each control is; sliders have their track there. Those that do not fit are left out.
         backs: What lies under several of them, and catches what misses them.
-        first_row: Which of the joints' sliders, or of the rows of the tree, is the first that is seen.
+        first_row: Which of the joints' sliders, or of the rows of the tree or the help, is the first that is seen.
         last_row: The greatest number that this can be.
         name_width: Width of the names before sliders.
+        help: What is drawn over all others.
     """
 
     places: dict[Control, Rect]
@@ -61,6 +63,7 @@ class ControlLayout(NamedTuple):
     first_row: int
     last_row: int
     name_width: float = _NAME
+    help: tuple[Panel, ...] = ()
 
     @classmethod
     def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_row: int = 0) -> "ControlLayout":
@@ -69,29 +72,33 @@ class ControlLayout(NamedTuple):
         Args:
             controls: The controls.
             size: Width and height of the view [points].
-            first_row: Which of the joints' sliders, or of the rows of the tree, should be the first one.
+            first_row: Which of the joints' sliders, or of the rows of the tree or the help, should be the first one.
         """
-        playing, time, others, menu, joints, joint_tools, tree = (
+        playing, time, others, menu, joints, joint_tools, tree, hiding = (
             [control for control in controls if control.group == group]
-            for group in ("playing", "time", "tools", "menu", "joints", "joint tools", "tree")
+            for group in ("playing", "time", "tools", "menu", "joints", "joint tools", "tree", "help")
         )
         motion = _bar(playing, size)
         time_row = _time_bar(time, size, row=1 if motion else 0)
         backs = [_around(row) for row in (motion, time_row) if row]
         places = motion | time_row
-        if size[1] < _LOWEST_VIEW:
-            return cls(places, tuple(backs), 0, 0)
         column = _column(others, size)
-        left = min((rect.x for rect in column.values()), default=float(size[0])) - _MARGIN
-        places |= column | _menu(menu, left)
+        left = min((rect.x for rect in column.values()), default=size[0] - _MARGIN - _COLUMN_WIDTH) - _MARGIN
+        places |= column | _menu(menu, left, size[1])
+        if hiding:
+            shown_help = help_layout(size, first_row)
+            places = {hiding[0]: shown_help.rect} | places  # the first that is at a point counts
+            return cls(places, tuple(backs), first_row, shown_help.last_row, help=shown_help.panels)
         fitting = int((size[1] - _COLUMN_TOP - 2 * _MARGIN - _BAR) / _JOINT_ROW) - bool(joint_tools)
+        if fitting < 1:
+            return cls(places, tuple(backs), 0, 0)
         rows = joints or tree
         last = max(len(rows) - fitting, 0)
         first = min(max(first_row, 0), last)
         part = min(max((left - _MARGIN - _VALUE) / (_NAME + _TRACK), _NARROWEST), 1.0)
         name_width, track_width = part * _NAME, part * _TRACK
         table_width = name_width + track_width + _VALUE
-        table = Rect(left - table_width, _COLUMN_TOP, table_width, _JOINT_ROW)
+        table = Rect(left - table_width, _COLUMN_TOP + bool(joint_tools) * _JOINT_ROW, table_width, _JOINT_ROW)
         shown = rows[first : first + fitting]
         for number, row in enumerate(shown):
             x, width = table.x + _SCROLL_BAR, table_width - _SCROLL_BAR
@@ -100,8 +107,7 @@ class ControlLayout(NamedTuple):
             places[row] = Rect(x, table.y + number * _JOINT_ROW, width, _JOINT_ROW)
         for column, tool in enumerate(joint_tools):
             width = table_width / len(joint_tools)
-            y = table.y + len(shown) * _JOINT_ROW
-            places[tool] = Rect(table.x + column * width + 2, y + 2, width - 4, _JOINT_ROW - 2)
+            places[tool] = Rect(table.x + column * width + 2, _COLUMN_TOP, width - 4, _JOINT_ROW - 2)
         if shown:
             backs.append(table._replace(height=len(shown) * _JOINT_ROW))
         return cls(places, tuple(backs), first, last, name_width)
@@ -110,6 +116,14 @@ class ControlLayout(NamedTuple):
         """Return the control at a point of the view [points], or None."""
         found = (control for control, rect in self.places.items() if point is not None and rect.contains(*point))
         return next(found, None)
+
+    def field_at(self, point: _Point | None) -> Control | None:
+        """Return what can be typed into at a point of the view [points]: the search, or the value of a joint."""
+        for control, rect in self.places.items():
+            field = rect._replace(x=rect.x + rect.width, width=_VALUE) if control.group == "joints" else rect
+            if (control.group == "joints" or control.name == "search") and point and field.contains(*point):
+                return control
+        return None
 
     def covers(self, point: _Point | None) -> bool:
         """Return whether a point of the view [points] is on the layout, be it between the controls."""
@@ -126,7 +140,7 @@ class ControlLayout(NamedTuple):
     def panels(self) -> tuple[Panel, ...]:
         """Return what to draw."""
         drawn = [Panel(back, _BACK) for back in self.backs]
-        if self.last_row:
+        if self.last_row and not self.help:
             drawn.append(self._scroll_bar(self.backs[-1]))
         labels = [control.label for control in self.places if control.group == "joints"]
         names = shortened(labels, int(self.name_width / _LETTER))
@@ -135,12 +149,15 @@ class ControlLayout(NamedTuple):
                 drawn += _slider(control, rect, names.get(control.label, ""), self.name_width)
             elif control.group in {"playing", "time"}:
                 drawn += _icon(control, rect)
+            elif control.group == "help":
+                continue
             elif control.group == "tree":
-                drawn.append(Panel(rect, _ON if control.is_on else _CLEAR, control.text, is_left=True))
+                text = _row_text(control.text, int(rect.width / _LETTER))
+                drawn.append(Panel(rect, _ON if control.is_on else _CLEAR, text, is_left=True))
             else:
                 colour = _BACK if not control.is_on else _RECORDING if control.name == "video" else _ON
                 drawn.append(Panel(rect, colour, control.text))
-        return tuple(drawn)
+        return *drawn, *self.help
 
     def _scroll_bar(self, table: Rect) -> Panel:
         """Return a mark that shows which part of the rows is seen."""
@@ -182,7 +199,12 @@ def _around(places: dict[Control, Rect]) -> Rect:
 
 
 def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the places of the buttons: a second column beside the first where this would come to the wheel."""
+    """Return the places of the buttons: a second column beside the first where this would come to the wheel.
+
+    Low views have no room for them.
+    """
+    if size[1] < _LOWEST_VIEW:
+        return {}
     step = _COLUMN_HEIGHT + _GAP
     rows = int((size[1] - _COLUMN_TOP - _WHEEL) / step)
     first_x = size[0] - _MARGIN - _COLUMN_WIDTH
@@ -194,11 +216,12 @@ def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]
     return places
 
 
-def _menu(menu: list[Control], right: float) -> dict[Control, Rect]:
-    """Return the places of what is unfolded, at the left of something."""
+def _menu(menu: list[Control], right: float, bottom: float) -> dict[Control, Rect]:
+    """Return the places of what is unfolded, at the left of something and as far down as there is room."""
+    tops = takewhile(lambda top: top + _ENTRY_HEIGHT < bottom, count(_COLUMN_TOP, _ENTRY_HEIGHT))
     return {
-        control: Rect(right - _ENTRY_WIDTH, _COLUMN_TOP + row * _ENTRY_HEIGHT, _ENTRY_WIDTH, _ENTRY_HEIGHT - 1)
-        for row, control in enumerate(menu)
+        control: Rect(right - _ENTRY_WIDTH, top, _ENTRY_WIDTH, _ENTRY_HEIGHT - 1)
+        for control, top in zip(menu, tops, strict=False)
     }
 
 
@@ -211,6 +234,13 @@ def shortened(labels: list[str], most: int) -> dict[str, str]:
         if len(set(cut.values())) == len(cut):
             break
     return cut
+
+
+def _row_text(text: str, most: int) -> str:
+    """Return an indented name in so many letters: with less before it, and without its middle."""
+    name = text.lstrip()
+    indent = min(len(text) - len(name), most // 3)
+    return indent * " " + shortened([name], most - indent)[name]
 
 
 def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[Panel]:
@@ -226,7 +256,8 @@ def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[
         clock = Panel(Rect(x + width, y, _CLOCK, height), _CLEAR, control.text)
         return [*drawn, clock] if control.text else drawn
     before = Panel(Rect(x - name_width, y, name_width, height), _CLEAR, name)
-    return [before, *drawn, Panel(Rect(x + width, y, _VALUE, height), _CLEAR, control.text)]
+    number = Panel(Rect(x + width, y, _VALUE, height), _ON if control.is_on else _CLEAR, control.text)
+    return [before, *drawn, number]
 
 
 def _icon(control: Control, rect: Rect) -> list[Panel]:

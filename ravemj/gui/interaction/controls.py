@@ -146,10 +146,23 @@ class Controls:
         """Return the tree of bodies, links and joints while it is unfolded; the same object until it changes."""
         return self._tree.nodes() if self.unfolded == "tree" else ()
 
-    def rows(self) -> list[Control]:
-        """Return the tree as buttons, for a window."""
-        chosen = names_of(self._selector.selection)
-        return [
+    @property
+    def chosen(self) -> tuple[str, ...]:
+        """Names of the rows of the tree that are selected."""
+        return names_of(self._selector.selection)
+
+    def rows(self, search: str) -> list[Control]:
+        """Return the search and the tree as buttons, or the help as one that hides it, for a window.
+
+        Args:
+            search: Words that are in the names of the rows.
+        """
+        if self.unfolded == "help":
+            return [Control("help", "", group="help")]
+        if self.unfolded != "tree":
+            return []
+        chosen, words = self.chosen, search.lower().split()
+        rows = [
             Control(
                 node.name,
                 f"{node.kind.title()} {node.text}",
@@ -158,6 +171,16 @@ class Controls:
                 group="tree",
             )
             for node in self.tree()
+            if all(word in node.text.lower() for word in words)
+        ]
+        return [
+            Control(
+                "search",
+                "Words that should be in a name; Enter selects what has them",
+                search or "Search",
+                group="joint tools",
+            ),
+            *rows,
         ]
 
     def _entry(self, shortcut: Shortcut) -> Control:

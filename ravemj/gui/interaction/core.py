@@ -27,7 +27,6 @@ from ravemj.gui.interaction.selection import OnSelect, Selection, Selector, poin
 from ravemj.gui.interaction.shortcuts import sections
 from ravemj.gui.interaction.simulation_time import SimulationTime
 from ravemj.gui.interaction.time_controls import TimeControls
-from ravemj.gui.interaction.tree import names_of
 from ravemj.gui.interaction.viewpoint import View
 from ravemj.model.drawing import NOTHING, Primitives, merge
 
@@ -191,12 +190,13 @@ class Interaction:
                 labels=labels,
                 help=sections() if self.controls.unfolded == "help" else (),
                 tree=self.controls.tree(),
-                chosen=names_of(self._selector.selection),
+                chosen=self.controls.chosen,
                 style=Style(
                     *(name in shown for name in ("collision", "hulls", "transparent", "wireframe")),
                     lit=self._lit(hit if takes_link else None),
                 ),
                 cursor="move" if mark is not None else "pointer" if takes_link else hand.cursor(),
+                text_size=self.controls.notices.text_size,
             )
 
     def _mark(self, hit: Hit | None) -> Primitives | None:

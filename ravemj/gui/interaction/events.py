@@ -93,10 +93,17 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key goes down or up; ``escape`` and letters such as ``s`` are known."""
+    """A key goes down or up; ``escape``, ``enter``, ``backspace`` and letters such as ``s`` are known."""
 
     name: str
     pressed: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Type:
+    """A letter is typed: what the keyboard makes of keys, which ``Key`` tells as well."""
+
+    letter: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,4 +132,4 @@ class Leave:
     """The view is left: keys and buttons that are held do not count any more."""
 
 
-Event = Press | Move | Release | Wheel | Fingers | Use | Key | Operate | Resize | Leave
+Event = Press | Move | Release | Wheel | Fingers | Use | Key | Type | Operate | Resize | Leave

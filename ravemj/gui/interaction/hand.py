@@ -22,6 +22,7 @@ from ravemj.gui.interaction.events import (
     Press,
     Release,
     Resize,
+    Type,
     Use,
     Wheel,
 )
@@ -141,19 +142,17 @@ class Hand:
     def cursor(self) -> str:
         """Return how the pointer looks where there is nothing to take."""
         is_tool = self.pointer is not None and self._tool_at(Press(*self.pointer)) is not None
+        if self.layout.field_at(self.pointer) is not None:
+            return "text"
         if is_tool or self.layout.at(self.pointer) is not None:
             return "pointer"
         return "grab" if self.mode is Mode.CAMERA else "default"
 
     def steer(self, event: Event) -> bool:
         """Do what an event asks for if that needs no bodies; return whether it was done."""
+        if self._needs_what_is_shown(event):
+            return False
         match event:
-            case Press() if self.needs_bodies(event):
-                return False
-            case Move() | Release() if self._press is not None or (self._follow is not None and not self._steers):
-                return False
-            case Wheel() if self._reach is not None or self.layout.covers(self.pointer):
-                return False
             case Key(name, True) if name.lower() in KEYS:
                 return self._controls.steer(KEYS[name.lower()])
             case Operate(name):
@@ -161,6 +160,20 @@ class Hand:
             case _:
                 self.do(event)
                 return True
+
+    def _needs_what_is_shown(self, event: Event) -> bool:
+        """Return whether an event is for a body or a control, as far as the event and the hand say."""
+        match event:
+            case Press():
+                return self.needs_bodies(event)
+            case Move() | Release():
+                return self._press is not None or (self._follow is not None and not self._steers)
+            case Wheel():
+                return self._reach is not None or self.layout.covers(self.pointer)
+            case Key() | Type():
+                return self.panel.is_typing
+            case _:
+                return False
 
     def needs_bodies(self, press: Press) -> bool:
         """Return whether it takes the bodies to know what a press does."""
@@ -191,7 +204,7 @@ class Hand:
             case _:
                 self._do_without_pointer(event)
 
-    def _do_without_pointer(self, event: Wheel | Fingers | Use | Key | Operate | Resize) -> None:
+    def _do_without_pointer(self, event: Wheel | Fingers | Use | Key | Type | Operate | Resize) -> None:
         match event:
             case Wheel(steps):
                 self._on_wheel(steps)
@@ -201,6 +214,8 @@ class Hand:
                 self._use(tool, amount)
             case Key(name, pressed):
                 self._on_key(name.lower(), pressed)
+            case Type(letter):
+                self.panel.type(letter)
             case Operate(name, value):
                 self._controls.operate(name, value)
             case Resize(width, height):
@@ -209,6 +224,7 @@ class Hand:
     def _on_press(self, press: Press) -> None:
         self.buttons.add(press.button)
         self.let_go()
+        self.panel.stop_typing()
         self.pointer = press.x, press.y
         self._steers = not self.needs_bodies(press)
         tool = self._tool_at(press)
@@ -256,6 +272,9 @@ class Hand:
     def _on_key(self, name: str, pressed: bool) -> None:
         if not pressed:
             self._keys.discard(name)
+            return
+        if self.panel.is_typing:
+            self.panel.key(name)
             return
         if name == "escape" and name not in self._keys:
             self._set_mode(Mode.INTERACTION if self.mode is Mode.CAMERA else Mode.CAMERA)

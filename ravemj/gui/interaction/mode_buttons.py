@@ -37,14 +37,16 @@ class Panel(NamedTuple):
     Attributes:
         rect: Where.
         rgba: Its colour, in 0..1; with no opacity, only the text is drawn.
-        text: What stands in its middle, in white.
+        text: What stands in its middle.
         is_left: Whether the text stands at its left edge.
+        text_rgb: Colour of the text, in 0..255.
     """
 
     rect: Rect
     rgba: _Rgba
     text: str = ""
     is_left: bool = False
+    text_rgb: tuple[int, int, int] = (255, 255, 255)
 
 
 class Tool(Enum):

@@ -17,7 +17,19 @@ class Notices:
         self._lock = threading.Lock()
         self._lines: dict[str, float] = {}
         self._recording = False
+        self._text_size: float | None = None
         self.changes = 0
+
+    @property
+    def text_size(self) -> float | None:
+        """Height of the letters of what is shown [points]; None: as who draws it likes."""
+        return self._text_size
+
+    @text_size.setter
+    def text_size(self, text_size: float) -> None:
+        with self._lock:
+            self._text_size = text_size
+            self.changes += 1
 
     @property
     def recording(self) -> bool:

@@ -38,7 +38,8 @@ class Overlay(NamedTuple):
         chosen: Names of what of the tree is selected.
         style: How the bodies are drawn.
         cursor: How the pointer looks: ``default``, ``grab`` for a view that can be turned, ``pointer`` for a button or
-            something to click on, ``move`` for something to drag.
+            something to click on, ``move`` for something to drag, ``text`` for something to type into.
+        text_size: Height of the letters of the lines [points]; None: as the shell likes.
     """
 
     primitives: Primitives
@@ -51,6 +52,7 @@ class Overlay(NamedTuple):
     chosen: tuple[str, ...] = ()
     style: Style = AS_IT_IS
     cursor: str = "default"
+    text_size: float | None = None
 
     def labels_on(self, view: View) -> list[tuple[float, float, str]]:
         """Return column and row [points] and text of the labels that are before the eye and on a view."""

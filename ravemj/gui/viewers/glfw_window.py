@@ -5,7 +5,7 @@ import threading
 from typing import Any
 
 from ravemj.errors import RenderingError
-from ravemj.gui.interaction import Button, Event, Key, Leave, Move, Press, Release, Wheel
+from ravemj.gui.interaction import Button, Event, Key, Leave, Move, Press, Release, Type, Wheel
 from ravemj.gui.viewers.x_connection import XConnection
 
 _dispatching = threading.Lock()
@@ -84,6 +84,9 @@ class GlfwWindow:
             glfw.KEY_RIGHT: "arrowright",
             glfw.KEY_HOME: "home",
             glfw.KEY_F1: "f1",
+            glfw.KEY_ENTER: "enter",
+            glfw.KEY_KP_ENTER: "enter",
+            glfw.KEY_BACKSPACE: "backspace",
         }
 
     # --- what people do
@@ -143,11 +146,12 @@ class GlfwWindow:
         name = self._keys.get(key) or glfw.get_key_name(key, scancode)
         if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
             name = chr(key)
-        if name and action != glfw.REPEAT:
-            self.events.append(Key(name, action == glfw.PRESS))
+        if name and (action != glfw.REPEAT or name == "backspace"):
+            self.events.append(Key(name, action != glfw.RELEASE))
 
     def _on_letter(self, window: object, letter: int) -> None:
         del window
+        self.events.append(Type(chr(letter)))
         if chr(letter) == "?":  # it is with other keys on other keyboards
             self.events += [Key("?"), Key("?", False)]
 
@@ -211,7 +215,7 @@ class GlfwWindow:
             return
         self._cursor = name
         glfw = self._glfw
-        shapes = {"pointer": glfw.HAND_CURSOR, "move": glfw.CROSSHAIR_CURSOR}
+        shapes = {"pointer": glfw.HAND_CURSOR, "move": glfw.CROSSHAIR_CURSOR, "text": glfw.IBEAM_CURSOR}
         if name in shapes and name not in self._cursors:
             self._cursors[name] = glfw.create_standard_cursor(shapes[name])
         glfw.set_cursor(self._window, self._cursors.get(name))

@@ -12,7 +12,7 @@ from ravemj.core.arrays import checked_vector
 from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import Simulation
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
 from ravemj.gui.interaction import Resize
@@ -27,7 +27,8 @@ _LARGEST = 16384
 
 _FIGURES = "SetFiguresInCamera"
 
-TEXTS = "texts of other sizes in viewers"
+_LARGEST_TEXT = 200
+"""Most points that letters are high: larger ones would fill the window."""
 
 LOCKED = "Locked by the script"
 """What a window or a page says while a script has had the environment for long."""
@@ -125,15 +126,18 @@ class Viewer(Playing):
         """
 
     def SetTextSize(self, size: float) -> None:
-        """Refuse another size of texts.
+        """Set the size of the text in the corner.
 
         Args:
-            size: The size.
+            size: Height of the letters [points].
 
         Raises:
-            UnsupportedError: always.
+            ArgumentError: this is no number from 1 to 200.
         """
-        raise UnsupportedError("Viewer.SetTextSize", TEXTS)
+        (height,) = checked_vector([size], 1, "SetTextSize").tolist()
+        if not 1 <= height <= _LARGEST_TEXT:
+            raise ArgumentError(f"SetTextSize: is {size}, and should be from 1 to {_LARGEST_TEXT} points")
+        self.interaction.controls.notices.text_size = height
 
     def SetUserText(self, userText: str) -> None:
         """Show a text in the corner, in place of the one before.

@@ -17,11 +17,9 @@ _SIZE = 13.0
 _MARGIN, _LINE, _PADDING = 8.0, 18.0, 6.0
 _GLASS = (0.09, 0.1, 0.12, 0.82)
 _WHITE, _DARK = (255, 255, 255), (32, 36, 44)
-_HEADING, _FAINT = (143, 188, 255), (195, 202, 211)
 _HALO = (255, 255, 255)
-_HELP_WIDTH, _HELP_COLUMN, _KEY_WIDTH = 900.0, 430.0, 70.0
-_SHORT = 8
-"""Most letters of keys that stand in front of what they do."""
+_BUTTONS = 60.0
+"""What the buttons of the modes take at the right."""
 
 _Rgb = tuple[int, int, int]
 
@@ -72,18 +70,19 @@ class OverlayPainter:
         self._pixels, self._ratio = pixels, ratio
         for x, y, text in overlay.labels_on(view):
             self._text(text, x, y, _DARK, halo=True)
-        self._paint_lines(overlay.lines)
+        self._paint_lines(overlay.lines, overlay.text_size or _SIZE)
         for panel in overlay.panels:
             self._paint_panel(panel)
-        if overlay.help:
-            self._paint_help(overlay)
 
-    def _paint_lines(self, lines: tuple[str, ...]) -> None:
-        if lines:
-            width = max(self._width(line) for line in lines) + 2 * _PADDING
-            self._rectangle(Rect(_MARGIN, _MARGIN, width, len(lines) * _LINE + _PADDING), _GLASS)
-        for row, line in enumerate(lines):
-            self._line(line, _MARGIN + _PADDING, _MARGIN + 0.5 * _PADDING + row * _LINE, _WHITE)
+    def _paint_lines(self, lines: tuple[str, ...], size: float) -> None:
+        room = self._pixels[0] / self._ratio - 2 * (_MARGIN + _PADDING) - _BUTTONS
+        rows = [row for line in lines for row in self._wrapped(line, room, size)]
+        height = _LINE / _SIZE * size
+        if rows:
+            width = max(self._width(row, size) for row in rows) + 2 * _PADDING
+            self._rectangle(Rect(_MARGIN, _MARGIN, width, len(rows) * height + _PADDING), _GLASS)
+        for number, row in enumerate(rows):
+            self._line(row, _MARGIN + _PADDING, _MARGIN + 0.5 * _PADDING + number * height, _WHITE, size)
 
     def _paint_panel(self, panel: Panel) -> None:
         if panel.rgba[3]:
@@ -91,41 +90,15 @@ class OverlayPainter:
         if panel.text:
             x, y, width, height = panel.rect
             if panel.is_left:
-                self._line(panel.text, x + _PADDING, y + (height - _LINE) / 2, _WHITE)
+                self._line(panel.text, x + _PADDING, y + (height - _LINE) / 2, panel.text_rgb)
                 return
-            self._text(panel.text, x + width / 2, y + height / 2, _WHITE)
+            self._text(panel.text, x + width / 2, y + height / 2, panel.text_rgb)
 
-    def _paint_help(self, overlay: Overlay) -> None:
-        """Paint the help in two columns."""
-        rows = self._help_rows(overlay)
-        half = (len(rows) + 1) // 2
-        points = self._pixels[0] / self._ratio, self._pixels[1] / self._ratio
-        width, height = min(_HELP_WIDTH, points[0] - 2 * _MARGIN), half * _LINE + 3 * _PADDING
-        left, top = (points[0] - width) / 2, max((points[1] - height) / 2, _MARGIN)
-        self._rectangle(Rect(left, top, width, height), (*_GLASS[:3], 0.95))
-        for number, row in enumerate(rows):
-            x = left + 2 * _PADDING + number // half * width / 2
-            for indent, text, rgb in row:
-                self._line(text, x + indent, top + _PADDING + number % half * _LINE, rgb)
-
-    def _help_rows(self, overlay: Overlay) -> "list[list[tuple[float, str, _Rgb]]]":
-        """Return for each row its texts, with where they begin and their colour."""
-        rows: list[list[tuple[float, str, _Rgb]]] = []
-        for title, entries in overlay.help:
-            rows.append([(0.0, title, _HEADING)])
-            for to, how in entries:
-                if len(how) <= _SHORT:
-                    rows.append([(_PADDING, how, _FAINT), (_KEY_WIDTH, to, _WHITE)])
-                else:
-                    rows.append([(_PADDING, to, _WHITE)])
-                    rows += [[(4 * _PADDING, part, _FAINT)] for part in self._wrapped(how)]
-        return rows
-
-    def _wrapped(self, text: str) -> list[str]:
+    def _wrapped(self, text: str, width: float, size: float = _SIZE) -> list[str]:
         lines = [""]
-        for word in text.split():
+        for word in text.split(" "):
             longer = f"{lines[-1]} {word}".strip()
-            if self._width(longer) > _HELP_COLUMN - 6 * _PADDING:
+            if lines[-1] and self._width(longer, size) > width:
                 lines.append(word)
             else:
                 lines[-1] = longer
@@ -133,22 +106,21 @@ class OverlayPainter:
 
     # --- in pixels
 
-    @property
-    def _letters(self) -> int:
-        return max(round(_SIZE * self._ratio), 6)
+    def _letters(self, size: float) -> int:
+        return max(round(size * self._ratio), 6)
 
-    def _width(self, text: str) -> float:
-        return float(_font(self._letters).getlength(text)) / self._ratio
+    def _width(self, text: str, size: float = _SIZE) -> float:
+        return float(_font(self._letters(size)).getlength(text)) / self._ratio
 
     def _text(self, text: str, x: float, y: float, rgb: _Rgb, *, halo: bool = False) -> None:
         """Write a text about a point."""
-        image = text_image(text, self._letters, rgb, halo)
+        image = text_image(text, self._letters(_SIZE), rgb, halo)
         rows, columns = image.shape[:2]
         self._image(image, round(x * self._ratio - columns / 2), round(y * self._ratio - rows / 2))
 
-    def _line(self, text: str, x: float, y: float, rgb: _Rgb) -> None:
+    def _line(self, text: str, x: float, y: float, rgb: _Rgb, size: float = _SIZE) -> None:
         """Write a text that begins at a point."""
-        self._image(text_image(text, self._letters, rgb), round(x * self._ratio), round(y * self._ratio))
+        self._image(text_image(text, self._letters(size), rgb), round(x * self._ratio), round(y * self._ratio))
 
     def _rectangle(self, rect: Rect, rgba: tuple[float, float, float, float]) -> None:
         x, y, width, height = rect

@@ -324,6 +324,7 @@ class Client:
         """Return what stands beside pictures, by field."""
         return {
             "lines": overlay.lines,
+            "textSize": overlay.text_size,
             "mode": self.interaction.mode.value,
             "title": style.title,
             "cursor": overlay.cursor,

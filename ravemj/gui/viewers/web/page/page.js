@@ -109,6 +109,7 @@ function write(over) {
   const lines = over.lines.join("\n");
   if (text.innerText !== lines) text.innerText = lines;
   text.hidden = lines === "";
+  text.style.fontSize = over.textSize ? `${over.textSize}px` : "";
   view.style.cursor = pressed && over.cursor === "grab" ? "" : over.cursor;
   showControls(over.controls);
   showHelp(over.help);
