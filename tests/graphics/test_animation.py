@@ -201,8 +201,10 @@ class Player:
         return tuple(self.page.evaluate("[ravemj.canvas.width, ravemj.canvas.height]"))
 
     def picture(self) -> np.ndarray:
-        """Return what is drawn now."""
-        address = self.page.evaluate("() => { ravemj.draw(); return ravemj.canvas.toDataURL(); }")
+        """Return what is drawn now, crisp."""
+        address = self.page.evaluate(
+            "() => { ravemj.sharpness.rest(); ravemj.draw(); return ravemj.canvas.toDataURL(); }"
+        )
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(address.partition(",")[2]))).convert("RGB"))
 
 
@@ -360,6 +362,36 @@ class TestInABrowser:
             session.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
         await_that(lambda: player.page.evaluate("ravemj.view.distance < ravemj.first.distance"))
         assert player.page.evaluate("ravemj.view.distance / ravemj.first.distance") == pytest.approx(0.5)
+
+    def test_a_context_that_was_lost_and_restored_shows_everything_again(self, env, robot, opened):
+        motion = swing(env)
+        player = opened(env.animation(motion, background=[0, 0, 0.4]).html)
+        player.at(0.6)
+        robot.SetDOFValues(motion.sample(0.6))
+        player.page.evaluate(
+            """async () => {
+              const context = ravemj.renderer.gl.getExtension("WEBGL_lose_context");
+              const happens = (name) => new Promise((done) => ravemj.canvas.addEventListener(name, done));
+              const lost = happens("webglcontextlost"), restored = happens("webglcontextrestored");
+              context.loseContext();
+              await lost;
+              ravemj.draw();
+              setTimeout(() => context.restoreContext());
+              await restored;
+            }"""
+        )
+        assert_same_silhouette(player, env)
+        assert player.page.troubles == []
+
+    def test_pictures_are_coarse_while_they_move_and_crisp_at_rest_where_drawing_takes_long(self, env, opened):
+        player = opened(env.animation(swing(env)).html)
+        width, height = player.page.evaluate("[ravemj.canvas.clientWidth, ravemj.canvas.clientHeight]")
+        await_that(lambda: player.page.evaluate("ravemj.sharpness.crisp > 0"), "no time was measured")
+        player.page.evaluate("ravemj.sharpness.readTime = () => {}")
+        player.page.evaluate("ravemj.sharpness.moving = LEVELS[4]")
+        await_that(lambda: player.size() == (round(0.35 * width), round(0.35 * height)))
+        player.page.evaluate("ravemj.isPlaying = false")
+        await_that(lambda: player.size() == (width, height), "it does not become crisp")
 
     def test_without_webgl_the_page_says_so(self, env, opened):
         player = opened(env.animation().html, "HTMLCanvasElement.prototype.getContext = () => null")

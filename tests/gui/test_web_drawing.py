@@ -432,12 +432,40 @@ class TestWhatIsSeen:
         assert desk.page.evaluate("drawing.view.position") == pytest.approx(desk.core.view.camera.position, abs=1e-6)
         assert desk.page.evaluate("drawing.heard < drawing.foreseenBy")
 
-    def test_it_falls_back_to_pictures(self, desk):
+    def test_pictures_stand_in_while_webgl_is_lost(self, desk):
         assert not desk.page.is_visible("#source")
-        desk.page.evaluate("drawing.canvas.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()")
-        desk.page.wait_for_selector("#source", state="visible")
-        desk.robot.SetDOFValues([0.4, 0.3])
+        for values in ([0.4, 0.3], [0.9, 0.7]):
+            desk.page.evaluate("window.context = drawing.renderer.gl.getExtension('WEBGL_lose_context')")
+            desk.page.evaluate("context.loseContext()")
+            desk.page.wait_for_selector("#source", state="visible")
+            desk.robot.SetDOFValues(values)
+            desk.await_picture()
+            desk.page.evaluate("context.restoreContext()")
+            desk.page.wait_for_selector("#source", state="hidden")
+            desk.robot.SetDOFValues(0.5 * np.array(values))
+            desk.await_picture()
+        desk.page.evaluate("context.loseContext(); setTimeout(() => context.restoreContext())")  # frames are under way
+        desk.robot.SetDOFValues([0, 0])
+        await_that(lambda: desk.page.evaluate("drawing !== null && drawing.name !== undefined"), "it draws no more")
         desk.await_picture()
+
+    def test_pictures_are_coarse_while_things_move_and_crisp_at_rest_where_drawing_takes_long(self, desk):
+        desk.await_picture()
+        desk.page.evaluate(
+            """() => {
+              drawing.sharpness.readTime = () => {};
+              drawing.sharpness.moving = LEVELS[3];
+              window.sizes = [];
+              const draw = drawing.renderer.draw.bind(drawing.renderer);
+              drawing.renderer.draw = (...what) => { draw(...what); sizes.push(canvas.width); };
+            }"""
+        )
+        desk.wheel(1)
+        await_that(lambda: desk.page.evaluate("sizes.at(-1)") == 640, "it does not become crisp")
+        assert set(desk.page.evaluate("sizes.slice(0, -1)")) == {320}
+        desk.await_picture()
+
+    def test_it_shows_pictures_if_the_address_asks_for_them(self, desk):
         desk.page.goto(desk.viewer.url + "?pictures")
         desk.await_picture()
         assert desk.page.is_visible("#source")

@@ -115,6 +115,7 @@ def animation_page(
         "style": _file("animation.css"),
         "camera": _file("camera.js"),
         "renderer": _file("renderer.js"),
+        "sharpness": _file("sharpness.js"),
         "player": _file("animation.js"),
         "scene": package.text(),
     }

@@ -3,31 +3,31 @@
 
 class Player {
   constructor(canvas, scene) {
-    this.canvas = canvas;
-    this.renderer = new Renderer(canvas);
-    this.renderer.load(scene);
     const { content, array } = scene;
+    this.canvas = canvas;
     this.content = content;
+    this.begin(scene);
+    canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());  // or it would not be restored
+    canvas.addEventListener("webglcontextrestored", () => this.begin(scene));
     this.duration = (content.frames - 1) / content.fps;
     this.channels = content.moving.columns ? columns(content.moving, array) : [];
     this.values = content.values ? columns(content.values, array) : [];
-    const poses = array(content.still.poses);
-    content.still.bodies.forEach((body, i) => this.renderer.place(body, ...poses.subarray(7 * i, 7 * i + 7)));
     this.first = this.view = new View(content.view);
     this.time = 0;
     this.speed = 1;
     this.isPlaying = this.duration > 0;
     this.marked = -1;
-    this.isDue = true;
-    new ResizeObserver(() => this.resize()).observe(canvas);
-    this.resize();
+    new ResizeObserver(() => { this.isDue = true; }).observe(canvas);
     requestAnimationFrame((now) => this.step(now, now));
   }
 
-  resize() {
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
-    this.canvas.width = Math.max(1, Math.round(ratio * this.canvas.clientWidth));
-    this.canvas.height = Math.max(1, Math.round(ratio * this.canvas.clientHeight));
+  /** Make everything on the graphics card, which may have been lost. */
+  begin({ content, array }) {
+    this.renderer = new Renderer(this.canvas);
+    this.sharpness = new Sharpness(this.renderer, () => { this.isDue = true; });
+    this.renderer.load({ content, array });
+    const poses = array(content.still.poses);
+    content.still.bodies.forEach((body, i) => this.renderer.place(body, ...poses.subarray(7 * i, 7 * i + 7)));
     this.isDue = true;
   }
 
@@ -67,7 +67,8 @@ class Player {
     content.moving.bodies.forEach((body, i) => {
       this.renderer.place(body, ...channels.slice(7 * i, 7 * i + 7).map((channel) => this.sample(channel, frame)));
     });
-    this.renderer.draw(this.view, this.marked);
+    const { clientWidth, clientHeight } = this.canvas, ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.sharpness.draw(this.view, this.marked, ratio * clientWidth, ratio * clientHeight);
     this.onDraw();
   }
 

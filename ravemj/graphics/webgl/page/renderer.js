@@ -76,7 +76,7 @@ void main() {
 
 /* Lines of constant width, and points, which are lines without length. */
 const LINE_VERTEX = `#version 300 es
-uniform mat4 clip; uniform vec2 size; uniform float near;
+uniform mat4 clip; uniform vec2 size; uniform float near, scale;
 in vec2 corner; in vec3 start, end; in float width; in vec4 rgba;
 out vec4 color;
 void main() {
@@ -90,7 +90,7 @@ void main() {
   vec4 p = corner.x < 0.0 ? a : b;
   vec2 beyond = isPoint ? along * corner.x : vec2(0.0);
   float nearer = 2e-6 * max(width, 1.0);  // wide lines cover narrow ones in the same place
-  gl_Position = p + vec4((aside + beyond) * max(width, 1.0) / size * p.w, -nearer * p.w, 0.0);
+  gl_Position = p + vec4((aside + beyond) * max(scale * width, 1.0) / size * p.w, -nearer * p.w, 0.0);
   color = rgba;
 }`;
 
@@ -124,7 +124,7 @@ function program(gl, vertex, fragment) {
 class Renderer {
   /** Raises an error where there is no WebGL2. */
   constructor(canvas) {
-    const gl = canvas.getContext("webgl2", { alpha: false, antialias: true });
+    const gl = canvas.getContext("webgl2", { antialias: false });  // crisp pictures have a framebuffer of their own
     if (!gl) throw new Error("this browser has no WebGL2");
     this.gl = gl;
     this.surface = program(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
@@ -133,7 +133,8 @@ class Renderer {
     this.groups = new Map();
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);  // the page is opaque
+    this.samples = { framebuffer: gl.createFramebuffer(), color: gl.createRenderbuffer(), depth: gl.createRenderbuffer() };
   }
 
   /** Take over a scene; poses of its bodies are set with `place`. */
@@ -290,13 +291,43 @@ class Renderer {
     this.poses[body] = [r[0], r[1], r[2], x, r[3], r[4], r[5], y, r[6], r[7], r[8], z];
   }
 
-  /** Draw the scene as a view sees it. */
-  draw(view, marked = -1) {
-    const { gl, background } = this;
+  /** Give pictures another size [pixels]. */
+  resize(...size) {
+    const { canvas } = this.gl, [width, height] = size.map((length) => Math.max(1, Math.round(length)));
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+  }
+
+  /** Draw the scene as a view sees it, with some samples for each pixel. */
+  draw(view, marked, { samples, scale }) {
     this.prepare(view);
+    if (samples === 1) return this.drawAll(view, marked, scale);
+    const { gl } = this, size = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    this.bindSamples(samples, ...size);
+    this.drawAll(view, marked, scale);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(0, 0, ...size, 0, 0, ...size, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  /** Draw with several samples for each pixel from now on. */
+  bindSamples(samples, width, height) {
+    const { gl } = this, { framebuffer, color, depth } = this.samples;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    if (this.samples.width === width && this.samples.height === height) return;
+    Object.assign(this.samples, { width, height });
+    for (const [buffer, format, attachment] of [[color, gl.RGBA8, gl.COLOR_ATTACHMENT0],
+                                                [depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, format, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, buffer);
+    }
+  }
+
+  drawAll(view, marked, scale) {
+    const { gl, background } = this;
     gl.clearColor(...(background || this.content.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.setUp(view, true);
+    this.setUp(view, true, scale);
     const figures = [...this.groups.values()].flatMap((group) => group.figures);
     const all = [...this.shapes, ...figures], isSolid = ({ rgba }) => rgba[3] >= 1;
     for (const shape of all.filter(isSolid)) this.drawShape(shape, this.tinted(shape, marked));
@@ -380,7 +411,7 @@ class Renderer {
     this.depths = [Math.max(0.99 * near, 1e-4 * far), far];
   }
 
-  setUp(view, isLit) {
+  setUp(view, isLit, scale = 1) {
     const { gl, surface, line } = this, [near, far] = this.depths;
     const width = gl.drawingBufferWidth, height = gl.drawingBufferHeight;
     const x = view.axis(0), y = view.axis(1), z = view.axis(2), focal = view.focal(height);
@@ -395,6 +426,7 @@ class Renderer {
     gl.useProgram(line.made);
     gl.uniformMatrix4fv(line.clip, false, clip);
     gl.uniform2f(line.size, width, height);
+    gl.uniform1f(line.scale, scale);
     gl.uniform1f(line.near, near);
     gl.useProgram(surface.made);
     gl.uniformMatrix4fv(surface.clip, false, clip);

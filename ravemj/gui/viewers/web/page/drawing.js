@@ -4,12 +4,18 @@
 const FRAME = 0, DRAWINGS = 1, LAST_KIND = 2;
 const CLICK = 4, NEARER = 0.9, ZOOM = 4;  // as in ravemj/gui/interaction
 
+const canvas = document.createElement("canvas");  // what WebGL draws on; the view is a copy of it
+canvas.addEventListener("webglcontextlost", (event) => {
+  event.preventDefault();  // or it would not be restored
+  takePictures("WebGL has stopped");
+});
+canvas.addEventListener("webglcontextrestored", () => { order = order.then(() => drawHere(overlay.scene)); });
+
 class Drawing {
   /** Raises an error where there is no WebGL2. */
-  constructor(onLost) {
-    this.canvas = document.createElement("canvas");
-    this.canvas.addEventListener("webglcontextlost", onLost);
-    this.renderer = new Renderer(this.canvas);
+  constructor() {
+    this.renderer = new Renderer(canvas);
+    this.sharpness = new Sharpness(this.renderer, requestDrawing);
     this.begin();
   }
 
@@ -66,11 +72,10 @@ class Drawing {
 
   /** Draw into another canvas. */
   draw(paint) {
-    const { canvas } = this, { width, height } = paint.canvas;
+    const { width, height } = paint.canvas;
     if (!this.view || !this.name) return;
-    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-    this.renderer.draw(this.view);
-    paint.drawImage(canvas, 0, 0);
+    this.sharpness.draw(this.view, -1, width, height);
+    paint.drawImage(canvas, 0, 0, width, height);
   }
 
   // --- what the view becomes by what hands do, as in ravemj/gui/interaction/hand.py
@@ -138,7 +143,7 @@ class Drawing {
       .shifted(across - spread * (across - right), along - spread * (along - down), height);
   }
 
-  get aspect() { return this.canvas.width / this.canvas.height; }
+  get aspect() { return canvas.width / canvas.height; }
 }
 
 let isNews = false, unanswered = 0, requested = 0;
@@ -163,6 +168,18 @@ function draw() {
   }));
   if (isNews) write(overlay);
   isNews = false;
+}
+
+/** Let this page draw, from surfaces that are known by a name if any are; without WebGL, show pictures. */
+async function drawHere(scene) {
+  try {
+    drawing = new Drawing();
+    document.getElementById("source").hidden = true;
+    send({ type: "draws", itself: true });
+    if (scene) await drawing.load(scene);
+  } catch (error) {
+    takePictures(error.message);
+  }
 }
 
 function takePictures(why) {

@@ -332,11 +332,5 @@ class Wheel {
 
 for (const element of document.querySelectorAll("[role=slider]")) new Wheel(element);
 connect();  // which takes its time
-try {
-  if (new URLSearchParams(location.search).has("pictures")) throw new Error("the address asks for pictures");
-  drawing = new Drawing(() => takePictures("WebGL has stopped"));
-  const { scene } = document.body.dataset;  // most likely what the other side will name
-  if (scene) order = drawing.load(scene).catch(() => {});
-} catch (error) {
-  takePictures(error.message);
-}
+if (new URLSearchParams(location.search).has("pictures")) takePictures("the address asks for pictures");
+else order = drawHere(document.body.dataset.scene);  // most likely what the other side will name
