@@ -2,8 +2,11 @@
 
 import argparse
 import difflib
+import re
 from collections.abc import Iterable, Sequence
 from typing import NoReturn
+
+_LIKENESS = 0.7  # from here on two words are taken for the same one with a typing mistake: not "help" for "shell"
 
 
 class Parser(argparse.ArgumentParser):
@@ -16,20 +19,42 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride] - its overloads
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Refuse what a command does not know, so that the message names the command."""
+        """Refuse what a command does not know, so that the message names the command.
+
+        Unknown options come first: argparse takes the beginning of an option for all of it, and says what is missing
+        before it says what is unknown.
+        """
+        self._refuse(self._unknown_options(args or ()))
         parsed, unknown = super().parse_known_args(args, namespace or argparse.Namespace())
-        if unknown:
-            self.error(f"unknown: {' '.join(unknown)}{_did_you_mean(unknown[0], self._option_string_actions)}")
+        self._refuse(unknown)
         return parsed, unknown
 
+    def _refuse(self, unknown: Sequence[str]) -> None:
+        if unknown:
+            self.error(f"unknown: {' '.join(unknown)}{did_you_mean(unknown[0], self._option_string_actions)}")
+
+    def _unknown_options(self, words: Sequence[str]) -> list[str]:
+        """Return the words that look like options and are none of this command."""
+        # The words behind the first plain one are for another parser, or for a script.
+        passes_on = any(action.nargs in {argparse.PARSER, argparse.REMAINDER} for action in self._actions)
+        unknown: list[str] = []
+        for word in words:
+            if word == "--" or (passes_on and not word.startswith("-")):
+                break
+            name = word.partition("=")[0] if word.startswith("--") else word[:2]
+            if re.match(r"--?[a-z]", word, re.IGNORECASE) and " " not in word:
+                unknown += [] if name in self._option_string_actions else [word]
+        return unknown
+
     def _check_value(self, action: argparse.Action, value: object) -> None:
-        """Refuse a value that is no choice, with the nearest one."""
+        """Refuse a value that is not one of the choices, with the nearest one."""
         if action.choices is not None and value not in action.choices:
             choices = [str(choice) for choice in action.choices]
-            guess = _did_you_mean(str(value), choices)
+            guess = did_you_mean(str(value), choices)
             raise argparse.ArgumentError(action, f"'{value}' is none of {', '.join(choices)}{guess}")
 
 
-def _did_you_mean(word: str, known: Iterable[str]) -> str:
-    close = difflib.get_close_matches(word, known, 1)
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return the words that propose the nearest of the known words, where one is near."""
+    close = difflib.get_close_matches(word, known, 1, _LIKENESS)
     return f"; did you mean {close[0]}?" if close else ""

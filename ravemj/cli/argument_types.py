@@ -10,7 +10,7 @@ _LONGEST_SIDE = 16384  # what OpenGL's frame buffers can have on most machines
 _MOST_DIGITS = 9  # so that a seed fits into 32 bits
 
 
-def target(text: str) -> str:
+def file_name(text: str) -> str:
     """Return the name of a file or folder."""
     if not text:
         raise argparse.ArgumentTypeError("the name is empty")

@@ -2,7 +2,7 @@
 
 import argparse
 
-from ravemj.cli.argument_types import positive, seed, target, vector
+from ravemj.cli.argument_types import file_name, positive, seed, vector
 from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, late
 from ravemj.geometry_functions.ik_types import GOAL_TYPES
 
@@ -39,7 +39,11 @@ def add_ik(commands: Commands) -> None:
     _add_arm_options(parser)
     parser.add_argument("--json", action="store_true", help="print all solutions as JSON, not the nearest ones alone")
     parser.add_argument(
-        "-o", "--output", type=target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
+        "-o",
+        "--output",
+        type=file_name,
+        metavar="FILE",
+        help="picture with an arm at each solution; .png, .jpg or .webp",
     )
     add_picture_options(parser, "size of the picture (640x480)")
     parser.set_defaults(run=late("ik", "ik"))
@@ -74,7 +78,7 @@ def add_plan(commands: Commands) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        type=target,
+        type=file_name,
         metavar="FILE",
         help="motion as .csv or .npz, which play takes; picture of start, goal and way as .png or .jpg; or video as "
         + VIDEOS,
@@ -97,6 +101,7 @@ def _add_arm_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--from",
         dest="start",
+        type=file_name,
         metavar="FILE",
         help="joint values to start from, as JSON: a list, or an object with names of joints; default: the model's",
     )

@@ -68,7 +68,7 @@ def pose_goal(numbers: Sequence[float], option: str) -> Floats:
     """
     length = math.sqrt(sum(part * part for part in numbers[3:]))
     if not length:
-        raise ArgumentError(f"{option}: the quaternion is 0 0 0 0, which is no rotation")
+        raise ArgumentError(f"{option}: the quaternion is 0 0 0 0, which is not a rotation")
     return matrixFromPose([*(part / length for part in numbers[3:]), *numbers[:3]])
 
 
@@ -95,7 +95,7 @@ def start_values(path: str, robot: Robot) -> list[float]:
         content = [items.get(name, value) for name, value in zip(names, values, strict=True)]
     numbers = cast("list[object]", content) if isinstance(content, list) else []
     if len(numbers) != len(values) or not all(isinstance(number, int | float) for number in numbers):
-        found = f"{len(numbers)} values" if isinstance(content, list) else "no list"
+        found = f"{len(numbers)} values" if isinstance(content, list) else "something other than a list"
         raise SourceError(f"found {found}, expected {len(values)} joint values", Source(path), hint)
     return [float(cast("float", number)) for number in numbers]
 

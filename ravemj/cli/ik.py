@@ -66,7 +66,7 @@ def _goal(options: argparse.Namespace) -> Floats:
     size = _POSE if kind == IkParameterizationType.Transform6D else goal_size(kind)
     if len(numbers) != size:
         order = "x,y,z,qw,qx,qy,qz" if size == _POSE else f"{size} values"
-        raise ArgumentError(f"--to: found {len(numbers)} numbers, expected {order} for a goal of type {kind.name}")
+        raise ArgumentError(f"--to: found {len(numbers)}, expected {order} for a goal of type {kind.name}")
     return pose_goal(numbers, "--to") if kind == IkParameterizationType.Transform6D else np.array(numbers)
 
 

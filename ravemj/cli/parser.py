@@ -3,7 +3,7 @@
 import argparse
 
 from ravemj.cli.argument_parser import Parser
-from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, port, positive, target, vector
+from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, file_name, port, positive, vector
 from ravemj.cli.arm_parsers import add_ik, add_plan
 from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, complete_models, late
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
@@ -90,7 +90,7 @@ def _add_play(commands: Commands) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        type=target,
+        type=file_name,
         metavar="FILE",
         help=f"page as .html; or video as {VIDEOS}; without a display: MODEL.mp4",
     )
@@ -103,6 +103,7 @@ def _add_play(commands: Commands) -> None:
     )
     goal.add_argument(
         "--trajectory",
+        type=file_name,
         metavar="FILE",
         help="motion as .csv (header time,<joint>,…; seconds, rad or m) or .npz (arrays time and values)",
     )
@@ -123,7 +124,7 @@ def _add_render(commands: Commands) -> None:
         'ravemj render pendulum -o pendulum.png --q "0.785,0.785" --size 1280x720',
     )
     add_model(parser)
-    parser.add_argument("-o", "--output", type=target, required=True, metavar="FILE", help=".png, .jpg or .webp")
+    parser.add_argument("-o", "--output", type=file_name, required=True, metavar="FILE", help=".png, .jpg or .webp")
     parser.add_argument(
         "--q", type=vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
     )
@@ -146,7 +147,7 @@ def _add_convert(commands: Commands) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        type=target,
+        type=file_name,
         default=TO_STANDARD_OUTPUT,
         metavar="TARGET",
         help="a folder (no suffix, or a final /), or the MJCF file itself, with meshes in assets/ beside it; "
@@ -190,7 +191,9 @@ def _add_check(commands: Commands) -> None:
         "ravemj check --strict models/*.xml",
         "ravemj check --json robot.xml      # a list of file, line, code, severity, message, hint, included_from",
     )
-    complete_models(parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML or COLLADA files"))
+    complete_models(
+        parser.add_argument("models", nargs="+", type=file_name, metavar="FILE", help="OpenRAVE XML or COLLADA files")
+    )
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
     parser.set_defaults(run=late("check", "check_models"))
@@ -205,7 +208,9 @@ def _add_diff(commands: Commands) -> None:
         "ravemj diff old.robot.xml new.robot.xml --json      # a list of part, quantity, first, second, difference",
     )
     for name in ("first", "second"):
-        complete_models(parser.add_argument(name, metavar=name.upper(), help="OpenRAVE XML or COLLADA file"))
+        complete_models(
+            parser.add_argument(name, type=file_name, metavar=name.upper(), help="OpenRAVE XML or COLLADA file")
+        )
     parser.add_argument(
         "--tolerance",
         type=positive,
@@ -245,8 +250,9 @@ def _add_run(commands: Commands) -> None:
     parser.add_argument(
         "--py2", action="store_true", help="the script, and the modules beside it, are written for Python 2"
     )
-    parser.add_argument("script", metavar="SCRIPT", help="Python file")
-    parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="arguments of the script")
+    parser.add_argument("script", type=file_name, metavar="SCRIPT", help="Python file")
+    rest = parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="arguments of the script")
+    rest.required = False  # Python 3.11 would name it beside a missing SCRIPT
     parser.set_defaults(run=late("sessions", "run"))
 
 

@@ -18,7 +18,7 @@ from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import INSTALL, RAY, requested_backend
 from ravemj.graphics.rendering.doctor import probe_backends
 from ravemj.graphics.simulation_renderer import Format
-from ravemj.graphics.video import check_picture, check_target, write_frames, write_picture
+from ravemj.graphics.video import VIDEO_FORMATS, check_picture, check_target, known_suffix, write_frames, write_picture
 from ravemj.gui.viewers import has_display
 from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment, KinBody
@@ -26,12 +26,14 @@ from ravemj.rave.recording import Shot, camera_for_motion, draw_frames, moving_b
 from ravemj.trajectories.motion import Motion, read_motion
 
 _MOST_FRAMES = 1_000_000  # nine hours at 30 frames a second: more is a slip of the finger
+_PAGE = ".html"
 
 
 def play(options: argparse.Namespace) -> int:
     """Play a motion: in a window, or into a video."""
-    if options.output is not None:
-        check_file(options.output) if _is_page(options.output) else check_target(options.output)
+    suffix = None if options.output is None else known_suffix(options.output, [_PAGE, *VIDEO_FORMATS])
+    if suffix is not None:
+        (check_file if suffix == _PAGE else check_target)(options.output)
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     body = moving_body(env)
@@ -39,7 +41,7 @@ def play(options: argparse.Namespace) -> int:
     _check_length(motion, options.fps)
     camera = camera or camera_for_motion(env, body, motion, options.size[0] / options.size[1])
     background = env.background if options.background is None else tuple(options.background)
-    if options.output is not None and _is_page(options.output):
+    if suffix == _PAGE:
         env.save_html(
             options.output, motion, robot=body, fps=options.fps, camera=camera.T_world_camera, background=background
         )
@@ -62,10 +64,6 @@ def _check_length(motion: Motion, fps: float) -> None:
     if count > _MOST_FRAMES:
         found = f"{motion.duration:g} s at {fps:g} frames a second are {count:.3g} frames"
         raise ArgumentError(f"{found}, and at most {_MOST_FRAMES:,} are drawn; give a smaller --duration or --fps")
-
-
-def _is_page(output: str) -> bool:
-    return Path(output).suffix.lower() == ".html"
 
 
 def _motion(options: argparse.Namespace, body: KinBody) -> Motion:

@@ -81,7 +81,7 @@ def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int
     """
     assert arm is not None
     if len(pose) not in {_POSE, _POINT}:
-        raise ArgumentError(f"--pose: found {len(pose)} numbers, expected x,y,z,qw,qx,qy,qz or x,y,z")
+        raise ArgumentError(f"--pose: found {len(pose)}, expected x,y,z,qw,qx,qy,qz or x,y,z")
     is_point = len(pose) == _POINT
     kind = IkParameterizationType.Translation3D if is_point else IkParameterizationType.Transform6D
     ways = reached(arm, np.array(pose) if is_point else pose_goal(pose, "--pose"), kind)

@@ -12,7 +12,7 @@ from ravemj.cli.pictures import explain_rays, write_video
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.simulation_renderer import Format
-from ravemj.graphics.video import check_picture, check_target, write_picture
+from ravemj.graphics.video import VIDEO_FORMATS, check_picture, check_target, known_suffix, write_picture
 from ravemj.planning.rrt import Search
 from ravemj.rave import Planner, Robot
 from ravemj.rave.graph_handle import GraphHandle
@@ -54,7 +54,7 @@ class Plan(NamedTuple):
 def check_output(path: str) -> None:
     """Check that a motion, picture or video can be written to a path, without touching anything."""
     kinds = {**dict.fromkeys(MOTION_SUFFIXES, check_motion_file), **dict.fromkeys(_PICTURES, check_picture)}
-    kinds.get(Path(path).suffix.lower(), check_target)(path)
+    kinds.get(known_suffix(path, [*kinds, *VIDEO_FORMATS]), check_target)(path)
 
 
 def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> None:

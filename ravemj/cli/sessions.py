@@ -51,9 +51,11 @@ def run(options: argparse.Namespace) -> int:
 def _execute(script: str, main: ModuleType, py2: bool) -> int:
     """Run a script as the main module; return 1, after its traceback, if it raises."""
     signals.leave_signals_to_python()
+    with open(script, "rb") as file:
+        source = file.read()
+    if b"\0" in source:
+        raise SourceError("this is a binary file, not a Python script", Source(script))
     try:
-        with open(script, "rb") as file:
-            source = file.read()
         if py2:
             python2.execute(source, script, main.__dict__)
         else:

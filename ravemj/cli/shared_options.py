@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 from ravemj.cli.argument_parser import Parser
-from ravemj.cli.argument_types import colour, size
+from ravemj.cli.argument_types import colour, file_name, size
 from ravemj.formats.shipped import SHIPPED_MODELS
 
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
@@ -57,6 +57,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     """Add the model that a command is about."""
     model = parser.add_argument(
         "model",
+        type=file_name,
         metavar="MODEL",
         help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody; or a model that comes with ravemj: "
         f"{', '.join(SHIPPED_MODELS)}",
@@ -70,6 +71,7 @@ def add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None
     parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help=size_help)
     parser.add_argument(
         "--camera",
+        type=file_name,
         metavar="FILE",
         help="camera as a 4x4 matrix in JSON or text: z forward, y down; default: all in view",
     )

@@ -1,5 +1,6 @@
 """Search for files, and the choice of a reader by their kind."""
 
+import difflib
 import os
 from collections.abc import Callable
 from urllib.parse import unquote
@@ -11,10 +12,12 @@ from ravemj.formats.openrave_xml.collada_body import uniform
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, give, given_scale
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
+from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.builder import BodyBuilder
 from ravemj.model.scene import AttachedSensor, KinBody, Scene
 
 _COLLADA, _HEAD = b"<COLLADA", 1000  # the root element, and the bytes that it is looked for in
+_LIKENESS = 0.7  # from here on a missing file is taken for the misspelt name of a model
 
 
 def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: float = 1.0) -> Reading:
@@ -36,7 +39,7 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: 
         place, wanted = collada.split_uri(place)
         found = find(place)
     if found is None:
-        failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
+        failure = missing(os.fspath(path))
     elif not os.path.isfile(found):
         kind = "folder" if os.path.isdir(found) else "device or pipe"
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
@@ -51,6 +54,16 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: 
     else:
         return read_mesh_file(found, given) if is_mesh(found) else read(found, given)
     return Reading(Scene(), Diagnostics(), failure)
+
+
+def missing(path: str) -> SourceError:
+    """Return the error for a file that is in none of OpenRAVE's places."""
+    similar = difflib.get_close_matches(path, SHIPPED_MODELS, 1, _LIKENESS)
+    hint = "check the path, or set OPENRAVE_DATA"
+    if similar:
+        name = similar[0]
+        hint += f"; did you mean {name}, which comes with ravemj? In Python: ravemj.model_path('{name}')"
+    return SourceError("there is no such file", Source(path), hint)
 
 
 def read_data(data: str | bytes, given: Attributes = NOTHING, metre: float = 1.0) -> Reading:

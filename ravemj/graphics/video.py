@@ -67,7 +67,7 @@ def check_target(path: AnyPath) -> None:
         ArgumentError: The suffix is not one of those in the module's text.
         OutputError: The folder around it is missing or cannot be written, or something is in the way.
     """
-    if _known_suffix(path, VIDEO_FORMATS) == _FOLDER:
+    if known_suffix(path, VIDEO_FORMATS) == _FOLDER:
         check_folder(path, _FILES_OF_FOLDER)
     else:
         check_file(path)
@@ -95,7 +95,7 @@ def write_frames(
         ArgumentError: Unknown suffix, unusable fps, a frame of wrong type or size, or no frames at all.
         OutputError: The target cannot be written; most causes are found before the first frame is drawn.
     """
-    suffix = _known_suffix(path, VIDEO_FORMATS)
+    suffix = known_suffix(path, VIDEO_FORMATS)
     encoder, highest_fps = VIDEO_FORMATS[suffix]
     rate = frame_rate(fps, highest_fps)
     with new_folder(path, _FILES_OF_FOLDER) if suffix == _FOLDER else new_file(path) as temporary:
@@ -110,7 +110,7 @@ def check_picture(path: AnyPath) -> None:
         ArgumentError: The suffix is none of ``.png``, ``.jpg``, ``.jpeg`` and ``.webp``.
         OutputError: The folder around it is missing or cannot be written, or something is in the way.
     """
-    _known_suffix(path, _STILL_FORMATS)
+    known_suffix(path, _STILL_FORMATS)
     check_file(path)
 
 
@@ -128,7 +128,7 @@ def write_picture(path: AnyPath, frame: Frame) -> Path:
         ArgumentError: Unknown suffix, or the frame has a wrong type or shape.
         OutputError: The target cannot be written.
     """
-    suffix = _known_suffix(path, _STILL_FORMATS)
+    suffix = known_suffix(path, _STILL_FORMATS)
     (picture,) = _checked([frame])
     with new_file(path) as temporary:
         try:
@@ -347,7 +347,12 @@ def _checked(frames: Iterable[Frame]) -> Iterator[Frame]:
         raise ArgumentError("expected one frame or more, found none")
 
 
-def _known_suffix(path: AnyPath, known: Iterable[str]) -> str:
+def known_suffix(path: AnyPath, known: Iterable[str]) -> str:
+    """Return the suffix of a file to write, in lower case; empty for a folder.
+
+    Raises:
+        ArgumentError: It is none of those that are known.
+    """
     text = os.fspath(path)
     suffix = _FOLDER if text.endswith(("/", os.sep)) else Path(text).suffix.lower()
     if suffix not in known:

@@ -592,6 +592,14 @@ BAD_WORDS = [
     ("dance env.xml", 2, "ravemj: error: .*'dance'"),
     ("infoo env.xml", 2, "ravemj: error: .*'infoo' is none of .* did you mean info"),
     ("info env.xml --jsn", 2, "ravemj info: error: .*--jsn.* did you mean --json.* see ravemj info --help"),
+    ("help", 2, "ravemj: error: .*'help' is none of .* completion; see ravemj --help"),
+    ("--vers", 2, "ravemj: error: unknown: --vers; did you mean --version"),
+    ("alias --instal", 2, "ravemj alias: error: unknown: --instal; did you mean --install"),
+    ("info env.xml --js", 2, "ravemj info: error: unknown: --js; did you mean --json"),
+    ("convert env.xml --act=position", 2, "ravemj convert: error: unknown: --act=position; see"),
+    ("run --py script.py --py", 2, "ravemj run: error: unknown: --py; did you mean --py2"),
+    ("run", 2, "ravemj run: error: the following arguments are required: SCRIPT; see"),
+    ("info pendlum", 1, "pendlum: error: there is no such file; .* did you mean pendulum, which comes with ravemj"),
     ("convert env.xml --base foxed", 2, "ravemj convert: error: .*'foxed' is none of fixed, openrave"),
     ("play", 2, "ravemj play: error: .*MODEL"),
     ("render env.xml", 2, "ravemj render: error: .*-o"),
@@ -622,11 +630,12 @@ BAD_WORDS = [
     (TO_A + "--trajectory junk.npz", 1, "junk.npz: error: "),
     (TO_A + "--trajectory gone.csv", 1, "gone.csv: error: "),
     (TO_A + "--trajectory env.xml", 1, "env.xml: error: "),
-    ("play env.xml -o a.avi", 1, "ravemj: error: .*a.avi.*mp4"),
     ("play env.xml -o gone/a.mp4", 1, "ravemj: error: .*gone"),
     ("play env.xml -o env.xml/a.mp4", 1, "ravemj: error: .*env.xml"),
     ("play env.xml -o .", 1, "ravemj: error: "),
     ("play env.xml -o a.gif --fps 100", 1, "ravemj: error: .*50 frames"),
+    ("play env.xml -o a.avi", 1, "ravemj: error: .*'.avi' is none of .html, .mp4"),
+    ("plan puma560 --to 0,0,0,0,0,0 -o a.avi", 1, "ravemj: error: .*'.avi' is none of .csv, .npz, .png"),
     ("render env.xml -o a.bmp", 1, "ravemj: error: .*a.bmp.*png"),
     ("render env.xml -o a", 1, "ravemj: error: .* no suffix.*png"),
     ("render env.xml -o gone/a.png", 1, "ravemj: error: .*gone"),
@@ -634,7 +643,7 @@ BAD_WORDS = [
     ("convert env.xml -o gone/a.xml", 1, "ravemj: error: .*gone"),
     ("convert env.xml -o a.png", 1, "ravemj: error: cannot write a.png: '.png' is none of .dae, .zae, .json, .xml"),
     ("convert env.xml -o .", 1, "ravemj: error: "),
-    ("ik puma560 --to 1,2", 1, "ravemj: error: --to: found 2 numbers, expected x,y,z,qw,qx,qy,qz"),
+    ("ik puma560 --to 1,2", 1, "ravemj: error: --to: found 2, expected x,y,z,qw,qx,qy,qz"),
     ("ik puma560 --to 0,0,1,0,0,0,0", 1, "ravemj: error: --to: the quaternion"),
     ("ik env.xml --to 0,0,1", 1, "ravemj: error: the model has no manipulator"),
     ("ik puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; the model has arm"),
@@ -650,19 +659,19 @@ BAD_WORDS = [
         1,
         "ravemj: error: --to: found 2, expected 6: one for each joint of 'arm': joint1, joint2",
     ),
-    ("plan puma560 --to 0,0,0,0,0,0 -o a.avi", 1, "ravemj: error: .*a.avi.*mp4"),
     ("plan puma560 --to 0,0,0,0,0,0 -o gone/a.csv", 1, "ravemj: error: .*gone"),
     ("plan puma560 --to 9,0,0,0,0,0", 1, r"ravemj: error: no motion: goal: joint 'joint1' is 9, outside its limits \["),
     ("plan puma560 --to -2.4,-0.7,-2.9,-1.3,1,-3.2", 1, ".*no motion: goal: it collides: link 'base' .*'link4' of"),
     ("plan puma560 --pose 9,9,9", 1, "ravemj: error: no motion: no joint values take 'arm' there"),
     ("plan workshop --manip panda_arm --pose 0.2,0.2,0.35,0,1,0,0", 1, ".*no motion: all .* nearest: .* hits table"),
-    ("plan puma560 --pose 1,2", 1, "ravemj: error: --pose: found 2 numbers"),
+    ("plan puma560 --pose 1,2", 1, "ravemj: error: --pose: found 2, expected"),
     ("plan puma560 --pose 0,0,1,0,0,0,0", 1, "ravemj: error: --pose: the quaternion"),
     ("plan env.xml --pose 0,0,1", 1, "ravemj: error: the model has no manipulator"),
     ("plan puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; the model has arm"),
     ("plan puma560 --to 0,0,0,0,0,0 --from gone.json", 1, "gone.json: error: "),
     ("run gone.py", 1, "gone.py: error: "),
     ("run .", 1, r"\.: error: this is a folder"),
+    ("run a.png", 1, "a.png: error: this is a binary file, not a Python script"),
     ("run env.xml", 1, "env.xml: error: this is a model, not a Python script; open it with ravemj shell env.xml"),
 ]
 
@@ -672,7 +681,7 @@ def test_a_bad_argument_is_one_line_and_touches_nothing(folder, capsys, words, c
     for file, text in BAD_FILES.items():
         (folder / file).write_text(text)
     for file in ("a.mp4", "a.gif", "a.png"):
-        (folder / file).write_text("kept")
+        (folder / file).write_text("kept\0")
     before = listing(folder)
     if code == 2 and len(words) > 5:  # nothing of the kind gets as far as to need a process of its own
         with pytest.raises(SystemExit) as end:
@@ -682,6 +691,15 @@ def test_a_bad_argument_is_one_line_and_touches_nothing(folder, capsys, words, c
         done = ravemj_command(folder, *words.split())
     _check_failure(done, code, pattern)
     assert listing(folder) == before
+
+
+@pytest.mark.parametrize("words", ["info", "check", "diff env.xml", "render -o a.png", "run", "play env.xml --camera"])
+def test_an_empty_name_is_said(folder, monkeypatch, capsys, words):
+    monkeypatch.chdir(folder)
+    with pytest.raises(SystemExit) as end:
+        main([*words.split(), ""])
+    assert end.value.code == 2
+    assert "the name is empty; see ravemj" in capsys.readouterr().err
 
 
 def test_no_words_at_all_get_the_help(folder):

@@ -222,7 +222,8 @@ def _listen(host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        raise RenderingError(f"no page can be served at port {port} of {host or 'this machine'}: {reason}") from None
+        place = f"port {port} of {host or 'this machine'}" if port else host or "this machine"
+        raise RenderingError(f"no page can be served at {place}: {reason}") from None
 
 
 def _bracketed(name: str) -> str:
