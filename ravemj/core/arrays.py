@@ -190,6 +190,21 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
     return matrix
 
 
+def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
+    """Return rigid transforms, each as ``checked_transform`` takes it, shape (n, 4, 4); errors as there."""
+    try:
+        given = np.array(transforms, dtype=np.float64)
+    except (TypeError, ValueError):
+        given = np.empty(0)
+    if given.ndim == 3 and given.shape[1:] == (4, 4) and np.isfinite(given.sum()):
+        rotations = given[:, :3, :3]
+        off = np.abs(rotations @ rotations.transpose(0, 2, 1) - _IDENTITY[:3, :3]).max(initial=0.0)
+        if off < ROUNDING / 4 and (np.linalg.det(rotations) > 0).all():  # so each one is exact by itself
+            given[:, 3] = _IDENTITY[3]
+            return given
+    return np.array([checked_transform(one, name) for one in transforms]).reshape(-1, 4, 4)
+
+
 def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
     """Return whether a rotation matrix, which may be scaled, is orthonormal up to rounding.
 

@@ -22,6 +22,8 @@ ZERO: Vec3 = (0.0, 0.0, 0.0)
 UNSCALED: Vec3 = (1.0, 1.0, 1.0)
 UNIT_WXYZ: Wxyz = (1.0, 0.0, 0.0, 0.0)
 
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # the axis behind each one, and the one before it
+
 
 class Pose(NamedTuple):
     """A rigid transform.
@@ -95,6 +97,11 @@ def dot(a: Vec3, b: Vec3) -> float:
 def cross(a: Vec3, b: Vec3) -> Vec3:
     """Return the cross product of two vectors."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def cross_rows(a: Floats, b: Floats) -> Floats:
+    """Return the cross products of vectors along the last axis; faster than ``np.cross`` for few of them."""
+    return a.take(_NEXT, -1) * b.take(_LAST, -1) - a.take(_LAST, -1) * b.take(_NEXT, -1)
 
 
 def multiply(a: Wxyz, b: Wxyz) -> Wxyz:

@@ -27,10 +27,10 @@ def _structure(body: KinBody) -> tuple[object, ...]:
     return _links(body), [_joint(joint) for joint in body.all_joints]
 
 
-def of_robot(body: KinBody) -> str:
-    """Return the hash of a robot with its manipulators and sensors."""
+def of_robot(body: KinBody, structure: str) -> str:
+    """Return the hash of a robot with its manipulators and sensors; ``structure`` is ``of_body`` of it."""
     tools = [_tool(arm) for arm in body.manipulators]
-    return _digest(of_body(body), tools, [(one.link, one.T_link_sensor, one.type) for one in body.sensors])
+    return _digest(structure, tools, [(one.link, one.T_link_sensor, one.type) for one in body.sensors])
 
 
 def of_arm(body: KinBody, arm: Manipulator) -> str:

@@ -61,8 +61,7 @@ class Joint(JointLimits):
         with self._state.simulation.lock:
             if not self.IsActive():
                 return self._state.kinematics.passive_values(self._index - len(self._state.scene.joints))
-            first = self.GetDOFIndex()
-            return self._state.kinematics.values()[first : first + self.GetDOF()]
+            return self._own(self._state.kinematics.values())
 
     def GetValue(self, axis: int = 0) -> float:
         """Return the joint's value about or along one of its axes [rad or m].
@@ -75,7 +74,15 @@ class Joint(JointLimits):
     def GetVelocities(self) -> Floats:
         """Return the joint's velocities [rad/s or m/s] that those of its links show, shape (axes,)."""
         with self._state.simulation.lock:
-            return self._state.dynamics.joint_velocities(self._state.link_velocities(), [self._scene])[0]
+            velocities, dynamics = self._state.present_velocities, self._state.dynamics
+            if self.IsActive():
+                return self._own(dynamics.dof_velocities(velocities))
+            return dynamics.joint_velocities(velocities, [self._scene])[0]
+
+    def _own(self, values: Floats) -> Floats:
+        """Return the part of an active joint, shape (axes,), of what there is for each DOF, shape (dof,)."""
+        first = self._state.kinematics.first_dofs[self._index]
+        return values[first : first + self.GetDOF()]
 
     def GetVelocity(self, axis: int = 0) -> float:
         """Return the joint's velocity about or along one of its axes [rad/s or m/s].

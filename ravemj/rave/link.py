@@ -205,7 +205,7 @@ class Link(LinkGeometries):
 
     def _set_inertial(self, inertial: Inertial) -> None:
         with self._state.simulation.lock:
-            self._state.set_inertial(self._index, inertial)
+            self._state.edit_link(self._index, inertial=inertial)
 
     def SetForce(self, force: ArrayLike, pos: ArrayLike, add: bool) -> None:
         """Apply a force to the link during the next simulation step. Without physics it has no effect.

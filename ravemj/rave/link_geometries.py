@@ -232,7 +232,8 @@ class LinkGeometries(Member):
             the link's origin.
         """
         with self._state.simulation.lock:
-            return self.ComputeAABBFromTransform(self._state.link_transform(self._index))
+            T_world_link = self._state.link_transform(self._index)
+        return enclosing_box(link_bounds(self._scene, T_world_link), T_world_link)
 
     def ComputeAABBFromTransform(self, transform: ArrayLike) -> AABB:
         """Return the bounding box of ``ComputeAABB`` for another pose of the link.

@@ -4,10 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ravemj.core.transforms import Floats, Pose
+from ravemj.core.transforms import Floats, Pose, pose_of
 from ravemj.errors import ArgumentError, ErrorCode
-from ravemj.geometry_functions import arguments
-from ravemj.geometry_functions.affine import DOFAffine, RaveGetAffineDOF, affine_values, pose_with_values
+from ravemj.geometry_functions.affine import DOFAffine, RaveGetAffineDOF, pose_with_values
 from ravemj.trajectories.groups import AFFINE, JOINTS, Group
 from ravemj.trajectories.layout import packed
 
@@ -28,9 +27,8 @@ def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolatio
 
 def configuration_values(joint_values: Floats, T_world_link0: Floats) -> Floats:
     """Return the joint values and the pose (x, y, z, qw, qx, qy, qz) of a body in one vector."""
-    return np.concatenate(
-        [joint_values, affine_values(arguments.pose(T_world_link0, "transform"), DOFAffine.Transform)]
-    )
+    position, wxyz = pose_of(T_world_link0)
+    return np.concatenate((joint_values, position + wxyz))
 
 
 def split_configuration(values: Floats, dof: int) -> tuple[Floats, Pose]:

@@ -1,5 +1,6 @@
 """Rays: where they meet the surface of a geom first. Meshes are their triangles."""
 
+import math
 from copy import copy
 from typing import NamedTuple
 
@@ -9,7 +10,6 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 
-_MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
 _TARGET, _LEFT_OUT = 0, 5
 _GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 _FAR = 1e10
@@ -34,33 +34,6 @@ class RayHit(NamedTuple):
     normal: Floats
 
 
-def first_hit(
-    model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints, start: Floats, direction: Floats
-) -> RayHit | None:
-    """Return where a ray first meets a surface; one that starts inside a solid meets it where it comes out.
-
-    Args:
-        model: The model.
-        data: Its state.
-        geoms: The geoms that it can meet.
-        start: Where it begins, in the world [m], shape (3,).
-        direction: Its direction and length [m], shape (3,).
-    """
-    best: RayHit | None = None
-    reach, normal = 1.0, np.zeros(3)
-    for geom in _near(model, data, geoms, start, direction):
-        kind = int(model.geom_type[geom])
-        if kind == _MESH:
-            fraction = mujoco.mj_rayMesh(model, data, geom, start, direction, normal)
-        else:
-            pose = data.geom_xpos[geom], data.geom_xmat[geom]
-            fraction = mujoco.mju_rayGeom(*pose, model.geom_size[geom], start, direction, kind, normal)
-        if 0 <= fraction <= reach:
-            reach = fraction
-            best = RayHit(geom, fraction, start + fraction * direction, normal.copy())
-    return best
-
-
 class Hits(NamedTuple):
     """What many rays meet first.
 
@@ -74,7 +47,7 @@ class Hits(NamedTuple):
 
 
 class RayCaster:
-    """Casts many rays in one call of ``mj_multiRay``, at some geoms of a model.
+    """Casts rays at some geoms of a model: one with ``mj_ray``, many in one call of ``mj_multiRay``.
 
     MuJoCo takes the geoms of certain groups that are not wholly transparent. A copy of the model has all of them
     visible and in the group that is meant, so that threads that draw the model meanwhile notice nothing.
@@ -84,6 +57,30 @@ class RayCaster:
         self._model, self._data = copy(model), data
         self._model.geom_rgba[:, 3] = 1.0
         self._targets: Ints | None = None
+
+    def _aim_at(self, geoms: Ints) -> None:
+        """Let rays meet these geoms only."""
+        if self._targets is not geoms and (self._targets is None or not np.array_equal(self._targets, geoms)):
+            self._model.geom_group[:] = _LEFT_OUT
+            self._model.geom_group[geoms] = _TARGET
+        self._targets = geoms
+
+    def first_hit(self, geoms: Ints, start: Floats, direction: Floats) -> RayHit | None:
+        """Return where a ray first meets a surface; one that starts inside a solid meets it where it comes out.
+
+        Args:
+            geoms: The geoms that it can meet.
+            start: Where it begins, in the world [m], shape (3,).
+            direction: Its direction and length [m], shape (3,).
+        """
+        if math.hypot(*direction.tolist()) <= _SHORTEST:
+            return None
+        self._aim_at(geoms)
+        geom, normal = np.empty(1, dtype=np.int32), np.empty(3)
+        fraction = mujoco.mj_ray(self._model, self._data, start, direction, _GROUPS, True, -1, geom, normal)
+        if not 0 <= fraction <= 1:
+            return None
+        return RayHit(int(geom[0]), fraction, start + fraction * direction, normal)
 
     def cast(
         self, geoms: Ints, start: Floats, directions: Floats, reach: float = _FAR, *, normals: Floats | None = None
@@ -97,10 +94,7 @@ class RayCaster:
             reach: Distance beyond which geoms may be left out [m].
             normals: Filled with the outward unit normals of the surfaces, shape (n, 3).
         """
-        if self._targets is None or not np.array_equal(self._targets, geoms):
-            self._targets = geoms
-            self._model.geom_group[:] = _LEFT_OUT
-            self._model.geom_group[geoms] = _TARGET
+        self._aim_at(geoms)
         count = len(directions)
         found, distances = np.empty(count, dtype=np.int32), np.empty(count)
         rays, flat = np.ascontiguousarray(directions).reshape(-1), None if normals is None else normals.reshape(-1)
@@ -123,9 +117,7 @@ class RayCaster:
         """
         found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
         long = np.flatnonzero(np.linalg.norm(rays[:, 3:], axis=1) > _SHORTEST)
-        order = long[np.lexsort(rays[long, :3].T)]
-        ends = np.flatnonzero((rays[order[1:], :3] != rays[order[:-1], :3]).any(axis=1)) + 1
-        for some in np.split(order, ends) if len(order) else ():
+        for some in _of_one_start(rays, long) if len(long) > 1 else [long] * len(long):
             start, directions, normals = rays[some[0], :3], rays[some, 3:], np.zeros((len(some), 3))
             distances, _ = self.cast(geoms, start, directions, normals=normals)
             is_hit = (distances >= 0) & (distances <= 1)
@@ -138,11 +130,8 @@ class RayCaster:
         return found, points
 
 
-def _near(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints, start: Floats, direction: Floats) -> list[int]:
-    """Return the geoms whose spheres a ray meets."""
-    to_centre = data.geom_xpos[geoms] - start
-    square = float(direction @ direction)
-    along = np.clip(to_centre @ direction / square, 0.0, 1.0) if square else np.zeros(len(geoms))
-    beside = to_centre - along[:, None] * direction
-    radii = model.geom_rbound[geoms] * (1 + 1e-9)
-    return geoms[(beside * beside).sum(axis=1) <= radii * radii].tolist()
+def _of_one_start(rays: Floats, chosen: Ints) -> list[Ints]:
+    """Return the indices of the chosen rays in sets that begin at the same point."""
+    order = chosen[np.lexsort(rays[chosen, :3].T)]
+    ends = np.flatnonzero((rays[order[1:], :3] != rays[order[:-1], :3]).any(axis=1)) + 1
+    return np.split(order, ends)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Detection, Pairs
-from ravemj.engine.collision.rays import Hits, RayCaster, RayHit, first_hit
+from ravemj.engine.collision.rays import Hits, RayCaster, RayHit
 from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
@@ -40,6 +40,7 @@ class CollisionWorld:
         self._detection = Detection(model, self.shapes)
         self._number = {body: number for number, body in enumerate(self.bodies)}
         self._pairs: dict[Hashable, Pairs] = {}
+        self._geoms_of_groups: dict[BodyState, Ints] = {}
         self._pair_count = 0
         self._find_owners(model.model)
         self._groups = _groups(self.bodies)
@@ -75,7 +76,11 @@ class CollisionWorld:
 
     def geoms_of_group(self, body: BodyState) -> Ints:
         """Return the geoms of a body and all that are connected to it by grabbing."""
-        return np.concatenate([self.geoms_of_body(one) for one in self.group(body)])
+        geoms = self._geoms_of_groups.get(body)
+        if geoms is None:
+            geoms = np.concatenate([self.geoms_of_body(one) for one in self.group(body)])
+            self._geoms_of_groups[body] = geoms
+        return geoms
 
     def geoms_of_others(self, body: BodyState) -> Ints:
         """Return the geoms of the bodies that are not connected to this one by grabbing."""
@@ -158,8 +163,8 @@ class CollisionWorld:
         return sum(distance <= tolerance for distance in measured)
 
     def ray(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
-        """Return where a ray first meets one of the geoms; None: any that collides. See ``rays.first_hit``."""
-        return first_hit(self._model, self._data, self._among(geoms), start, direction)
+        """Return where a ray first meets one of the geoms; None: any that collides. See ``RayCaster.first_hit``."""
+        return self._ray_caster.first_hit(self._among(geoms), start, direction)
 
     def rays(
         self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
@@ -176,7 +181,11 @@ class CollisionWorld:
         return RayCaster(self._model, self._data)
 
     def _among(self, geoms: Ints | None) -> Ints:
-        return np.flatnonzero(self.collides) if geoms is None else geoms
+        return self._colliding if geoms is None else geoms
+
+    @cached_property
+    def _colliding(self) -> Ints:
+        return np.flatnonzero(self.collides)
 
     @contextmanager
     def moved(self, motions: Mapping[tuple[BodyState, int], Floats]) -> Generator[None]:

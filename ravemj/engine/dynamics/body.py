@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from ravemj.core.transforms import ZERO, Floats, Ints, Vec3
+from ravemj.core.transforms import ZERO, Floats, Ints, Vec3, cross_rows
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap
-from ravemj.engine.dynamics.joint_velocities import JointVelocities, cross
+from ravemj.engine.dynamics.joint_velocities import JointVelocities
 from ravemj.engine.dynamics.motors import Motors
 from ravemj.engine.dynamics.rows import Rows
 from ravemj.engine.dynamics.tree import Tree
@@ -115,7 +115,7 @@ class BodyDynamics:
         chain = np.flatnonzero(self.tree.moves[link])
         columns = np.stack((moving, turning))[:, :, self._inner[chain]].transpose(2, 0, 1)
         spins = columns[:, None, 1]
-        moved, turned = cross(spins, columns[None, :, 0]), cross(spins, columns[None, :, 1])  # w_a x v_b as [a, b]
+        moved, turned = (cross_rows(spins, columns[None, :, part]) for part in (0, 1))  # w_a x v_b as [a, b]
         before = (chain[:, None] <= self.tree.carriers[chain])[..., None]  # the first moves the axis of the second
         count = self.tree.count
         by_coordinates = np.zeros((count, count, 6))
@@ -171,7 +171,7 @@ class BodyDynamics:
         """Return the velocities of the links for those in MuJoCo's data, shape (links, 6)."""
         motions = self._data.cvel[self._kinematics.body_ids]
         spins = motions[:, :3]
-        return np.concatenate((motions[:, 3:] + cross(spins, self._arms()), spins), axis=1)
+        return np.concatenate((motions[:, 3:] + cross_rows(spins, self._arms()), spins), axis=1)
 
     def link_velocities(self, rates: Floats, base: Floats) -> Floats:
         """Return the velocities of the links.
@@ -219,7 +219,7 @@ class BodyDynamics:
         mujoco.mj_rnePostConstraint(self._model, data)
         motions = data.cacc[self._kinematics.body_ids]
         turning = motions[:, :3]
-        linear = motions[:, 3:] + cross(turning, self._arms()) + cross(speeds[:, 3:], speeds[:, :3])
+        linear = motions[:, 3:] + cross_rows(turning, self._arms()) + cross_rows(speeds[:, 3:], speeds[:, :3])
         return np.concatenate((linear, turning), axis=1)
 
     def _set_velocities(self, velocities: Floats, *, with_roots: bool = True) -> None:
@@ -380,4 +380,4 @@ class BodyDynamics:
 
 def _turning_acceleration(velocity: Floats) -> Floats:
     """Return the acceleration of a link that goes on turning as it does, shape (6,): its origin's is ``w x v``."""
-    return np.concatenate((np.cross(velocity[3:], velocity[:3]), np.zeros(3)))
+    return np.concatenate((cross_rows(velocity[3:], velocity[:3]), np.zeros(3)))

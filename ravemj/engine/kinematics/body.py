@@ -1,15 +1,17 @@
 """Joint values and link poses of one body, in a MuJoCo model of this body alone."""
 
 import itertools
+from functools import cached_property
 from types import EllipsisType
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, rows_from_wxyz, wxyz_from_rows
+from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, wxyz_from_rows
 from ravemj.engine.compiled import Compiled, write_inertial
 from ravemj.engine.kinematics.axes import fix_to_parents
+from ravemj.engine.kinematics.shown_values import ShownValues
 from ravemj.engine.kinematics.spherical import SphericalJoint
 from ravemj.model.joints import measured_values
 from ravemj.model.limits import Limits
@@ -144,6 +146,11 @@ class BodyKinematics:
             if link.inertial is not old.inertial:
                 write_inertial(self.model, int(body_id), link.inertial)
                 self._touch()
+
+    @cached_property
+    def shown_values(self) -> ShownValues:
+        """Reads the joint values off poses of the links."""
+        return ShownValues(self.body.joints, self.first_dofs)
 
     def _find_mimic_joints(self, body: KinBody) -> None:
         """Find the mimic joints, and those among them that are a multiple of a DOF."""
@@ -280,8 +287,8 @@ class BodyKinematics:
 
     def rest_transform(self, link: int) -> Floats:
         """Return the pose of a link in its parent where no joint between them has moved, shape (4, 4)."""
-        positions, quaternions = self._rest
-        return _matrix(positions[self.body_ids[link]], quaternions[self.body_ids[link]])
+        (x, y, z), (w, i, j, k) = (parts[self.body_ids[link]].tolist() for parts in self._rest)
+        return Pose((x, y, z), (w, i, j, k)).matrix()
 
     def displace(self, link: int, T_parent_link: Floats) -> None:
         """Change the pose of a link in its parent where no joint between them has moved, until ``set_values``."""
@@ -387,11 +394,3 @@ def _index_range(indices: Ints) -> slice | Ints:
     if plain == list(range(first, first + len(plain))):
         return slice(first, first + len(plain))
     return indices
-
-
-def _matrix(position: Floats, wxyz: Floats) -> Floats:
-    w, x, y, z = wxyz.tolist()
-    transform = np.eye(4)
-    transform[:3, :3] = rows_from_wxyz((w, x, y, z))
-    transform[:3, 3] = position
-    return transform

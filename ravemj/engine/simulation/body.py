@@ -1,24 +1,26 @@
 """A body and its state."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from ravemj.core.transforms import Floats, Pose
+from ravemj.core.transforms import Floats, Pose, cross_rows
 from ravemj.engine.kinematics import BodyKinematics, Configuration
 from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.bounds import BodyBounds
 from ravemj.model.inertia import Inertias
-from ravemj.model.scene import Axis, Geometry, Inertial, KinBody, Link
+from ravemj.model.scene import Axis, Geometry, KinBody
 from ravemj.model.zero import rezeroed
 
 if TYPE_CHECKING:
     from ravemj.engine.batch import Batch
     from ravemj.engine.dynamics import BodyDynamics
     from ravemj.engine.simulation.world import Simulation
+
+_Part, _Made = TypeVar("_Part"), TypeVar("_Made")
 
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
@@ -74,8 +76,7 @@ class BodyState:
         self._grabs: tuple[GrabbedBody, ...] = ()
         self._link_enabled: tuple[bool, ...] = ()
         self.rest_poses: Floats | None = None
-        self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
-        self._bounds: tuple[tuple[Link, ...], BodyBounds] | None = None
+        self._made: dict[object, tuple[object, Any]] = {}
         self.rebuild(scene)
 
     def rebuild(self, scene: KinBody) -> None:
@@ -171,16 +172,19 @@ class BodyState:
     @property
     def inertias(self) -> Inertias:
         """Mass properties of the links, as the scene has them now."""
-        if self._inertias is None or self._inertias[0] is not self.scene.links:
-            self._inertias = (self.scene.links, Inertias.of(self.scene.links))
-        return self._inertias[1]
+        return self.made_once(Inertias.of, self.scene.links)
 
     @property
     def bounds(self) -> BodyBounds:
         """The extents of the links' geometries, as the scene has them now."""
-        if self._bounds is None or self._bounds[0] is not self.scene.links:
-            self._bounds = (self.scene.links, BodyBounds(self.scene.links))
-        return self._bounds[1]
+        return self.made_once(BodyBounds, self.scene.links)
+
+    def made_once(self, make: Callable[[_Part], _Made], part: _Part) -> _Made:
+        """Return what a function makes of a part of the scene; it is called again when the part is another one."""
+        known = self._made.get(make)
+        if known is None or known[0] is not part:
+            self._made[make] = known = part, make(part)
+        return known[1]
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
@@ -269,7 +273,7 @@ class BodyState:
         """Give a held body the velocity of the link that holds it."""
         carrier = self._velocities[grab.link]
         arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
-        grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
+        grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
 
     def set_velocity(self, linear: Floats, angular: Floats) -> None:
         """Let all links move as one.
@@ -279,8 +283,10 @@ class BodyState:
             angular: Angular velocity [rad/s], shape (3,).
         """
         origins = self.link_transforms()[:, :3, 3]
-        moved = linear + np.cross(angular, origins - origins[:1])
-        self.set_link_velocities(np.column_stack((moved, np.tile(angular, (len(origins), 1)))))
+        velocities = np.empty((len(origins), 6))
+        velocities[:, :3] = linear + cross_rows(angular, origins - origins[:1])
+        velocities[:, 3:] = angular
+        self.set_link_velocities(velocities)
 
     def grab(self, grab: GrabbedBody) -> None:
         """Hold a body; one that is held already, anew."""
@@ -359,10 +365,6 @@ class BodyState:
         links = list(self.scene.links)
         links[index] = replace(links[index], **changes)
         self.edit(links=tuple(links))
-
-    def set_inertial(self, link: int, inertial: Inertial) -> None:
-        """Give a link other mass properties, without compiling."""
-        self.edit_link(link, inertial=inertial)
 
     def set_geometries(self, link: int, geometries: "Sequence[Geometry]") -> None:
         """Give a link other shapes; the model of the world is compiled anew when it is next asked for."""

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ravemj.core.transforms import Floats, inverse
-from ravemj.engine.collision.rays import first_hit
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.graphics.rendering import bounding_sphere, drawn_geoms, geom_corners
 from ravemj.gui.interaction.viewpoint import Ray
@@ -36,7 +35,8 @@ def pick(simulation: Simulation, ray: Ray) -> Hit | None:
     model, data = compiled.model, compiled.data
     center, radius = bounding_sphere(model, data)
     reach = 2 * (float(np.linalg.norm(center - ray.start)) + radius)
-    hit = first_hit(model, data, np.flatnonzero(drawn_geoms(model)), ray.start, reach * ray.direction)
+    drawn = np.flatnonzero(drawn_geoms(model))
+    hit = simulation.collisions().ray(ray.start, reach * ray.direction, drawn)
     if hit is None:
         return None
     body_id = model.geom_bodyid[hit.geom]

@@ -13,6 +13,7 @@ from ravemj.core.arrays import (
     checked_numbers,
     checked_point,
     checked_transform,
+    checked_transforms,
     checked_vector,
 )
 from ravemj.core.transforms import Floats, Ints, pose_of
@@ -217,12 +218,12 @@ class Configuration(Limits):
         if len(transforms) != count:
             message = f"SetLinkTransformations: there are {len(transforms)} transforms, and should be {count}"
             raise RavemjError(message)
-        checked = np.array([checked_transform(one, "SetLinkTransformations: transforms") for one in transforms])
+        checked = checked_transforms(transforms, "SetLinkTransformations: transforms")
         last = None
         if doflastsetvalues is not None and np.size(doflastsetvalues):
             last = checked_vector(doflastsetvalues, self.GetDOF(), "SetLinkTransformations: doflastsetvalues")
         with self._simulation.lock:
-            self._state.place_links(checked.reshape(-1, 4, 4), last)
+            self._state.place_links(checked, last)
 
     def link_transforms(self) -> Floats:
         """Return the poses of all links in one array, faster than ``GetLinkTransformations``.
@@ -295,7 +296,7 @@ class Configuration(Limits):
             IndexError: there is no such DOF.
         """
         with self._simulation.lock:
-            velocities = self._state.dynamics.dof_velocities(self._state.link_velocities())
+            velocities = self._state.dynamics.dof_velocities(self._state.present_velocities)
         return velocities if indices is ... else velocities[checked_indices(indices, len(velocities))]
 
     def SetDOFVelocities(

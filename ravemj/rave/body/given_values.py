@@ -65,7 +65,7 @@ def full_velocities(state: BodyState, velocities: ArrayLike, indices: "ArrayLike
         return checked_first(velocities, dof, "SetDOFVelocities") if dof else np.zeros(0)
     chosen = checked_indices(indices, dof)
     given = dict(zip(chosen.tolist(), checked_vector(velocities, len(chosen), "SetDOFVelocities"), strict=True))
-    first = state.dynamics.dof_velocities(state.link_velocities())[: len(chosen)]
+    first = state.dynamics.dof_velocities(state.present_velocities)[: len(chosen)]
     full = np.zeros(dof)
     full[: len(first)] = [given.get(place, rate) for place, rate in enumerate(first)]  # random-api-117, dof-24
     return full

@@ -275,7 +275,7 @@ class Structure(Limits):
 
         Pose, joint values, limits and names do not matter.
         """
-        return hashes.of_body(self._state.scene)
+        return self._state.made_once(hashes.of_body, self._state.scene)
 
     GetStructureHash = GetKinematicsGeometryHash
 
