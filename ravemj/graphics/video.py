@@ -32,7 +32,7 @@ from concurrent.futures import Future
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,8 +151,9 @@ def _imwrite(target: Path | io.BytesIO, frame: Frame, **options: Any) -> None:  
     imageio.v3.imwrite(target, frame, plugin="pillow", **options)
 
 
-_H264 = {"crf": "20", "preset": "veryfast"}
-_CONTAINERS = {  # codec, its options, options of the file
+_H264: dict[str, str] = {"crf": "20", "preset": "veryfast"}
+_Codec = Literal["libx264", "mpeg2video"]
+_CONTAINERS: dict[str, tuple[_Codec, dict[str, str], dict[str, str]]] = {  # codec, its options, options of the file
     "mp4": ("libx264", _H264, {"movflags": "+faststart"}),
     "avi": ("libx264", _H264 | {"bf": "0"}, {}),  # AVI has no times for frames that are stored out of order
     "mpeg": ("mpeg2video", {"b": "8M"}, {}),

@@ -54,7 +54,8 @@ def record(  # noqa: PLR0913 - keyword arguments
 
     Args:
         env: The environment.
-        path: The video file, ``.mp4``, ``.avi``, ``.mpg``, ``.gif`` or ``.webp``; without a suffix, a folder for PNG frames.
+        path: The video file, ``.mp4``, ``.avi``, ``.mpg``, ``.gif`` or ``.webp``; without a suffix, a folder for PNG
+            frames.
         motion: Joint values over time. Values outside the limits are set to the limits, with a warning.
         robot: The body that moves; by default the first robot.
         width: The width of the frames [pixels].

@@ -3,8 +3,7 @@
 import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.dynamics.joint_velocities import cross
+from ravemj.core.transforms import Floats, Ints, cross_rows
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.simulation import BodyState
 
@@ -68,7 +67,7 @@ class PhysicalBody:
         data, body_ids = self.data, self.body_ids
         spins = data.cvel[body_ids, :3]
         arms = data.xpos[body_ids] - data.subtree_com[self.model.body_rootid[body_ids]]
-        velocities = np.concatenate([data.cvel[body_ids, 3:] + cross(spins, arms), spins], axis=1)
+        velocities = np.concatenate([data.cvel[body_ids, 3:] + cross_rows(spins, arms), spins], axis=1)
         self.state.set_link_velocities(velocities)
         self._known = velocities
 

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from ravemj.engine.dynamics import BodyDynamics
     from ravemj.engine.simulation.world import Simulation
 
-_Part, _Made = TypeVar("_Part"), TypeVar("_Made")
+_Part = TypeVar("_Part")
+_Made = TypeVar("_Made")
 
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
