@@ -31,9 +31,10 @@ _PAGE = ".html"
 
 def play(options: argparse.Namespace) -> int:
     """Play a motion: in a window, or into a video."""
-    suffix = None if options.output is None else known_suffix(options.output, [_PAGE, *VIDEO_FORMATS])
-    if suffix is not None:
-        (check_file if suffix == _PAGE else check_target)(options.output)
+    output: str = options.output or ""
+    is_page = bool(output) and known_suffix(output, [_PAGE, *VIDEO_FORMATS]) == _PAGE
+    if output:
+        (check_file if is_page else check_target)(output)
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     body = moving_body(env)
@@ -41,16 +42,14 @@ def play(options: argparse.Namespace) -> int:
     _check_length(motion, options.fps)
     camera = camera or camera_for_motion(env, body, motion, options.size[0] / options.size[1])
     background = env.background if options.background is None else tuple(options.background)
-    if suffix == _PAGE:
-        env.save_html(
-            options.output, motion, robot=body, fps=options.fps, camera=camera.T_world_camera, background=background
-        )
-        print(f"wrote {os.path.abspath(options.output)} ({motion.duration:g} s; any browser plays it)")
+    if is_page:
+        env.save_html(output, motion, robot=body, fps=options.fps, camera=camera.T_world_camera, background=background)
+        print(f"wrote {os.path.abspath(output)} ({motion.duration:g} s; any browser plays it)")
         return 0
     shot = Shot(camera, background, Format(*options.size), options.fps)
-    if options.output is None and _play_in_window(env, body, motion, shot):
+    if not output and _play_in_window(env, body, motion, shot):
         return 0
-    write_video(options.output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
+    write_video(output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
     return 0
 
 

@@ -137,7 +137,7 @@ def _move_all(source: Path, target: Path) -> None:
 
 def output_error(path: AnyPath, error: Exception) -> OutputError:
     """Return the error of one line that says why a target cannot be written."""
-    reason = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
+    reason = (getattr(error, "strerror", None) or "").lower() or " ".join(str(error).split()) or type(error).__name__
     return OutputError(f"cannot write {os.fspath(path)}: {reason}")
 
 

@@ -411,7 +411,7 @@ def test_an_encoder_that_fails_frees_a_waiting_producer(tmp_path, monkeypatch):
 
     use_encoder(monkeypatch, full_disk)
     (tmp_path / "a.mp4").write_bytes(b"old")
-    with pytest.raises(OutputError, match=r"^cannot write .*a\.mp4: No space left on device$"):
+    with pytest.raises(OutputError, match=r"^cannot write .*a\.mp4: no space left on device$"):
         write_frames(tmp_path / "a.mp4", (drawn.append(1) or flat() for _ in range(100)), 30)
     assert len(drawn) == 6
     assert content(tmp_path) == {"a.mp4": b"old"}
