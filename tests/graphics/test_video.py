@@ -207,7 +207,7 @@ def test_the_old_folder_comes_back_if_the_new_one_cannot_take_its_place(tmp_path
         os.rename(source, target)
 
     monkeypatch.setattr(os, "replace", replace)
-    with pytest.raises(OutputError, match=r"frames: Permission denied$"):
+    with pytest.raises(OutputError, match=r"frames: permission denied$"):
         write_frames(folder, shades(2), 30)
     assert content(folder) == before
 
