@@ -53,9 +53,9 @@ def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name:
         ArgumentError: it is something else.
     """
     if not isinstance(thing, kind):
-        given = "None" if thing is None else f"a {type(thing).__name__}"
+        given = "None" if thing is None else f"of type {type(thing).__name__}"
         if isinstance(kind, type):
-            wanted = wanted or f"a {kind.__name__}"
+            wanted = wanted or kind.__name__
         raise ArgumentError(f"{name}: is {given}, and should be {wanted}")
     return thing
 

@@ -29,7 +29,7 @@ def check_file(path: AnyPath) -> None:
         target = _real(path)
         _check_permissions(path, target)
         if target.exists() and not target.is_file():
-            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no file")
+            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is not a file")
 
 
 def check_folder(path: AnyPath, *patterns: str) -> None:
@@ -50,7 +50,7 @@ def check_folder(path: AnyPath, *patterns: str) -> None:
         if not target.exists():
             return
         if not target.is_dir():
-            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no folder")
+            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is not a folder")
         foreign = next(_foreign_entries(target, patterns), None)
         if foreign is not None:
             ours = " and ".join(patterns)
@@ -106,7 +106,7 @@ def added_files(path: AnyPath) -> Generator[Path]:
     with _output_errors(path):
         _check_permissions(path, target)
         if target.exists() and not target.is_dir():
-            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no folder")
+            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is not a folder")
     with _temporary(path) as temporary:
         with _output_errors(path):
             temporary.mkdir()
@@ -137,7 +137,7 @@ def _move_all(source: Path, target: Path) -> None:
 
 def output_error(path: AnyPath, error: Exception) -> OutputError:
     """Return the error of one line that says why a target cannot be written."""
-    reason = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
+    reason = (getattr(error, "strerror", None) or "").lower() or " ".join(str(error).split()) or type(error).__name__
     return OutputError(f"cannot write {os.fspath(path)}: {reason}")
 
 

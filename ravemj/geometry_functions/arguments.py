@@ -85,7 +85,7 @@ def pose(values: ArrayLike, name: str) -> Pose:
         return Pose(vec3(matrix[:, 3], name), wxyz_from_rows(matrix[:, :3].tolist()))
     quaternion = wxyz(given, name)
     if not any(quaternion):
-        raise ArgumentError(f"{name}: its quaternion is zero, which is no rotation")
+        raise ArgumentError(f"{name}: its quaternion is zero, which is not a rotation")
     return Pose(vec3(numbers(given, 7, name)[4:], name), normalize(quaternion))
 
 

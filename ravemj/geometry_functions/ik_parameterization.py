@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -48,9 +49,8 @@ def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: A
     if kind == _Type.Transform6D:
         return pose_of(checked_transform(value, "value")).numbers()
     if kind in _RAYS:
-        if not isinstance(value, Ray):
-            raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
-        return np.concatenate([_checked_direction(value.dir()), value.pos()])
+        ray = checked_kind(value, Ray, "value")
+        return np.concatenate([_checked_direction(ray.dir()), ray.pos()])
     if kind == _Type.TranslationLocalGlobal6D:
         value = np.ravel(checked_numbers(value, "value"))
     match value:

@@ -76,7 +76,7 @@ def MultiplyPose(pose1: ArrayLike, pose2: ArrayLike) -> Floats:
     """
     product = _pose(pose1) @ _pose(pose2)
     if not any(product.wxyz):
-        raise ArgumentError("pose1 * pose2: the quaternion is zero, which is no rotation")
+        raise ArgumentError("pose1 * pose2: the quaternion is zero, which is not a rotation")
     return Pose(product.position, normalize(product.wxyz)).numbers()  # random-api-129
 
 

@@ -95,7 +95,7 @@ class Chain:
         if not (np.isfinite(self.axes).all() and np.isfinite(self.points).all()):
             raise ValueError("an axis or a point of the chain is not finite")
         if count and np.linalg.norm(self.axes, axis=1).min() == 0:
-            raise ValueError("an axis of the chain is 0 0 0, which is no direction")
+            raise ValueError("an axis of the chain is 0 0 0, which is not a direction")
         if not (self.lower <= self.upper).all():
             raise ValueError("a lower limit of the chain is above the upper one, or not a number")
         check_poses(self.T_base_tool)
@@ -291,4 +291,4 @@ def check_poses(poses: Floats) -> None:
     rotations = poses[..., :3, :3]
     error = np.abs(np.swapaxes(rotations, -1, -2) @ rotations - _IDENTITY).max(initial=0.0)
     if error > 1e-6 or (np.linalg.det(rotations) < 0).any() or (poses[..., 3, :] != (0.0, 0.0, 0.0, 1.0)).any():
-        raise ValueError("a pose is no rigid transform: its rotation has scale, shear or a mirror in it")
+        raise ValueError("a pose is not a rigid transform: its rotation has scale, shear or a mirror in it")

@@ -118,7 +118,7 @@ def _gripper(
         is_of_arm = not set(dofs).isdisjoint(arm)
         own = [] if is_of_arm else [next(signs, 0.0) for _ in dofs or (None,)]
         if index is None or is_of_arm:
-            message = f"manipulator '{built.name}': '{name}' is no active joint outside of the arm; left out"
+            message = f"manipulator '{built.name}': '{name}' is not an active joint outside of the arm; left out"
             diagnostics.warn("unknown-joint", message, built.source)
         else:
             found.setdefault(index, own)

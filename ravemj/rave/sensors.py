@@ -278,7 +278,7 @@ class Sensor(DescribedSensor):
         self._check_on(caller)
         device = self.device
         if not isinstance(device, scene.Intrinsics):
-            raise ArgumentError(f"{caller}: '{self.GetName()}' is a {self.GetXMLId()}, and no camera")
+            raise ArgumentError(f"{caller}: '{self.GetName()}' is not a camera but {self.GetXMLId()}")
         return device
 
     def set_noise(self, deviation: float, seed: int | None = None) -> None:

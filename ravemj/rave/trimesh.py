@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError
@@ -53,9 +54,8 @@ def checked_mesh(trimesh: object, name: str) -> Mesh:
     Raises:
         ArgumentError: the object is not a ``TriMesh``, an array has the wrong shape, or an index is out of range.
     """
-    if not isinstance(trimesh, TriMesh):
-        raise ArgumentError(f"{name}: is a {type(trimesh).__name__}, and should be a TriMesh")
-    vertices, indices = trimesh.vertices, trimesh.indices
+    given = checked_kind(trimesh, TriMesh, name)
+    vertices, indices = given.vertices, given.indices
     points = np.empty((0, 3)) if vertices is None else checked_numbers(vertices, f"{name}.vertices")
     corners = np.empty((0, 3)) if indices is None else checked_numbers(indices, f"{name}.indices")
     if points.shape[1:] != (3,) or corners.shape[1:] != (3,) or not np.isfinite(points).all():

@@ -189,7 +189,7 @@ def _read_npz(file: str, dof: int) -> Motion:
         raise
     except Exception as error:  # zipfile, zlib and numpy have a dozen kinds for bytes that make no sense
         hint = "write it with numpy.savez(path, time=..., values=...)"
-        raise SourceError("the file is no intact .npz archive of number arrays", Source(file), hint) from error
+        raise SourceError("the file is not an intact .npz archive of number arrays", Source(file), hint) from error
     if len(arrays) < 2:
         missing = {_TIME, "values"}.difference(arrays).pop()
         raise SourceError(f"there is no array '{missing}'", Source(file), "a motion has 'time' and 'values'")
@@ -244,7 +244,7 @@ def _columns(header: list[str], joint_names: Sequence[str], source: Source) -> d
         if name == _TIME:
             continue
         if name not in dofs:
-            found = f"column {column + 1} is named {reprlib.repr(name)}, which is no joint"
+            found = f"column {column + 1} is named {reprlib.repr(name)}, which is not a joint"
             raise SourceError(found, source, _did_you_mean(name, joint_names))
         columns[column] = dofs[name]
     return columns

@@ -86,7 +86,7 @@ def read(data: bytes | str) -> Stored:
         ArgumentError: they are no trajectory.
     """
     if not isinstance(data, str | bytes):  # pyright: ignore[reportUnnecessaryIsInstance] - users give it
-        raise ArgumentError(f"data: is a {type(data).__name__}, and should be bytes or a text")
+        raise ArgumentError(f"data: is of type {type(data).__name__}, and should be bytes or a text")
     if isinstance(data, str):
         is_latin1 = data.startswith(_MAGIC.decode("latin-1"))
         data = data.encode("latin-1", "replace") if is_latin1 else data.encode(errors="surrogateescape")
@@ -95,7 +95,7 @@ def read(data: bytes | str) -> Stored:
     try:
         return _from_text(data.decode())
     except UnicodeDecodeError:
-        raise ArgumentError("data: is no trajectory; its bytes are neither of the binary form nor text") from None
+        raise ArgumentError("data: is not a trajectory; its bytes are neither of the binary form nor text") from None
 
 
 def _from_text(text: str) -> Stored:
@@ -138,7 +138,7 @@ class _Reader:
     def take(self, size: int) -> bytes:
         taken = self._data[self._at : self._at + size]
         if len(taken) < size:
-            raise ArgumentError(f"data: is no whole trajectory; it breaks off after {len(self._data)} bytes")
+            raise ArgumentError(f"data: is not a whole trajectory; it breaks off after {len(self._data)} bytes")
         self._at += size
         return taken
 
@@ -153,7 +153,7 @@ class _Reader:
 def _rows(numbers: Floats, groups: Sequence[Group]) -> Floats:
     width = count(groups)
     if any(group.offset < 0 or group.dof < 0 for group in groups):
-        raise ArgumentError("data: is no trajectory; groups have negative offsets or sizes")
+        raise ArgumentError("data: is not a trajectory; groups have negative offsets or sizes")
     if numbers.size % width if width else numbers.size:
         raise ArgumentError(f"data: has {numbers.size} numbers, and should have a multiple of {width}")
     return numbers.reshape(-1, width) if width else np.empty((0, 0))

@@ -196,7 +196,7 @@ def test_modules_are_refused_and_none_is_there(env):
         with pytest.raises(ravemj.openrave_exception, match="AddModule: module is None; RaveCreateModule") as caught:
             add(ravemj.RaveCreateModule(env, "urdf"), "")
         assert caught.value.GetCode() == "InvalidArguments"
-        with pytest.raises(ravemj.openrave_exception, match="module: is a str"):
+        with pytest.raises(ravemj.openrave_exception, match="module: is of type str"):
             add("urdf", args="")
     assert env.GetModules() == env.GetLoadedProblems() == []
     assert env.RemoveProblem(object()) is env.Remove(object()) is False

@@ -300,7 +300,7 @@ def test_binary(read, version):
     [
         ("Cube {", 2, "the file ends inside Cube"),
         ("Separator {\n Cube { width }\n}", 3, "where a value belongs"),
-        ("Separator {\n Cube { width abc }\n}", 3, "Cube.width holds something that is no number"),
+        ("Separator {\n Cube { width abc }\n}", 3, "Cube.width holds something that is not a number"),
         ("\n\nTranslation { translation 1 2 }", 4, "Translation.translation needs 3 numbers"),
         ("Cube { }\n}", 3, "found '}' where a node belongs"),
         ("USE Nothing", 2, "USE of 'Nothing'"),

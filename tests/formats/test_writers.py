@@ -331,7 +331,7 @@ class TestSave:
             ((4,), "needs the name"),
             ((3, {"skipwrite": "gravity"}), "known are"),
             ((3, {"nonsense": "x"}), "nothing reads 'nonsense'"),
-            ((3, [("target",)]), "no pair"),
+            ((3, [("target",)]), "not a pair"),
         ],
     )
     def test_wrong_arguments(self, env, tmp_path, arguments, words):
@@ -445,7 +445,7 @@ class TestTrouble:
 
     def test_meshes_that_cannot_be_written_leave_no_document(self, tmp_path):
         (tmp_path / "meshes").write_text("no folder")
-        with pytest.raises(OutputError, match="no folder"):
+        with pytest.raises(OutputError, match="not a folder"):
             ravemj.load(MODELS / "scara.dae").Save(tmp_path / "a.xml", atts={"format": "openrave"})
         assert contents(tmp_path) == {"meshes": b"no folder"}
 
@@ -468,7 +468,7 @@ class TestTrouble:
         handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
         try:
-            with pytest.raises(OutputError, match=f"cannot write {re.escape(str(tmp_path))}.*: File too large"):
+            with pytest.raises(OutputError, match=f"cannot write {re.escape(str(tmp_path))}.*: file too large"):
                 env.Save(path, atts={"format": kind})
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, before)

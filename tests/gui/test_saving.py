@@ -81,7 +81,7 @@ def test_what_cannot_be_saved_is_said_and_leaves_nothing(viewer, tmp_path, monke
 
     monkeypatch.setattr("imageio.v3.imwrite", full)
     viewer._recorder.save_picture(look(viewer))
-    assert re.fullmatch(r"cannot write ravemj-[-\d]+\.png: No space left on device", wait_for(viewer))
+    assert re.fullmatch(r"cannot write ravemj-[-\d]+\.png: no space left on device", wait_for(viewer))
     assert not list(tmp_path.iterdir())
 
 

@@ -198,9 +198,9 @@ def test_csv_round_trip(read, motion, order):
         (
             "\ntime,arm0\n0,1\n",
             2,
-            "column 2 is named 'arm0', which is no joint; did you mean 'Arm0'? the joints are Arm0",
+            "column 2 is named 'arm0', which is not a joint; did you mean 'Arm0'? the joints are Arm0",
         ),
-        ("time,Arm0,\n0,1,\n", 1, "column 3 is named '', which is no joint"),
+        ("time,Arm0,\n0,1,\n", 1, "column 3 is named '', which is not a joint"),
         ("time,Arm0, Arm0\n0,1,2\n", 1, "two columns 'Arm0'"),
         ("time,Arm0,time\n0,1,2\n", 1, "two columns 'time'"),
         ("time,Arm0\n", 1, "no rows"),
@@ -261,11 +261,11 @@ def test_wrong_npz(read):
         stored.writestr("time", b"no numpy array")
         stored.writestr("values.npy", b"\x93NUMPY\x01\x00\xff\xff")
     for content, message in (
-        (b"", "no intact .npz"),
-        (b"time,Arm0\n", "no intact .npz"),
-        (npz(time=time, values=values)[:-30], "no intact .npz"),
-        (npz(time=time, values=np.array([{}, {}], dtype=object)), "no intact .npz"),
-        (buffer.getvalue(), "no intact .npz"),
+        (b"", "not an intact .npz"),
+        (b"time,Arm0\n", "not an intact .npz"),
+        (npz(time=time, values=values)[:-30], "not an intact .npz"),
+        (npz(time=time, values=np.array([{}, {}], dtype=object)), "not an intact .npz"),
+        (buffer.getvalue(), "not an intact .npz"),
         (npz(time=time), "no array 'values'"),
         (npz(values=values), "no array 'time'"),
         (npz(times=time), "no array '"),

@@ -32,7 +32,7 @@ class Archive:
         try:
             self._zip = zipfile.ZipFile(io.BytesIO(read_bytes(path)))
         except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
-            raise SourceError(f"this is no zip archive: {error}", Source(path)) from error
+            raise SourceError(f"this is not a zip archive: {error}", Source(path)) from error
         if len(self._zip.infolist()) > _MOST_MEMBERS:
             raise SourceError(f"the archive has more than {_MOST_MEMBERS} files", Source(path))
         self._bytes_left = MAX_BYTES

@@ -141,5 +141,5 @@ def _number(element: Element) -> str:
     try:
         float(text)
     except ValueError:
-        raise FormulaError(f"'{text}' is no number") from None
+        raise FormulaError(f"'{text}' is not a number") from None
     return text.removeprefix("+")

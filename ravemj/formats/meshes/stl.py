@@ -62,7 +62,7 @@ def _text_corners(file: FileContent) -> Floats:
     try:
         return np.array([[float(word) for word in vertex] for vertex in words]).reshape(-1, 3, 3)
     except ValueError as error:
-        raise SourceError(f"a coordinate that is no number: {error}", file.source) from error
+        raise SourceError(f"a coordinate that is not a number: {error}", file.source) from error
 
 
 def write_stl(mesh: Mesh) -> bytes:

@@ -27,7 +27,7 @@ def check_given(given: Attributes, source: Source, context: Context, known: Coll
     """Report what is left out of the attributes that a caller gave."""
     for name in given:
         if name in KNOWN and name not in known:
-            message = f"the attribute '{name}' that was given for the file is left out: its root is no body"
+            message = f"the attribute '{name}' that was given for the file is left out: its root is not a body"
             context.diagnostics.warn("ignored-attribute", message, source, "write it in the <Robot> or <KinBody>")
         elif name not in known:
             message = f"nothing reads the attribute '{name}' that was given for the file"

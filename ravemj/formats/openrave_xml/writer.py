@@ -95,7 +95,7 @@ class _Writer:
         names = PartNames(body, self.diagnostics)
         if not body.is_robot:
             if body.manipulators or body.sensors:
-                message = f"'{body.name}' is no robot; its manipulators and sensors are left out"
+                message = f"'{body.name}' is not a robot; its manipulators and sensors are left out"
                 self.diagnostics.warn("not-written", message, body.source)
             with self.out.inside("KinBody", name=body.name, makeJoinedLinksAdjacent=joined):
                 self._write_parts(body, names)

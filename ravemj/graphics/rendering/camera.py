@@ -234,7 +234,7 @@ def _numbers(matrix: ArrayLike) -> Floats:
     try:
         return np.array(matrix, dtype=np.float64)
     except (TypeError, ValueError):
-        raise ArgumentError(f"camera: expected {_SHAPES}, found something that is no array of numbers") from None
+        raise ArgumentError(f"camera: expected {_SHAPES}, found something that is not an array of numbers") from None
 
 
 def _matrix_from_pose(pose: Floats) -> Floats:
@@ -260,6 +260,6 @@ def _check_rigid(matrix: Floats) -> None:
     error = float(np.abs(rotation.T @ rotation - np.eye(3)).max())
     if error > RIGIDITY_TOLERANCE:
         limit = f"at most {RIGIDITY_TOLERANCE:g}"
-        raise ArgumentError(f"camera: the 3x3 part is no rotation: R^T R is off by {error:.3g}, expected {limit}")
+        raise ArgumentError(f"camera: the 3x3 part is not a rotation: R^T R is off by {error:.3g}, expected {limit}")
     if np.linalg.det(rotation) < 0:
         raise ArgumentError("camera: the 3x3 part is a reflection: determinant -1, expected a rotation with +1")

@@ -59,7 +59,7 @@ def _read_numbers(text: str, source: Source) -> list[list[float]] | list[float]:
                 numbers.append(float(word))
             except ValueError:
                 place = Source(source.file, line_number)
-                raise SourceError(f"the camera holds {word!r}, which is no number", place, _EXPECTED) from None
+                raise SourceError(f"the camera holds {word!r}, which is not a number", place, _EXPECTED) from None
     if len(numbers) not in (12, 16):
         return numbers
     return [numbers[start : start + 4] for start in range(0, len(numbers), 4)]

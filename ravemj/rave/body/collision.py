@@ -65,7 +65,7 @@ class BodyCollision(Structure, Interface):
         """
         kind = getattr(collisionchecker, "GetInterfaceType", lambda: None)()
         if collisionchecker is not None and kind is not InterfaceType.collisionchecker:
-            found = f"is a {type(collisionchecker).__name__}, and should be a CollisionChecker"
+            found = f"is of type {type(collisionchecker).__name__}, and should be CollisionChecker"
             raise ArgumentError(f"SetSelfCollisionChecker: collisionchecker: {found}")
         self._self_checker = collisionchecker
 
@@ -158,7 +158,7 @@ class BodyCollision(Structure, Interface):
             ArgumentError: ``ActiveDOFs`` is set, and the body is not a robot.
         """
         if adjacentoptions & AdjacentOptions.ActiveDOFs and not self._state.scene.is_robot:  # random-api-90
-            raise ArgumentError(f"GetNonAdjacentLinks: '{self.GetName()}' is no robot, and so has no active DOFs")
+            raise ArgumentError(f"GetNonAdjacentLinks: '{self.GetName()}' is not a robot, and so has no active DOFs")
         with self._simulation.lock:
             pairs = tested_pairs(self._simulation.collisions(), self._state)
         if adjacentoptions & AdjacentOptions.Enabled:

@@ -308,5 +308,5 @@ class Description(Simulating):
         robots = [one for one in bodies if one.get("isRobot")]
         body = self.ReadKinBodyJSON({**envInfo, "bodies": robots}, atts, uri)
         if body is not None and not isinstance(body, Robot):
-            raise ArgumentError("ReadRobotJSON: the body is no robot")
+            raise ArgumentError("ReadRobotJSON: the body is not a robot")
         return body

@@ -173,7 +173,7 @@ def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())
     for pair in cast("list[Sequence[object]]", pairs):
         if len(pair) != 2 or not all(isinstance(text, str) for text in pair):
-            raise ArgumentError(f"Save: atts: {pair!r} is no pair of a name and a text")
+            raise ArgumentError(f"Save: atts: {pair!r} is not a pair of a name and a text")
     for name, value in pairs:
         if name in _NO_EFFECT:
             diagnostics = Diagnostics()

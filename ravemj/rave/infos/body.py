@@ -197,7 +197,7 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
 def _checked(infos: Sequence[T], kind: type[T]) -> Sequence[T]:
     for info in infos:
         if not isinstance(info, kind):  # what users hand in
-            raise ArgumentError(f"a {type(info).__name__} stands where a {kind.__name__} should")
+            raise ArgumentError(f"an info is of type {type(info).__name__}, and should be {kind.__name__}")
     return infos
 
 

@@ -154,6 +154,6 @@ def geometries_of(infos: Sequence[GeometryInfo], *, visible: bool = True) -> tup
     found: list[scene.Geometry] = []
     for info in infos:
         if not isinstance(info, GeometryInfo):  # pyright: ignore[reportUnnecessaryIsInstance] - what users hand in
-            raise ArgumentError(f"a geometry is described by a {type(info).__name__}, and should be by a GeometryInfo")
+            raise ArgumentError(f"a geometry is of type {type(info).__name__}, and should be GeometryInfo")
         found.append(info.geometry(visible=visible))
     return tuple(found)

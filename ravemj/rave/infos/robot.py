@@ -167,7 +167,7 @@ class AttachedSensorInfo(Info):
         if device is not None and geometry is not None:
             device = device_of(geometry, device)
             if device is None:
-                message = f"is a {type(geometry).__name__}, which does not describe a {self._sensorname}"
+                message = f"is of type {type(geometry).__name__}, which does not describe {self._sensorname}"
                 raise ArgumentError(f"AttachedSensorInfo._sensorgeometry: {message}")
         return scene.AttachedSensor(
             name=self._name or "",

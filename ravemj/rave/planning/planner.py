@@ -75,7 +75,7 @@ class Planner(Interface):
         elif isinstance(params, PlannerParameters):  # pyright: ignore[reportUnnecessaryIsInstance] - users' values
             self._values = PlannerParameters(params).resolved()
         else:
-            raise TypeError(f"InitPlan: params is a {type(params).__name__}, and should be PlannerParameters")
+            raise TypeError(f"InitPlan: params is of type {type(params).__name__}, and should be PlannerParameters")
         return self._prepare(self._values) is None
 
     def GetParameters(self) -> PlannerParameters | None:

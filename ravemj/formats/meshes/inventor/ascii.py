@@ -145,7 +145,7 @@ class _Parser:
         if token and token[0] in _NUMBER_STARTS:
             run = _NUMBER_RUN.match(self._text, start)
             if run is None:
-                self._fail(f"{token[:40]!r} is no number")
+                self._fail(f"{token[:40]!r} is not a number")
             self._at = run.end()
             return Numbers(run[0])
         if token == "(":

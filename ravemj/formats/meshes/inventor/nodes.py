@@ -109,7 +109,7 @@ class Node:
         value = self.fields.get(name)
         numbers = np.array(default, np.float64) if value is None else self._numbers(name, value)
         if not (np.abs(numbers) < 2.0**53).all():
-            self.fail(f"{self.kind}.{name} holds a number that is no index")
+            self.fail(f"{self.kind}.{name} holds a number that is not an index")
         return numbers.astype(np.int_)
 
     def words(self, name: str, default: tuple[str, ...]) -> list[str]:
@@ -148,11 +148,11 @@ class Node:
             try:
                 value = self.fields[name] = parse_numbers(value.text)  # a node may be used many times
             except ValueError:
-                self.fail(f"{self.kind}.{name} holds something that is no number")
+                self.fail(f"{self.kind}.{name} holds something that is not a number")
         if isinstance(value, np.ndarray):
             return value
         if value != []:
-            self.fail(f"{self.kind}.{name} holds something that is no number")
+            self.fail(f"{self.kind}.{name} holds something that is not a number")
         return np.zeros(0)
 
 

@@ -92,7 +92,7 @@ def parse(text: str | bytes) -> Message:
         fields = json.loads(text)
         parser = _PARSERS[fields["type"]]
     except (KeyError, TypeError, ValueError):
-        raise ValueError("this is no message of a viewer's page") from None
+        raise ValueError("this is not a message of a viewer's page") from None
     try:
         return parser(fields)
     except (KeyError, TypeError):
@@ -101,7 +101,7 @@ def parse(text: str | bytes) -> Message:
 
 def _number(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError("a field is no number")
+        raise ValueError("a field is not a number")
     if abs(value) > _FARTHEST:
         raise ValueError("a number is too large")
     return float(value)
