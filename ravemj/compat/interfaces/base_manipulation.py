@@ -232,8 +232,6 @@ class BaseManipulation(TrajectoryText):
         if rotation is not None:
             goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
         goals += [*([ikparam] if ikparam is not None else []), *(ikparams or ())]
-        if not goals:
-            raise PlanningError("there is no goal")
         traj = self._base.move_to_hand_position(
             goals,
             search_options(options, HAND_SEARCH),
