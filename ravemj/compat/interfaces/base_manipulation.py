@@ -16,7 +16,6 @@ from ravemj.rave.modules import base_module
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH
 from ravemj.rave.modules.commands import search_options, straight, unsync
 from ravemj.rave.modules.motions import SearchOptions
-from ravemj.rave.planning import PlanningError
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
