@@ -37,12 +37,12 @@ class IkParameterizationData(GoalValues):
         self._values = np.zeros(0)
         self._custom: dict[str, Floats] = {}
         self._id = self._name = ""
+        if isinstance(value, str):
+            value = self.take(value.split())
         if isinstance(value, IkParameterizationData):
             self._type, self._values = value._type, value._values.copy()
             self._custom = {name: numbers.copy() for name, numbers in value._custom.items()}
             self._id, self._name = value._id, value._name
-        elif isinstance(value, str):
-            self._read(value.split())
         elif type is not None:
             self._set(_Type(type), value)
 
@@ -233,16 +233,28 @@ class IkParameterizationData(GoalValues):
         self._type, self._values, self._custom = read._type, read._values, read._custom
         self._id, self._name = str(obj.get("id", self._id)), str(obj.get("name", self._name))
 
-    def _read(self, words: list[str]) -> None:
-        """Take over what ``str`` gave."""
-        number = int(words[0])
-        kind = _Type(number & ~_CUSTOM_DATA)
-        end = 1 + self.GetNumberOfValuesFromType(kind)
-        self.SetValues([float(word) for word in words[1:end]], kind)
-        if number & _CUSTOM_DATA:
-            rest = iter(words[end + 1 :])
-            for name in rest:
-                self._custom[name] = np.array([float(next(rest)) for _ in range(int(next(rest)))])
+    @classmethod
+    def take(cls, words: list[str]) -> Self:
+        """Return the goal that words begin with, as ``str`` wrote it, and take these words off.
+
+        Raises:
+            ArgumentError: they are not the words of a goal.
+        """
+        read, rest = cls(), list(words)
+        try:
+            number = int(rest.pop(0))
+            kind = _Type(number & ~_CUSTOM_DATA)
+            read.SetValues([float(rest.pop(0)) for _ in range(goal_size(kind))], kind)
+            for _ in range(int(rest.pop(0)) if number & _CUSTOM_DATA else 0):
+                name = rest.pop(0)
+                read._custom[name] = np.array([float(rest.pop(0)) for _ in range(int(rest.pop(0)))])
+        except (ValueError, IndexError):
+            found = " ".join(words)
+            raise ArgumentError(
+                f"'{found}' should be a goal: the number of its type, as many numbers as the type has, data of users"
+            ) from None
+        words[:] = rest
+        return read
 
     def __str__(self) -> str:
         words = [str(int(self._type) | (_CUSTOM_DATA if self._custom else 0)), *map(repr, self._values.tolist())]

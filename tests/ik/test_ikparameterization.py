@@ -245,3 +245,11 @@ def test_goals_are_drawn_as_axes_or_lines():
         np.testing.assert_allclose(drawn[1] - drawn[0], [0.5, 0, 0])
     with pytest.raises(ravemj.openrave_exception, match="TranslationXY2D"):
         misc.DrawIkparam(Canvas(), IkParameterization([1, 2], Type.TranslationXY2D))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "pose", "1 2", "nan 0", "1728053249 1 0 0", "1728053249 1 0 0 0 0 0 a", "855638020 1 0 0"]
+)
+def test_text_that_is_no_goal_is_refused_by_name(text):
+    with pytest.raises(ravemj.openrave_exception, match=f"'{text}' should be a goal"):
+        IkParameterization(text)

@@ -437,3 +437,27 @@ def test_a_point_for_the_tool_is_a_goal_of_the_command_too(robot):
     reply = module.SendCommand(f"MoveToHandPosition translation {words} execute 0 outputtraj")
     found = ravemj.RaveCreateTrajectory(robot.GetEnv(), "").deserialize(reply.split(maxsplit=1)[1])
     assert tool_at(robot, waypoints(robot, found)[-1])[:3, 3] == pytest.approx(point, abs=1e-6)
+
+
+@pytest.mark.parametrize("words", ["ikparam {goal}", "ikparams 2 {far} {goal}", "poses 1 {pose}", "pose {pose}"])
+def test_a_command_takes_goals_of_every_kind(robot, words):
+    before, goal = robot.GetActiveDOFValues(), [0.3, 0.4, -2.4, 0.2, -0.6, -0.5]
+    T_world_tool = tool_at(robot, goal)
+    pose = " ".join(map(repr, ravemj.poseFromMatrix(T_world_tool).tolist()))
+    with_data = IkParameterization(T_world_tool, POSE)
+    with_data.SetCustomValues("weight", [1, 2])
+    texts = {"goal": with_data, "pose": pose, "far": IkParameterization([1, 0, 0, 0, 9, 9, 9], POSE)}
+    module = ravemj.RaveCreateModule(robot.GetEnv(), "basemanipulation")
+    robot.GetEnv().Add(module, True, robot.GetName())
+    reply = module.SendCommand(f"MoveToHandPosition {words.format(**texts)} execute 0 outputtraj")
+    traj = ravemj.RaveCreateTrajectory(robot.GetEnv(), "").deserialize(reply.removeprefix("1 "))
+    last = traj.GetWaypoint(-1, robot.GetActiveConfigurationSpecification())
+    assert tool_at(robot, last) == pytest.approx(T_world_tool, abs=1e-6)
+    assert robot.GetActiveDOFValues().tolist() == before.tolist()
+
+
+def test_a_command_names_a_goal_that_is_none(robot):
+    module = ravemj.RaveCreateModule(robot.GetEnv(), "basemanipulation")
+    robot.GetEnv().Add(module, True, robot.GetName())
+    with pytest.raises(ravemj.openrave_exception, match="ikparam: '7 1 0' should be a goal"):
+        module.SendCommand("MoveToHandPosition ikparam 7 1 0")

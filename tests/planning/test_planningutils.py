@@ -52,3 +52,40 @@ def test_converted_in_place():
     planningutils.ConvertTrajectorySpecification(made, spec)
     assert made.GetConfigurationSpecification() == spec
     assert made.GetAllWaypoints2D().tolist() == [[0, 2], [1, 4]]
+
+
+def test_backwards_is_the_mirror_image_in_time_of_a_motion_whose_velocities_hold_for_segments():
+    env = ravemj.load(ravemj.model_path("puma560"))
+    robot = env.GetRobots()[0]
+    robot.SetActiveDOFs([0, 1])
+    there = ravemj.RaveCreateTrajectory(env, "")
+    there.Init(robot.GetActiveConfigurationSpecification())
+    there.Insert(0, [0, 0, 0.5, 1.2, 0.6, 1])
+    planningutils.RetimeActiveDOFTrajectory(there, robot, plannername="lineartrajectoryretimer")
+    back = planningutils.ReverseTrajectory(there)
+    planningutils.VerifyTrajectory(None, back, 0.002)
+    values = robot.GetActiveConfigurationSpecification("linear")
+    for time in np.linspace(0.01, 0.99, 7) * there.GetDuration():
+        for spec, sign in ((values, 1), (values.ConvertToVelocitySpecification(), -1)):
+            mirrored = sign * there.Sample(there.GetDuration() - time, spec)
+            assert back.Sample(time, spec) == pytest.approx(mirrored)
+
+
+def test_poses_of_no_body_get_times():
+    env = ravemj.Environment()
+    made = ravemj.RaveCreateTrajectory(env, "")
+    made.Init(ravemj.RaveGetAffineConfigurationSpecification(ravemj.DOFAffine.Transform))
+    made.Insert(0, [0, 0, 0, 1, 0, 0, 0, 3, 0, 0, 1, 0, 0, 0])
+    limits = np.full(7, 2.0)
+    status = planningutils.RetimeAffineTrajectory(made, limits, limits, plannername="lineartrajectoryretimer")
+    assert status == ravemj.PlannerStatus.HasSolution
+    assert made.GetDuration() == pytest.approx(1.5)  # 3 m at 2 m/s
+    with pytest.raises(ravemj.openrave_exception, match="there is no body 'who'"):
+        planningutils.RetimeAffineTrajectory(trajectory([[0, 0], [1, 0]], "joint_values who 0"), [1], [1])
+
+
+def test_a_planner_that_is_none_is_named():
+    env = ravemj.load(ravemj.model_path("puma560"))
+    made = trajectory([[0, 0], [1, 1]], "joint_values PUMA560 0")
+    with pytest.raises(ravemj.openrave_exception, match="ExtendWaypoint: planner"):
+        planningutils.ExtendWaypoint(2, [1], [0], made, env.GetRobots()[0])

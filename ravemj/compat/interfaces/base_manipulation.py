@@ -16,7 +16,6 @@ from ravemj.rave.modules import base_module
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH
 from ravemj.rave.modules.commands import search_options, straight, unsync
 from ravemj.rave.modules.motions import SearchOptions
-from ravemj.rave.planning import PlanningError
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
@@ -232,8 +231,6 @@ class BaseManipulation(TrajectoryText):
         if rotation is not None:
             goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
         goals += [*([ikparam] if ikparam is not None else []), *(ikparams or ())]
-        if not goals:
-            raise PlanningError("there is no goal")
         traj = self._base.move_to_hand_position(
             goals,
             search_options(options, HAND_SEARCH),

@@ -15,7 +15,7 @@ from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import DELTATIME
 from ravemj.trajectories.interpolation import HELD
 
-_ODD_DERIVATIVES = ("velocities", "jerks")
+_ODD_DERIVATIVES, _DERIVATIVES = ("velocities", "jerks"), ("velocities", "accelerations", "jerks")
 
 
 def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSpecification) -> None:
@@ -34,7 +34,8 @@ def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSp
 def ReverseTrajectory(traj: Trajectory) -> Trajectory:
     """Return the trajectory backwards, in a new one.
 
-    The times between waypoints are kept, and velocities change their sign.
+    The times between waypoints are kept, and velocities change their sign. Derivatives that hold from one waypoint to
+    the ``next`` go over to the other end of their segment.
 
     Example:
         >>> back = planningutils.ReverseTrajectory(traj)
@@ -42,10 +43,11 @@ def ReverseTrajectory(traj: Trajectory) -> Trajectory:
     spec = traj.GetConfigurationSpecification()
     rows = traj.GetAllWaypoints2D()[::-1]
     for group in spec.GetGroups():
-        if group.kind == DELTATIME:
+        of_segments = group.kind.endswith(_DERIVATIVES) and group.interpolation == "next"
+        if group.kind == DELTATIME or of_segments:  # they belong to what ends at their waypoint
             rows[:, group.columns] = np.roll(rows[:, group.columns], 1, axis=0)
             rows[:1, group.columns] = 0
-        elif group.kind.endswith(_ODD_DERIVATIVES):
+        if group.kind.endswith(_ODD_DERIVATIVES):
             rows[:, group.columns] *= -1
     return _made(traj, spec, rows)
 

@@ -8,6 +8,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.errors import RavemjError
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import retimed
+from ravemj.rave.planning.planner import Planner
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
@@ -85,7 +86,7 @@ def ExtendActiveDOFWaypoint(
 
 
 def ExtendWaypoint(
-    index: int, dofvalues: ArrayLike, dofvelocities: ArrayLike, trajectory: Trajectory, planner: object
+    index: int, dofvalues: ArrayLike, dofvelocities: ArrayLike, trajectory: Trajectory, planner: Planner
 ) -> int:
     """Let a trajectory with times start or end elsewhere; see ``ExtendActiveDOFWaypoint``.
 
@@ -99,7 +100,7 @@ def ExtendWaypoint(
     Returns:
         Index behind the last waypoint that was put in.
     """
-    name = getattr(planner, "GetXMLId", lambda: "")()
+    name = checked_kind(planner, Planner, "ExtendWaypoint: planner").GetXMLId()
     new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities)
     anchor = new.anchor(index, 1)
     return new.join(new.retimed(anchor, (1.0, 1.0), name, ""), anchor)

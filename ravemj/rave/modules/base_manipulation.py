@@ -111,6 +111,8 @@ class BaseManipulation(Manipulation):
             PlanningError: no motion was found.
             ArgumentError: a number of solutions is negative.
         """
+        if not goals:
+            raise PlanningError("there is no goal")
         if min(first, samples) < 0:
             raise ArgumentError(f"seedik is {first} and goalsamples {samples}, and both should be 0 or more")
         manip = self._solvable()

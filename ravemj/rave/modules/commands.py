@@ -133,22 +133,22 @@ class BaseCommands(_Commands[BaseManipulation]):
 
     def move_to_hand_position(self, arguments: str) -> str:
         """Moves the tool of the active manipulator to one of several poses without collisions."""
-        readers: dict[str, Reader] = {**_OUTPUT, **_SEARCH, "matrix": Tokens.matrix, "matrices": _matrices}
+        dof = self._manipulation.arm().GetArmDOF()
+        readers: dict[str, Reader] = {**_OUTPUT, **_SEARCH, **_TOOL_GOAL}
+        readers |= {name: _several(_TOOL_GOAL[one]) for name, one in _TOOL_GOALS.items()}
         readers |= {"goalsamples": Tokens.integer, "goalmaxsamples": Tokens.integer, "steplength": Tokens.number}
         readers |= {"seedik": Tokens.integer, "goalsampleprob": Tokens.number}
         readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Tokens.number)
-        readers |= {"translation": lambda tokens: tokens.numbers(3), "rotation": lambda tokens: tokens.numbers(4)}
+        readers |= {"initialconfigs": lambda tokens: tokens.rows(dof)}
         options = read_options(arguments, {**readers, **_CONSTRAINT})
-        poses = [*([options["matrix"]] if "matrix" in options else []), *options.get("matrices", ())]
-        kind = IkParameterization.Type
-        goals = [IkParameterization(pose, kind.Transform6D) for pose in poses]
-        names = {"translation": kind.Translation3D, "rotation": kind.Rotation3D}
-        goals += [IkParameterization(options[name], names[name]) for name in names if name in options]
+        goals = [options[name] for name in _TOOL_GOAL if name in options]
+        goals += [goal for name in _TOOL_GOALS for goal in options.get(name, ())]
         names = {
             "seedik": "first",
             "goalmaxsamples": "samples",
             "goalsamples": "samples",
             "goalsampleprob": "probability",
+            "initialconfigs": "starts",
         }
         given = {names[name]: value for name, value in options.items() if name in names}
         traj = self._manipulation.move_to_hand_position(goals, search_options(options, HAND_SEARCH), **given)
@@ -274,17 +274,14 @@ def _pose(tokens: Tokens) -> Floats:
     return matrixFromPose(tokens.numbers(7))
 
 
-def _poses(tokens: Tokens) -> list[Floats]:
-    return [_pose(tokens) for _ in range(tokens.count())]
+def _several(reader: Reader) -> Reader:
+    """Return a reader of a list: how many there are, then each."""
+    return lambda tokens: [reader(tokens) for _ in range(tokens.count())]
 
 
 def _table(tokens: Tokens) -> Floats:
     rows, width = tokens.count(), tokens.count()
     return tokens.numbers(rows * width).reshape(rows, width)
-
-
-def _matrices(tokens: Tokens) -> list[Floats]:
-    return [tokens.matrix() for _ in range(tokens.count())]
 
 
 def _hand(tokens: Tokens) -> tuple[Floats, list[int]]:
@@ -295,6 +292,20 @@ def _hand(tokens: Tokens) -> tuple[Floats, list[int]]:
 def _numbers(values: Floats) -> str:
     return " ".join(repr(value) for value in values.tolist()) + " "
 
+
+_KIND = IkParameterization.Type
+
+_TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
+    "matrix": lambda tokens: IkParameterization(tokens.matrix(), _KIND.Transform6D),
+    "pose": lambda tokens: IkParameterization(_pose(tokens), _KIND.Transform6D),
+    "translation": lambda tokens: IkParameterization(tokens.numbers(3), _KIND.Translation3D),
+    "rotation": lambda tokens: IkParameterization(tokens.numbers(4), _KIND.Rotation3D),
+    "ikparam": lambda tokens: IkParameterization.take(tokens.words),
+}
+"""Arguments that are one goal of the tool."""
+
+_TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
+"""Arguments that are several goals of the tool, and what each of these is."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),
@@ -325,5 +336,5 @@ _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(("seedgrasps", "seeddests", "seedik", "maxiter"), Tokens.integer),
     **dict.fromkeys(("randomgrasps", "randomdests"), flag),
     **dict.fromkeys(("approachoffset", "grasptranslationstepmult", "graspfinestep", "steplength"), Tokens.number),
-    **{"grasps": _table, "target": text, "posedests": _poses, "matdests": _matrices},
+    **{"grasps": _table, "target": text, "posedests": _several(_pose), "matdests": _several(Tokens.matrix)},
 }

@@ -10,10 +10,14 @@ from ravemj.errors import ArgumentError
 
 
 class Tokens:
-    """The tokens of a text, taken one after the other."""
+    """The tokens of a text, taken one after the other.
+
+    Attributes:
+        words: The tokens that are left.
+    """
 
     def __init__(self, text: str) -> None:
-        self._words = text.split()
+        self.words = text.split()
 
     def next(self, wanted: str = "a word") -> str:
         """Return the next token.
@@ -21,12 +25,12 @@ class Tokens:
         Raises:
             ArgumentError: there is none.
         """
-        if not self._words:
+        if not self.words:
             raise ArgumentError(f"the text ends where {wanted} should follow")
-        return self._words.pop(0)
+        return self.words.pop(0)
 
     def __bool__(self) -> bool:
-        return bool(self._words)
+        return bool(self.words)
 
     def number(self) -> float:
         """Return the next token as a number.

@@ -29,7 +29,11 @@ FREE, ENV_COLLISION, SELF_COLLISION, USER = 0, 1, 2, 0x8000
 """Why a configuration is refused: bits of ``ConstraintFilterOptions``. ``USER`` is the bit of users' own functions."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
-"""Limits of the values of a goal of inverse kinematics. Callers have to set the limits that are not listed here."""
+"""Limits of the values of a goal of inverse kinematics, and of a pose of no body. Callers have to set the limits that
+are not listed here."""
+
+_NO_BODY = "__dummy__"
+"""The body that ``RaveGetAffineConfigurationSpecification`` names where it is given none."""
 
 _RESOLUTION = 0.02
 """OpenRAVE's default for the step in which a value is tested for collisions [rad or m]."""
@@ -64,7 +68,8 @@ class Bodies:
 
     Args:
         env: The environment that contains the bodies.
-        groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals move nothing.
+        groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals move nothing, and neither do
+            poses of ``__dummy__``, which stands for no body.
 
     Raises:
         ArgumentError: a group names a body that is not in the environment, or a DOF that its body does not have.
@@ -74,9 +79,10 @@ class Bodies:
         self._env = env
         self._simulation = env.simulation
         self.lock = env.simulation.lock
-        self._parts = [_part(env, group) for group in groups if group.kind in {JOINTS[0], AFFINE[0]}]
-        self._goals = [group for group in groups if group.kind == IK[0]]
-        self._dof = max((one.columns.stop for one in (*self._parts, *self._goals)), default=0)
+        moving = [group for group in groups if group.kind in {JOINTS[0], AFFINE[0]} and not _is_unbound(group)]
+        self._parts = [_part(env, group) for group in moving]
+        self._unbound = [group for group in groups if _is_unbound(group)]
+        self._dof = max((one.columns.stop for one in (*self._parts, *self._unbound)), default=0)
         self.bodies = list(dict.fromkeys(part.body for part in self._parts))
         self._free: set[KinBody] = set()  # whose joints stay as they are, and have no self-collision
 
@@ -90,7 +96,7 @@ class Bodies:
         result = np.zeros(self._dof)
         for part in self._parts:
             result[part.columns] = _numbers(part, name)
-        for group in self._goals:
+        for group in self._unbound:
             result[group.columns] = _UNLIMITED.get(name, 0.0)
         return result
 
@@ -99,19 +105,21 @@ class Bodies:
         circular = np.zeros(self._dof, dtype=bool)
         translation: list[int] = []
         rotation: list[int] = []
+        poses = [(part.columns, part.affine) for part in self._parts if not part.dofs]
+        poses += [(group.columns, int(affine_parts(group)[0])) for group in self._unbound if group.kind == AFFINE[0]]
         for part in self._parts:
-            columns = range(part.columns.start, part.columns.stop)
             if part.dofs:
                 axes = part.body.simulation_state.scene.dof_axes
                 circular[part.columns] = [axes[dof].circular for dof in part.dofs]
-                continue
-            kind, turning = rotation_columns(Group(f"{AFFINE[0]} _ {part.affine}", 0, len(columns)))
+        for place, affine in poses:
+            columns = range(place.start, place.stop)
+            kind, turning = rotation_columns(Group(f"{AFFINE[0]} _ {affine}", 0, len(columns)))
             rotation += columns[turning] if kind else []
             translation += [column for column in columns if column not in rotation]
             if kind == DOFAffine.RotationAxis:
                 circular[columns[-1]] = True
-        for group in self._goals:
-            if ik_type(group) == IkParameterizationType.Transform6D:
+        for group in self._unbound:
+            if group.kind == IK[0] and ik_type(group) == IkParameterizationType.Transform6D:
                 rotation += range(group.offset, group.offset + 4)
                 translation += range(group.offset + 4, group.offset + 7)
         return Coordinates(circular, tuple(translation), tuple(rotation))
@@ -198,6 +206,11 @@ class Bodies:
         """Return the links of a body that the values move, or None if they move all of it."""
         parts = [part for part in self._parts if part.body is body]
         return MovedBy(tuple(dof for part in parts for dof in part.dofs)) if all(part.dofs for part in parts) else None
+
+
+def _is_unbound(group: Group) -> bool:
+    """Return whether the values of a group move no body."""
+    return group.kind == IK[0] or (group.kind == AFFINE[0] and group.body == _NO_BODY)
 
 
 def _part(env: "Environment", group: Group) -> _Part:
