@@ -518,6 +518,20 @@ class TestFindings:
             ("<Body name='a'><Translation>1 2</Translation></Body>", "number-count", "OpenRAVE reads 1 2 0"),
             ("<Body name='a'><Translation>1 2 3 4</Translation></Body>", "number-count", "OpenRAVE reads 1 2 3"),
             ("<Body name='a'><Translation>nan inf 1e999</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<Body name='a'><Translation>1\u00a02 3 4</Translation></Body>", "bad-number", "OpenRAVE reads 1 0 0"),
+            ("<Body name='a'><Translation>\uff11 2 3</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<Body name='a' enable='no'/>", "bad-flag", "counts as true"),
+            ("<Body name='a'><Geom render='off'/></Body>", "bad-flag", "counts as true"),
+            ("<KinBody skipgeometry='yes'/>", "bad-flag", "counts as false"),
+            ("<KinBody makejoinedlinksadjacent='true'/>", "openrave-bug", "counts as 0"),
+            ("<Body name='a' type='fixed'/>", "unknown-type", "a dynamic one"),
+            ("<KinBody scalegeometry='2 3'/>", "number-count", "one number or three"),
+            ("<KinBody scalegeometry='big'/>", "bad-number", "one number or three"),
+            (JOINT.format("", "<limits>-1 1 x</limits>"), "bad-number", "holds 'x'"),
+            (JOINT.format("enable='no'", ""), "bad-flag", "counts as true"),
+            ("<Body name='a'/><Body name='b'><offsetfrom>a b</offsetfrom></Body>", "extra-words", "reads 'a'"),
+            ("<Body name='a'/><grabbed body='x' link='a'><Turn/></grabbed>", "unknown-tag", "<Turn> in <grabbed>"),
+            ("<Body name='a'/><grabbed body='x' link='a' at='1'/>", "unknown-attribute", "'at' of <grabbed>"),
             ("<diffuseColor>1 0 0</diffuseColor>", "ignored-tag", "write it in each Geom"),
             ("<Body name='a'><offsetfrom>b</offsetfrom></Body>", "unknown-body", "no Body 'b'"),
             ("<adjacent>a b</adjacent>", "unknown-body", "two Bodies"),
@@ -544,6 +558,31 @@ class TestFindings:
         assert finding.code == code
         assert finding.source.line == 3
         assert words in str(finding)
+
+    def test_a_second_mesh_file(self, read_text):
+        files = "<data>one.stl big</data><data>two.stl</data>"
+        reading = read_text(f'<KinBody name="b"><Body name="a"><Geom type="trimesh">{files}</Geom></Body></KinBody>')
+        assert set(codes(reading)) == {"bad-number", "repeated-tag", "missing-file"}
+
+    @pytest.mark.parametrize(
+        ("content", "code"),
+        [
+            ('<Module type="basemanipulation"/>', "ignored-tag"),
+            ('<Controller type="nobody"/>', "unknown-interface"),
+            ('<Environment><PhysicsEngine type="ode" gravity="0 0 -9"/></Environment>', "unknown-attribute"),
+        ],
+    )
+    def test_without_bodies(self, read_text, content, code):
+        reading = read_text(content)
+        assert (reading.failure, codes(reading)) == (None, [code])
+
+    @pytest.mark.parametrize("inner", ["<Environment>{}</Environment>", '<Environment file="inner.xml"/>'])
+    def test_an_environment_without_a_camera_leaves_that_of_the_one_inside(self, write, inner):
+        tags = "<camtrans>1 2 3</camtrans><bkgndcolor>0 0 1</bkgndcolor>"
+        write(f"<Environment>{tags}</Environment>", "inner.xml")
+        view = read(write(f"<Environment>{inner.format(tags)}</Environment>")).scene.view
+        assert view.T_world_camera.position == (1, 2, 3)
+        assert view.background == (1, 1, 1)
 
     def test_several_values_of_one_kind_are_no_repetition(self, read_text):
         children = "<axis1>0 0 1</axis1><axis2>1 0 0</axis2><hardmaxvel>1 1</hardmaxvel><maxjerk>1 1</maxjerk>"

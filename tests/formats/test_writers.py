@@ -507,7 +507,7 @@ class TestTrouble:
             env.Save(tmp_path / NAMES[kind], atts={"format": kind})
         assert contents(tmp_path) == {}
 
-    @pytest.mark.parametrize("name", ["a b", " a", "a\tb", "a\xa0b"])
+    @pytest.mark.parametrize("name", ["a b", " a", "a\tb"])
     def test_names_that_are_no_words(self, tmp_path, name):
         """Lists of links and joints are words, so that OpenRAVE XML has other names for those in them."""
         body = read_file(MODELS / "panda.xml").scene.bodies[0]

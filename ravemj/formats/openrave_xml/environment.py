@@ -129,7 +129,9 @@ class _Document:
         elif root.tag in readers:
             if root.complete:
                 readers[root.tag](root)
-        elif root.tag not in INTERFACES:
+        elif root.tag in INTERFACES:
+            _EnvironmentScope(self).read_interface(root)
+        else:
             if root.tag == "mujoco":
                 raise _other_format("MJCF, MuJoCo's own format", root.source)
             raise SourceError(
@@ -145,7 +147,9 @@ class _Document:
             self.read(root)
         environment = _EnvironmentScope(self)
         self.context.walk(element, ENVIRONMENT_TAGS, ENVIRONMENT_IGNORED, environment)
-        self.view = environment.view
+        # An <Environment> that ends sets the background, but the camera only where it has tags of it.
+        camera = environment.view.T_world_camera or (self.view and self.view.T_world_camera)
+        self.view = replace(environment.view, T_world_camera=camera)
         for child in element.children:
             if not child.complete and child.tag == "environment":
                 self.read_environment(child)
@@ -239,6 +243,7 @@ class _EnvironmentScope:
 
     def read_physics(self, element: Element) -> None:
         """Read the gravity of a physics engine; ODE without one has none."""
+        self.document.context.check_attributes(element, PHYSICS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "").lower()
         if kind not in {"ode", "bullet", "genericphysicsengine", ""}:
             message = f"there is no physics engine '{kind}' here"
@@ -289,6 +294,7 @@ ENVIRONMENT_TAGS: dict[str, Tag[_EnvironmentScope]] = {
     **dict.fromkeys(INTERFACES, _INTERFACE),
 }
 ENVIRONMENT_ATTRIBUTES = {"file": "read first, as if its content stood here"}
+PHYSICS_ATTRIBUTES = {"type": "ode, bullet"}
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
     "unit": "OpenRAVE keeps it as a label and scales nothing; lengths are in metres here",

@@ -9,17 +9,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import UNSCALED, ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, wxyz_from_axis_angle
+from ravemj.errors import Diagnostics
 from ravemj.formats.meshes import MeshPart
-from ravemj.formats.openrave_xml.context import Context
-from ravemj.formats.openrave_xml.tags import Tag, placement_tags
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
+from ravemj.formats.openrave_xml.tags import Tag
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
-    Placement,
     hadamard,
     is_false,
     leading_numbers,
     number,
     vector,
+    words,
 )
 from ravemj.model.scene import (
     SHAPE_TYPES,
@@ -54,12 +55,10 @@ class GeometryScope(NamedTuple):
 
 
 @dataclass(slots=True)
-class _Geom:
+class _Geom(Placed):
     """An open ``<Geom>``: what its children have set so far."""
 
-    context: Context
     name: str = ""
-    placement: Placement = field(default_factory=Placement)
     vectors: dict[str, Vec3] = field(default_factory=lambda: {})
     numbers: dict[str, float] = field(default_factory=lambda: {})
     cross_section: tuple[tuple[float, float], ...] = ()
@@ -69,12 +68,6 @@ class _Geom:
     diffuse: Rgb | None = None
     ambient: Rgb | None = None
     transparency: float | None = None
-
-    def translate(self, element: Element) -> None:
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        self.placement.rotate(element, self.context.diagnostics)
 
     def read_half_extents(self, element: Element) -> None:
         self.vectors["half_extents"] = vector(element, self.context.diagnostics, self.vectors.get("half_extents", ZERO))
@@ -107,10 +100,18 @@ class _Geom:
             self.vertices = ()
 
     def read_collision(self, element: Element) -> None:
-        self.collision = self.collision or _mesh_file(element)
+        self.collision = self._first(self.collision, element)
 
     def read_render(self, element: Element) -> None:
-        self.render = self.render or _mesh_file(element)
+        self.render = self._first(self.render, element)
+
+    def _first(self, before: MeshFile | None, element: Element) -> MeshFile:
+        """Return the file that was named before, if any, and else that of an element."""
+        if before is None or not before.name:
+            return _mesh_file(element, self.context.diagnostics)
+        message = f"<{element.spelled}> is left out: the first file, '{before.name}', counts"
+        self.context.diagnostics.warn("repeated-tag", message, element.source, "write one")
+        return before
 
     def read_diffuse(self, element: Element) -> None:
         self.diffuse = vector(element, self.context.diagnostics, self.diffuse or UNSCALED)
@@ -126,7 +127,7 @@ class _Geom:
 
 
 GEOM_TAGS: dict[str, Tag[_Geom]] = {
-    **placement_tags(_Geom.translate, _Geom.rotate),
+    **PLACEMENT_TAGS,
     "extents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "halfextents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "fullextents": Tag(_Geom.read_full_extents, "of a box: sizes x y z [m]"),
@@ -283,14 +284,18 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
     return Mesh(mesh.vertices @ in_geometry.T, mesh.triangles)
 
 
-def _mesh_file(element: Element) -> MeshFile:
+def _mesh_file(element: Element, diagnostics: Diagnostics) -> MeshFile:
     """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
-    words = element.text.split(maxsplit=1)
-    name, numbers = (words[0] if words else ""), (words[1] if len(words) > 1 else "")
+    name = next(iter(words(element.text)), "")
+    numbers = element.text.lstrip().removeprefix(name)
     if element.tag != "data":
         name = element.attributes.get("file", name)
         numbers = element.attributes.get("scale", numbers)
-    values, _ = leading_numbers(numbers)
+    values, rest = leading_numbers(numbers)
+    if rest or len(values) > 3:
+        message = f"<{element.spelled}> holds '{numbers.strip()}' where a scale of one to three numbers should stand"
+        hint = "names of files cannot hold spaces"
+        diagnostics.warn("bad-number" if rest else "number-count", message, element.source, hint)
     if len(values) < 2:
         uniform = values[0] if values else 1.0
         return MeshFile(name, (uniform, uniform, uniform))

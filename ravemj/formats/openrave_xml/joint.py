@@ -13,6 +13,7 @@ from ravemj.formats.openrave_xml.values import (
     hadamard,
     is_false,
     leading_numbers,
+    number_list,
     numbers,
     scale_attribute,
     vector,
@@ -50,7 +51,7 @@ class _JointReader:
 
     def read_body(self, element: Element) -> None:
         """Take the first name for the first link and every later one for the second."""
-        name = word(element)
+        name = word(element, self.context.diagnostics)
         link = self.body.find_link_any_case(name)
         if link is None:
             known = ", ".join(link.name for link in self.body.links) or "none"
@@ -87,7 +88,7 @@ class _JointReader:
         """Read a pair of numbers for each axis; ``limitsdeg`` is in degrees but for sliders."""
         if self.stops:
             raise SourceError(f"<{element.spelled}> cannot be mixed with <lostop> and <histop>", element.source)
-        values = leading_numbers(element.text).values
+        values = number_list(element, self.context.diagnostics)
         wanted = 2 * len(self.axes)
         if len(values) != wanted:
             message = f"<{element.spelled}> holds {len(values)} numbers where {wanted} should stand; it has no effect"
@@ -232,7 +233,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     circular = not is_false(element.attributes.get("circular", "false"))
     spans = [UNLIMITED if circular and index == 0 else _DEFAULT_LIMIT[kind] for index in range(len(AXES[kind]))]
     limits: list[dict[str, float]] = [{"lower": -span, "upper": span} for span in spans]
-    reader = _JointReader(context, body, kind, scale_attribute(element), circular, limits)
+    reader = _JointReader(context, body, kind, scale_attribute(element, context.diagnostics), circular, limits)
     context.walk(element, JOINT_TAGS, JOINT_IGNORED, reader)
     for limit in reader.negative.values():
         raise SourceError(f"<{limit.spelled}> is {limit.text.strip()}, and cannot be negative", limit.source)
@@ -284,7 +285,7 @@ def _direction(reader: _JointReader, index: int, frame: Pose, *, exchanged: bool
 
 def frame_of_link(body: BodyBuilder, element: Element, context: Context) -> Pose:
     """Return the pose of the link that an ``<offsetfrom>`` names; an unknown one counts as absent."""
-    name = word(element)
+    name = word(element, context.diagnostics)
     link = body.find_link(name)
     if link is None:
         message = f"there is no Body '{name}' to take an offset from; read as if the tag were not there"

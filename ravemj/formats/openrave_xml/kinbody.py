@@ -11,7 +11,7 @@ from ravemj.core.transforms import Vec3
 from ravemj.errors import SourceError
 from ravemj.formats.collada import is_collada
 from ravemj.formats.openrave_xml.collada_body import add_collada
-from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.geom import GeometryScope
 from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
@@ -19,16 +19,18 @@ from ravemj.formats.openrave_xml.mass import DefaultMassReader
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
 from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_sensor, read_manipulator
-from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
-    ROTATIONS,
+    Numbers,
     Placement,
     hadamard,
     is_true,
     leading_numbers,
     number,
+    number_list,
     scale_attribute,
+    words,
 )
 from ravemj.model.builder import BodyBuilder, GrabBuilder
 from ravemj.model.scene import KinBody
@@ -36,7 +38,7 @@ from ravemj.model.scene import KinBody
 Part = TypeVar("Part")
 
 
-class _Scope:
+class _Scope(Placed):
     """An open ``<Robot>`` or ``<KinBody>``.
 
     Attributes:
@@ -44,12 +46,11 @@ class _Scope:
     """
 
     def __init__(self, body: BodyBuilder, context: Context, scale: Vec3, depth: int, *, skip_geometry: bool) -> None:
+        super().__init__(context, Placement(scale=scale))
         self.body = body
-        self.context = context
         self.scale = scale
         self.depth = depth
         self.skip_geometry = skip_geometry
-        self.placement = Placement(scale=scale)
         self.default_mass = DefaultMassReader(context)
         self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
@@ -119,25 +120,20 @@ class _Scope:
     def _join_links(self, element: Element) -> None:
         """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides."""
         text = element.attributes.get("makejoinedlinksadjacent")
-        found = [1.0] if text is None else leading_numbers(text).values
-        self.body.joined_links_adjacent = bool(found and int(found[0]))
+        values, rest = Numbers([1.0], "") if text is None else leading_numbers(text)
+        self.body.joined_links_adjacent = bool(values and int(values[0]))
+        if rest or not values:
+            message = f'makejoinedlinksadjacent="{text}" counts as 0: OpenRAVE reads a whole number'
+            self.context.diagnostics.warn("openrave-bug", message, element.source, "write 1 or 0")
 
     def nest(self, element: Element) -> None:
         """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""
         check_scope_attributes(element, self.context)
-        scale = hadamard(self.scale, scale_attribute(element))
+        scale = hadamard(self.scale, scale_attribute(element, self.context.diagnostics))
         inner = _Scope(self.body, self.context, scale, self.depth + 1, skip_geometry=self.skip_geometry)
         inner.read(element)
         if self.depth == 0 and element.tag == "kinbody" and self.body.is_robot and self.joint_values is None:
             self.joint_values = inner.joint_values
-
-    def translate(self, element: Element) -> None:
-        """Read a ``<Translation>`` of the whole element."""
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        """Read a rotation of the whole element."""
-        self.placement.rotate(element, self.context.diagnostics)
 
     def read_default_mass(self, element: Element) -> None:
         """Read the ``<Mass>`` that the following Bodies share."""
@@ -154,12 +150,9 @@ class _Scope:
 
     def read_grabbed(self, element: Element) -> None:
         """Read that a link holds another body."""
-        placement = Placement()
-        for child in element.children:
-            if child.tag == "translation":
-                placement.translate(child, self.context.diagnostics)
-            elif child.tag in ROTATIONS:
-                placement.rotate(child, self.context.diagnostics)
+        self.context.check_attributes(element, GRABBED_ATTRIBUTES, {})
+        grabbed = Placed(self.context)
+        self.context.walk(element, PLACEMENT_TAGS, {}, grabbed)
         link, body, ignored = (element.attributes.get(name, "") for name in ("link", "body", "ignored"))
         links = [self.body.find_link(name) for name in (link, *ignored.split())]
         known = [self.body.links[index] for index in links if index is not None]
@@ -167,11 +160,11 @@ class _Scope:
             message = f"<{element.spelled}> names a link of '{link} {ignored}' that is not above it; it is left out"
             self.context.diagnostics.warn("unknown-body", message, element.source)
         else:
-            self.body.grabs.append(GrabBuilder(body, known[0], placement.pose, tuple(known[1:])))
+            self.body.grabs.append(GrabBuilder(body, known[0], grabbed.placement.pose, tuple(known[1:])))
 
     def read_adjacent(self, element: Element) -> None:
         """Read a pair of links that never collide."""
-        names = element.text.split()[:2]
+        names = words(element.text)[:2]
         links = [link for name in names if (link := self.body.find_link(name)) is not None]
         if len(links) == 2:
             self.body.adjacent.append((min(links), max(links)))
@@ -189,7 +182,7 @@ class _Scope:
 
     def read_joint_values(self, element: Element) -> None:
         """Read the values of all DOFs."""
-        self.joint_values = leading_numbers(element.text).values
+        self.joint_values = number_list(element, self.context.diagnostics)
 
     def read_manipulator(self, element: Element) -> None:
         """Read a ``<Manipulator>``."""
@@ -217,7 +210,7 @@ def _reordered(parts: list[Part], are_older: list[bool]) -> list[Part]:
 
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
-    **placement_tags(_Scope.translate, _Scope.rotate),
+    **PLACEMENT_TAGS,
     "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]"),
     "grabbed": Tag(_Scope.read_grabbed, "ravemj's own: a body that a link holds, its pose there, and ignored links"),
 }
@@ -233,6 +226,7 @@ ROBOT_TAGS: dict[str, Tag[_Scope]] = {
         left_out=True,
     ),
 }
+GRABBED_ATTRIBUTES = {"body": "the held body", "link": "the link that holds it", "ignored": "links that may touch it"}
 ROBOT_IGNORED = {
     **reasons(NO_EFFECT_HERE, "sendcommand"),
     "conveyorjoint": "a plugin of OpenRAVE's makes links of it that ride along a trajectory; MuJoCo has no such joint",
@@ -278,7 +272,7 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
     check_scope_attributes(element, context)
     body = BodyBuilder(element.tag == "robot", element.source)
     skip_geometry = is_true(element.attributes.get("skipgeometry", "false"))
-    scope = _Scope(body, context, scale_attribute(element), 0, skip_geometry=skip_geometry)
+    scope = _Scope(body, context, scale_attribute(element, context.diagnostics), 0, skip_geometry=skip_geometry)
     scope.read(element)
     body.joint_values = scope.joint_values
     _check_type(element, body, context)

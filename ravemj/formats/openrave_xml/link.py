@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 from ravemj.core.transforms import Pose
-from ravemj.formats.openrave_xml.context import Context
+from ravemj.errors import Diagnostics
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.geom import GeometryScope, read_geometries
 from ravemj.formats.openrave_xml.joint import frame_of_link
 from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
-from ravemj.formats.openrave_xml.tags import IGNORED, Tag, placement_tags
+from ravemj.formats.openrave_xml.tags import IGNORED, Tag
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import Placement, hadamard, is_false, scale_attribute
 from ravemj.formats.parameters import PARAMETER_MEANING
@@ -15,18 +16,17 @@ from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import OWN_SHAPES
 
 
-class _LinkScope:
+class _LinkScope(Placed):
     """An open ``<Body>``."""
 
     def __init__(
         self, body: BodyBuilder, link: LinkBuilder, mass: MassReader, context: Context, geometry_scope: GeometryScope
     ) -> None:
+        super().__init__(context, Placement(link.pose, geometry_scope.scale))
         self.body = body
         self.link = link
         self.mass = mass
-        self.context = context
         self.geometry_scope = geometry_scope
-        self.placement = Placement(link.pose, geometry_scope.scale)
         self.T_scope_offset: Pose | None = None
         self.skip_geometry = False
 
@@ -58,7 +58,7 @@ class _LinkScope:
     def read_nested(self, element: Element) -> None:
         """Read a ``<Body>`` in this one: the same link, all of whose shapes so far its transform moves."""
         older = len(self.link.geometries)
-        geometry_scope = _scaled(self.geometry_scope, element)
+        geometry_scope = _scaled(self.geometry_scope, element, self.context.diagnostics)
         mass = MassReader(self.context, None, geometry_scope.scale)
         inner = _LinkScope(self.body, self.link, mass, self.context, geometry_scope)
         inner.placement = Placement(Pose(), geometry_scope.scale)
@@ -74,14 +74,6 @@ class _LinkScope:
         if mass.rule is not None:
             message = "OpenRAVE discards the Mass of a Body in a Body"
             self.context.diagnostics.warn("openrave-bug", message, element.source, "put it into the outer Body")
-
-    def translate(self, element: Element) -> None:
-        """Read a ``<Translation>``."""
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        """Read a rotation."""
-        self.placement.rotate(element, self.context.diagnostics)
 
     def read_offset(self, element: Element) -> None:
         """Read the name of the link that the pose is relative to."""
@@ -108,7 +100,7 @@ class _LinkScope:
 
 
 LINK_TAGS: dict[str, Tag[_LinkScope]] = {
-    **placement_tags(_LinkScope.translate, _LinkScope.rotate),
+    **PLACEMENT_TAGS,
     "offsetfrom": Tag(_LinkScope.read_offset, "name of the Body that the pose is relative to", once=True),
     "geom": Tag(_LinkScope.read_geometry, "see below"),
     "geometry": Tag(_LinkScope.read_geometry, "the same as Geom"),
@@ -143,7 +135,7 @@ def read_link(
     name = element.attributes.get("name")
     existing = None if name is None else body.find_link(name)
     link = LinkBuilder(name or "", element.source) if existing is None else body.links[existing]
-    geometry_scope = _scaled(geometry_scope, element)
+    geometry_scope = _scaled(geometry_scope, element, context.diagnostics)
     mass = MassReader(context, default_mass, geometry_scope.scale)
     scope = _LinkScope(body, link, mass, context, geometry_scope)
     scope.skip_geometry = skip_geometry
@@ -157,12 +149,18 @@ def read_link(
         code = "undefined-mass" if link.inertial.undefined else "openrave-bug"
         context.diagnostics.warn(code, message, element.source, "write the mass as type custom")
     if "type" in element.attributes:
-        link.static = element.attributes["type"].lower() == "static"
+        kind = element.attributes["type"].lower()
+        link.static = kind == "static"
+        if kind not in {"static", "dynamic"}:
+            message = f"there is no Body of type '{kind}'; OpenRAVE takes a dynamic one"
+            context.diagnostics.warn(
+                "unknown-type", message, element.source, "write static for a Body that never moves"
+            )
     if existing is None:
         body.links.append(link)
 
 
-def _scaled(scope: GeometryScope, element: Element) -> GeometryScope:
+def _scaled(scope: GeometryScope, element: Element, diagnostics: Diagnostics) -> GeometryScope:
     if "scalegeometry" not in element.attributes:
         return scope
-    return scope._replace(scale=hadamard(scope.scale, scale_attribute(element)))
+    return scope._replace(scale=hadamard(scope.scale, scale_attribute(element, diagnostics)))

@@ -3,6 +3,7 @@
 from collections.abc import Collection
 
 from ravemj.errors import Diagnostics
+from ravemj.formats.openrave_xml.values import words
 from ravemj.model.scene import KinBody
 
 
@@ -27,9 +28,9 @@ class PartNames:
         self.links: list[str] = []
         for index, name in enumerate(links):
             in_any_case = any(name.lower() == other.lower() for other in self.links)
-            is_word = name.split() == [name] or not name
+            is_word = words(name) == [name] or not name
             is_taken = (name and name in self.links) or (index in referred and (in_any_case or not is_word))
-            given = _unused("_".join(name.split()) or "link", known) if is_taken else name
+            given = _unused("_".join(words(name)) or "link", known) if is_taken else name
             self.links.append(given)
             known.add(given.lower())
             if is_taken:
@@ -40,9 +41,9 @@ class PartNames:
         listed = {joint for one in body.manipulators for joint in one.gripper_joints}  # in a list of words
         self.joints: list[str] = []
         for index, name in enumerate(joints):
-            is_taken = (name in active and name in self.joints) or (index in listed and name.split() != [name])
+            is_taken = (name in active and name in self.joints) or (index in listed and words(name) != [name])
             known = {other.lower() for other in (*joints, *self.joints)}
-            given = _unused("_".join(name.split()) or "joint", known) if is_taken else name
+            given = _unused("_".join(words(name)) or "joint", known) if is_taken else name
             self.joints.append(given)
             if is_taken:
                 message = f"the joint '{name}' of '{body.name}' is called '{given}' in the file"
