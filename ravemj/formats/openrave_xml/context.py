@@ -65,7 +65,7 @@ class Context:
             if tag is not None:
                 if child.complete:
                     if tag.once:
-                        self._check_first(child, before.setdefault(tag.read, child))
+                        self._check_first(child, before.setdefault(tag.read if tag.once is True else tag.once, child))
                     try:
                         tag.read(target, child)
                     except ArithmeticError as error:
@@ -196,7 +196,7 @@ class Context:
             self._found[question] = above
             return above
         hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
-        message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
+        message = f"there is no file '{name}'; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
 

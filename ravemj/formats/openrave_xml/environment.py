@@ -285,11 +285,15 @@ ENVIRONMENT_TAGS: dict[str, Tag[_EnvironmentScope]] = {
     "robot": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
     "kinbody": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
     "sensor": Tag(_EnvironmentScope.read_sensor, "see below; also as the root; no robot carries it"),
-    "bkgndcolor": Tag(_EnvironmentScope.read_background, "red green blue, from 0 to 1"),
-    "camtrans": Tag(_EnvironmentScope.read_camera_position, "position of the camera [m]"),
-    "camrotationaxis": Tag(_EnvironmentScope.read_camera_rotation, "axis x y z, angle [deg]; z looks forward, y down"),
-    "camrotmat": Tag(_EnvironmentScope.read_camera_matrix, "nine numbers, row by row"),
-    "camrotaxis": Tag(_EnvironmentScope.read_old_camera_rotation, "deprecated: a half turn about x comes first"),
+    "bkgndcolor": Tag(_EnvironmentScope.read_background, "red green blue, from 0 to 1", once=True),
+    "camtrans": Tag(_EnvironmentScope.read_camera_position, "position of the camera [m]", once=True),
+    "camrotationaxis": Tag(
+        _EnvironmentScope.read_camera_rotation, "axis x y z, angle [deg]; z looks forward, y down", once="rotation"
+    ),
+    "camrotmat": Tag(_EnvironmentScope.read_camera_matrix, "nine numbers, row by row", once="rotation"),
+    "camrotaxis": Tag(
+        _EnvironmentScope.read_old_camera_rotation, "deprecated: a half turn about x comes first", once="rotation"
+    ),
     "physicsengine": Tag(_EnvironmentScope.read_physics, "only its gravity; `ode` without one has none"),
     **dict.fromkeys(INTERFACES, _INTERFACE),
 }
@@ -312,4 +316,5 @@ def check_name(name: str, element: Element) -> None:
     if not name:
         raise UnnamedError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
     if " " in name or not name.isprintable():  # other spaces than this one are not printable
-        raise SourceError(f"the name '{name}' has spaces or control characters", element.source)
+        hint = "scripts find bodies by names of one word; write _ in their place"
+        raise SourceError(f"the name {name!r} has spaces or control characters", element.source, hint)

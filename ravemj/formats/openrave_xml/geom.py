@@ -131,8 +131,8 @@ GEOM_TAGS: dict[str, Tag[_Geom]] = {
     "extents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "halfextents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "fullextents": Tag(_Geom.read_full_extents, "of a box: sizes x y z [m]"),
-    "radius": Tag(_Geom.read_number, "of a sphere, cylinder or capsule [m]"),
-    "height": Tag(_Geom.read_number, "of a cylinder, along y, and of a capsule or prism, along z [m]"),
+    "radius": Tag(_Geom.read_number, "of a sphere, cylinder or capsule [m]", once="radius"),
+    "height": Tag(_Geom.read_number, "of a cylinder, along y, and of a capsule or prism, along z [m]", once="height"),
     "outer_extents": Tag(_Geom.read_vector, "of a container: sizes x y z [m]"),
     "inner_extents": Tag(_Geom.read_vector, "of a container: sizes of the inside [m]"),
     "bottom_cross": Tag(_Geom.read_vector, "of a container: sizes of a cross on the bottom [m]"),
@@ -140,14 +140,14 @@ GEOM_TAGS: dict[str, Tag[_Geom]] = {
     "crosssection": Tag(
         _Geom.read_cross_section, "of a prism: x y of its corners [m]; it has walls, and no top and bottom"
     ),
-    "vertices": Tag(_Geom.read_vertices, "of a trimesh: nine numbers a triangle [m]"),
+    "vertices": Tag(_Geom.read_vertices, "of a trimesh: nine numbers a triangle [m]", once=True),
     "data": Tag(_Geom.read_collision, "mesh file that collides, and scale"),
     "collision": Tag(_Geom.read_collision, "the same as Data, also as attributes file and scale"),
     "render": Tag(_Geom.read_render, "mesh file that is drawn, and scale"),
-    "diffusecolor": Tag(_Geom.read_diffuse, "red green blue, from 0 to 1"),
-    "ambientcolor": Tag(_Geom.read_ambient, "red green blue, from 0 to 1"),
-    "transparency": Tag(_Geom.read_transparency, "from 0 to 1"),
-    "name": Tag(_Geom.read_name, "name of the shape"),
+    "diffusecolor": Tag(_Geom.read_diffuse, "red green blue, from 0 to 1", once=True),
+    "ambientcolor": Tag(_Geom.read_ambient, "red green blue, from 0 to 1", once=True),
+    "transparency": Tag(_Geom.read_transparency, "from 0 to 1", once=True),
+    "name": Tag(_Geom.read_name, "name of the shape", once=True),
 }
 GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
 GEOM_ATTRIBUTES = {

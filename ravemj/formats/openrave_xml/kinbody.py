@@ -211,7 +211,7 @@ def _reordered(parts: list[Part], are_older: list[bool]) -> list[Part]:
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
     **PLACEMENT_TAGS,
-    "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]"),
+    "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]", once=True),
     "grabbed": Tag(_Scope.read_grabbed, "ravemj's own: a body that a link holds, its pose there, and ignored links"),
 }
 ROBOT_TAGS: dict[str, Tag[_Scope]] = {
@@ -239,7 +239,7 @@ KINBODY_TAGS: dict[str, Tag[_Scope]] = {
     "mass": Tag(_Scope.read_default_mass, "the default of the Bodies that follow: see below"),
     "adjacent": Tag(_Scope.read_adjacent, "names of two Bodies that never collide"),
     "modelsdir": Tag(_Scope.read_models_folder, "where meshes of the following Bodies are looked for first"),
-    "transparency": Tag(_Scope.read_transparency, "of all shapes, from 0 to 1"),
+    "transparency": Tag(_Scope.read_transparency, "of all shapes, from 0 to 1", once=True),
 }
 KINBODY_IGNORED = {
     **reasons("OpenRAVE overlooks it here; write it in each Geom", "diffusecolor", "ambientcolor"),

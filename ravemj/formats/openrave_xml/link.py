@@ -142,7 +142,14 @@ def read_link(
     scope.read(element)
     link.pose = scope.pose
     rule = mass.rule or default_mass
-    link.inertial = link_inertial(rule, link.geometries)
+    inertial = link_inertial(rule, link.geometries)
+    if existing is not None and rule is None and inertial.mass != link.inertial.mass:
+        message = (
+            f"link '{link.name}' weighs {inertial.mass:g} kg and no longer {link.inertial.mass:g} kg: "
+            "OpenRAVE computes the mass anew where a Body of the same name goes on with a link"
+        )
+        context.diagnostics.warn("openrave-bug", message, element.source, "repeat the <Mass>, or write it here only")
+    link.inertial = inertial
     if rule is not None and rule.by_total and rule.total and not link.inertial.mass:
         number = "NaN, as in OpenRAVE, and computed with as 0" if link.inertial.undefined else "0"
         message = f"link '{link.name}' has no shape with a volume: its mimicgeom mass is {number}, not {rule.total:g}"

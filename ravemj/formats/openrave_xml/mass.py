@@ -18,6 +18,7 @@ from ravemj.model.builder import DEFAULT_INERTIAL
 from ravemj.model.scene import Box, Geometry, Inertial, Sphere
 
 NO_INERTIA: Rows = (ZERO, ZERO, ZERO)
+_ROUNDING = 1e-6  # of inertias that were printed with few digits
 TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is given
 
 
@@ -120,7 +121,10 @@ class MassReader:
     def inertia(self, element: Element) -> None:
         """Read the inertia of a custom mass; only its upper triangle counts."""
         before = [value for row in self._rule.inertia for value in row]
-        xx, xy, xz, _, yy, yz, _, _, zz = numbers(element, 9, self._context.diagnostics, before)
+        xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers(element, 9, self._context.diagnostics, before)
+        if max(abs(xy - yx), abs(xz - zx), abs(yz - zy)) > _ROUNDING * max(abs(xx), abs(yy), abs(zz)):
+            message = f"<{element.spelled}> is not symmetric; OpenRAVE takes what stands above its diagonal"
+            self._context.diagnostics.warn("asymmetric-inertia", message, element.source)
         self._rule = self._rule._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
     def axes(self, element: Element) -> None:
@@ -133,16 +137,16 @@ class MassReader:
 
 MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
 MASS_TAGS: dict[str, Tag[MassReader]] = {
-    "density": Tag(MassReader.density, "[kg/m³]"),
-    "total": Tag(MassReader.total, "[kg]"),
+    "density": Tag(MassReader.density, "[kg/m³]", once=True),
+    "total": Tag(MassReader.total, "[kg]", once=True),
     "precisetotal": Tag(
         MassReader.precise_total,
         "[kg] of which OpenRAVE, which does not know it, has single precision; ravemj writes it",
     ),
-    "radius": Tag(MassReader.radius, "of a sphere [m]"),
-    "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so"),
-    "com": Tag(MassReader.com, "centre of a custom mass [m]"),
-    "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]"),
+    "radius": Tag(MassReader.radius, "of a sphere [m]", once=True),
+    "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so", once=True),
+    "com": Tag(MassReader.com, "centre of a custom mass [m]", once=True),
+    "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]", once=True),
     "principalaxes": Tag(
         MassReader.axes,
         "w x y z of the principal axes that a custom mass has of all that fit its inertia; ravemj's own",
@@ -211,10 +215,10 @@ class DefaultMassReader:
 
 DEFAULT_MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box; others count as sphere"}
 DEFAULT_MASS_TAGS: dict[str, Tag[DefaultMassReader]] = {
-    "density": Tag(DefaultMassReader.density, "[kg/m³]"),
-    "total": Tag(DefaultMassReader.total, "[kg]; of mimicgeom OpenRAVE takes it for a density"),
-    "radius": Tag(DefaultMassReader.radius, "of a sphere [m]"),
-    "extents": Tag(DefaultMassReader.extents, "of a box: half sizes [m]"),
+    "density": Tag(DefaultMassReader.density, "[kg/m³]", once=True),
+    "total": Tag(DefaultMassReader.total, "[kg]; of mimicgeom OpenRAVE takes it for a density", once=True),
+    "radius": Tag(DefaultMassReader.radius, "of a sphere [m]", once=True),
+    "extents": Tag(DefaultMassReader.extents, "of a box: half sizes [m]", once=True),
 }
 
 

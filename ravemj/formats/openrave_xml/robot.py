@@ -106,9 +106,9 @@ class _SensorScope(Placed):
 
 
 SENSOR_TAGS: dict[str, Tag[_SensorScope]] = {
-    "link": Tag(_SensorScope.read_link, "name of the Body that carries it"),
+    "link": Tag(_SensorScope.read_link, "name of the Body that carries it", once=True),
     **PLACEMENT_TAGS,
-    "sensor": Tag(_SensorScope.read_device, "see below"),
+    "sensor": Tag(_SensorScope.read_device, "see below", once=True),
 }
 SENSOR_ATTRIBUTES = {"name": "name of the sensor"}
 SENSOR_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")

@@ -21,13 +21,13 @@ class Tag(NamedTuple, Generic[Target_contra]):
         read: Reads the element into the object that stands for its parent.
         meaning: What the element means, or why it is left out, in a few words.
         left_out: Whether it has no effect on the model.
-        once: Whether only the last one of an element counts, among all tags with this ``read``.
+        once: Whether only the last one of an element counts, among all tags with this ``read``; or of this name.
     """
 
     read: Callable[[Target_contra, Element], None]
     meaning: str
     left_out: bool = False
-    once: bool = False
+    once: bool | str = False
 
 
 def reasons(reason: str, *names: str) -> dict[str, str]:

@@ -99,6 +99,15 @@ def os_reason(error: OSError) -> str:
     return (error.strerror or os.strerror(error.errno or 0)).lower()
 
 
+_HINTS = {
+    expat.errors.XML_ERROR_INVALID_TOKEN: "write & as &amp;, < as &lt;, attributes in quotes, and no -- in a comment",
+    expat.errors.XML_ERROR_UNDEFINED_ENTITY: "write the text itself in its place",
+    expat.errors.XML_ERROR_DUPLICATE_ATTRIBUTE: "write it once",
+    expat.errors.XML_ERROR_MISPLACED_XML_PI: "let the file begin with <?xml",
+}
+"""What to do about expat's syntax errors; about others, the element that is open says more."""
+
+
 class _Parser:
     """Builds the tree from expat's events."""
 
@@ -151,7 +160,13 @@ class _Parser:
                         'save it as UTF-8, or name its encoding in the first line: <?xml version="1.0" encoding="…"?>'
                     )
                     return SourceError(f"the byte 0x{byte:02X} is not UTF-8, the encoding of the file", source, hint)
-        return SourceError(f"not well-formed XML: {expat.ErrorString(error.code) or 'syntax error'}", source)
+        reason = expat.ErrorString(error.code) or "syntax error"
+        hint = _HINTS.get(reason, "")
+        if self._open and not hint:
+            hint = f"<{self._open[-1].spelled}> of line {self._open[-1].source.line} is open there"
+        return SourceError(
+            f"not well-formed XML in column {error.offset + 1}: {reason.removeprefix('not well-formed ')}", source, hint
+        )
 
     def _here(self) -> Source:
         return Source(self._path, self._expat.CurrentLineNumber, self._included_from)
