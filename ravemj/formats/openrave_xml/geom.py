@@ -96,7 +96,7 @@ class _Geom(Placed):
         if rest or len(self.vertices) % 9:
             message = f"<{element.spelled}> needs nine numbers for each triangle, and holds {len(self.vertices)}"
             self.context.diagnostics.warn("number-count", message, element.source)
-        if len(self.vertices) % 9:
+        if len(self.vertices) % 9:  # errors-37
             self.vertices = ()
 
     def read_collision(self, element: Element) -> None:
@@ -169,13 +169,13 @@ _NO_SIZES = {**dict.fromkeys(_VECTORS, ZERO), "radius": 0.0, "height": 0.0}
 def read_geometries(element: Element, scope: GeometryScope, context: Context) -> list[Geometry]:
     """Read a ``<Geom>``: one geometry, or one for each part of its mesh file."""
     context.check_attributes(element, GEOM_ATTRIBUTES, {})
-    kind = element.attributes.get("type", "").lower() or "box"
+    kind = element.attributes.get("type", "").lower() or "box"  # gap-31
     geom = _Geom(context, name=element.attributes.get("name", ""))
     context.walk(element, GEOM_TAGS, GEOM_IGNORED, geom)
     shape = _SHAPES.get(kind)
     if shape is TriMesh:
         return _trimesh(geom, element, scope)
-    if shape is None:
+    if shape is None:  # geom-26
         message = f"a geometry of type '{kind}' has no shape here"
         context.diagnostics.warn("unsupported-geometry", message, element.source)
     display = _surfaces(geom, geom.render, element, scope)
@@ -197,7 +197,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
         ]
         if parts:
             break
-    if found:
+    if found:  # the name is that of the first part alone (gap-69)
         return [found[0], *(replace(geometry, name="") for geometry in found[1:])]
     corners = np.array(geom.vertices).reshape(-1, 3)
     mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
@@ -205,7 +205,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 
 
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
-    """Return what OpenRAVE makes of a file that is not there: of an absolute path, which it trusts, an empty mesh."""
+    """Return what OpenRAVE makes of a file that is not there: nothing (gap-71), of an absolute path a mesh (gap-72)."""
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()
     return (_REDDISH,)

@@ -64,15 +64,15 @@ class _Scope(Placed):
         marks = Marks.of(self.body)
         tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
-        self.body.name = element.attributes.get("name", "") or self.body.name
+        self.body.name = element.attributes.get("name", "") or self.body.name  # the last to end with a name gives it
         prefix = element.attributes.get("prefix", "")
         if prefix:
             add_prefix(prefix, self.body, marks, whole=element.tag == "robot")
-        if self.transparency is not None:
+        if self.transparency is not None:  # of all shapes that the body has so far (geom-35)
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
         if element.tag == "robot":
-            self._youngest_first(marks)
+            self._youngest_first(marks)  # gap-43, gap-44, gap-45
         else:
             self._join_links(element)
         if self.placement.moves:
@@ -104,12 +104,15 @@ class _Scope(Placed):
             inner.read(wrapper)
         except SourceError as error:
             if self.depth > 0 and (element.tag == "kinbody" or any(before[1:])):
-                raise  # the whole body goes
+                raise  # the whole body goes (random-xml-143); of a Robot without parts what came before stays (-120)
             self.context.diagnostics.error("broken-file", error.message, error.source, error.hint)
             self.body.set_parts(before)
 
     def _youngest_first(self, marks: Marks) -> None:
-        """Move manipulators and sensors that came since some moment before those of then, the last one first."""
+        """Move manipulators and sensors that came since some moment before those of then, the last one first.
+
+        If there were none then, nothing moves (gap-43); parts of a COLLADA file do not turn (gap-75).
+        """
         body = self.body
         arms = [any(built is older for older in marks.manipulators) for built in body.manipulators]
         body.manipulators = _reordered(body.manipulators, arms)
@@ -118,7 +121,10 @@ class _Scope(Placed):
         )
 
     def _join_links(self, element: Element) -> None:
-        """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides."""
+        """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides.
+
+        See gap-17, gap-18 and gap-19.
+        """
         text = element.attributes.get("makejoinedlinksadjacent")
         values, rest = Numbers([1.0], "") if text is None else leading_numbers(text)
         self.body.joined_links_adjacent = bool(values and int(values[0]))
@@ -132,6 +138,7 @@ class _Scope(Placed):
         scale = hadamard(self.scale, scale_attribute(element, self.context.diagnostics))
         inner = _Scope(self.body, self.context, scale, self.depth + 1, skip_geometry=self.skip_geometry)
         inner.read(element)
+        # Those of the Robot win, and those of included files are lost (robot-13, environment-13).
         if self.depth == 0 and element.tag == "kinbody" and self.body.is_robot and self.joint_values is None:
             self.joint_values = inner.joint_values
 
@@ -190,7 +197,7 @@ class _Scope(Placed):
         self.body.manipulators.append(built)
 
     def read_controller(self, element: Element) -> None:
-        """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints."""
+        """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints (robot-24)."""
         if self.body.joints:
             hint = "leave it out: robots have a controller without asking"
             raise SourceError("OpenRAVE cannot attach a controller while it reads a robot", element.source, hint)
@@ -286,7 +293,7 @@ def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
     kind = element.attributes.get("type")
     if kind is None:
         return
-    if "file" in element.attributes:
+    if "file" in element.attributes:  # errors-49
         message = "OpenRAVE throws away what it read from the file of an element that also has a type"
         context.diagnostics.warn("openrave-bug", message, element.source, "leave out the type")
         body.links.clear()
@@ -297,7 +304,7 @@ def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
     if kind.lower() in _PLUGIN_CLASSES:
         message = f"what the class '{kind}' adds to a body is left out"
         context.diagnostics.warn("ignored-type", message, element.source)
-    elif kind.lower() not in {"genericrobot", "kinbody", ""}:
+    elif kind.lower() not in {"genericrobot", "kinbody", ""}:  # errors-43
         message = f"there is no class '{kind}' for bodies here; read as a plain one"
         context.diagnostics.error("unknown-interface", message, element.source)
 

@@ -35,7 +35,7 @@ class _LinkScope(Placed):
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
         self.link.enabled = not is_false(element.attributes.get("enable", "true"))
         self.link.self_collision_ignored = is_false(element.attributes.get("selfcollision", "true"))
-        self.link.name = element.attributes.get("name", self.link.name)  # a Body in a Body renames the link
+        self.link.name = element.attributes.get("name", self.link.name)  # a Body in a Body renames the link (gap-20)
         if "file" in element.attributes:
             self._include(element)
         self.context.walk(element, LINK_TAGS, {}, self)
@@ -85,7 +85,7 @@ class _LinkScope(Placed):
             return
         found = read_geometries(element, self.geometry_scope, self.context)
         group = element.attributes.get("group", OWN_SHAPES)
-        if group == OWN_SHAPES:
+        if group == OWN_SHAPES:  # geom-36
             self.link.geometries += found
         else:
             self.link.add_to_group(group, found)
@@ -134,6 +134,7 @@ def read_link(
     """Read a ``<Body>``: a new link, or one more piece of the link of that name."""
     name = element.attributes.get("name")
     existing = None if name is None else body.find_link(name)
+    # A known name, also an empty one, goes on with that link; a Body without the attribute is new (transform-26).
     link = LinkBuilder(name or "", element.source) if existing is None else body.links[existing]
     geometry_scope = _scaled(geometry_scope, element, context.diagnostics)
     mass = MassReader(context, default_mass, geometry_scope.scale)

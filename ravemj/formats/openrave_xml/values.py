@@ -70,7 +70,7 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
     """Return exactly ``count`` numbers from an element's text.
 
     A word that is no number counts as 0 and ends the reading (``bad-number``); numbers that are missing keep their
-    values, and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
+    values (gap-14, gap-15), and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
 
     Args:
         element: The element.
