@@ -595,6 +595,7 @@ class TestFindings:
         [
             ('<Module type="basemanipulation"/>', "ignored-tag"),
             ('<Controller type="nobody"/>', "unknown-interface"),
+            ('<Sensor name="s" type="BaseCamra"/>', "unknown-interface"),
             ('<Environment><PhysicsEngine type="ode" gravity="0 0 -9"/></Environment>', "unknown-attribute"),
         ],
     )
@@ -657,7 +658,9 @@ class TestFailures:
                 3,
                 "not well-formed XML in column 3: mismatched tag; <Robot> of line 2",
             ),
-            ('<KinBody name="a&b"/>', 1, "write & as &amp;"),
+            ('<KinBody name="a&b"/>', 1, "invalid token; write & as &amp;"),
+            ('<?xml version="1.0" encoding="utf-16"?><KinBody name="b"/>', 1, "leave the encoding out"),
+            ('<?xml version="1.0" encoding="shift_jis"?><KinBody name="b"/>', 1, "save it as UTF-8"),
             ('<Robot name="r">\n<KinBody/>', 2, "no element found; <Robot> of line 1 is open there"),
             (
                 "<KinBody name='b'>\n" + JOINT.format("mimic_pos='1/lead'", "") + "</KinBody>",

@@ -283,8 +283,8 @@ def _is_same_file(first: str, second: str) -> bool:
 
 
 _HOMES = {
-    **dict.fromkeys(("body", "joint", "adjacent", "mass"), "KinBody"),
-    **dict.fromkeys(("geom", "offsetfrom"), "Body"),
+    **dict.fromkeys(("body", "joint", "adjacent"), "KinBody"),
+    **dict.fromkeys(("geom", "mass", "offsetfrom"), "Body"),
     **dict.fromkeys(("extents", "radius", "height", "diffusecolor", "ambientcolor", "transparency"), "Geom"),
     **dict.fromkeys(("axis", "anchor", "limits", "limitsdeg", "maxvel", "weight"), "Joint"),
     **dict.fromkeys(("manipulator", "attachedsensor", "controller"), "Robot"),

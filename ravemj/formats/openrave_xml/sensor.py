@@ -5,7 +5,7 @@ from functools import partial
 from typing import NamedTuple
 
 from ravemj.core.transforms import Pose
-from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed, did_you_mean
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import is_true, number_list, numbers, vector
@@ -151,7 +151,10 @@ def _read(
         return found._replace(pose=place.placement.pose, name=name)
     kind = SENSOR_KINDS.get(next(iter(type_name.split()), "").lower())
     if kind is None:
-        context.diagnostics.error("unknown-interface", f"there is no sensor of type '{type_name}'", element.source)
+        hint = did_you_mean(type_name, [one.name for one in SENSOR_KINDS.values()])
+        context.diagnostics.error(
+            "unknown-interface", f"there is no sensor of type '{type_name}'", element.source, hint
+        )
         return SensorElement()
     sensor = _Sensor(context, kind.device)
     tags = {**device_tags(kind), **COMMON_TAGS, **placement}

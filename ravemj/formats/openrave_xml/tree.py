@@ -103,6 +103,7 @@ _HINTS = {
     expat.errors.XML_ERROR_INVALID_TOKEN: "write & as &amp;, < as &lt;, attributes in quotes, and no -- in a comment",
     expat.errors.XML_ERROR_UNDEFINED_ENTITY: "write the text itself in its place",
     expat.errors.XML_ERROR_DUPLICATE_ATTRIBUTE: "write it once",
+    expat.errors.XML_ERROR_INCORRECT_ENCODING: "leave the encoding out of its first line",
     expat.errors.XML_ERROR_MISPLACED_XML_PI: "let the file begin with <?xml",
 }
 """What to do about expat's syntax errors; about others, the element that is open says more."""
@@ -137,7 +138,7 @@ class _Parser:
         except expat.ExpatError as error:
             return self._explained(error)
         except (LookupError, ValueError) as error:  # an encoding that Python does not know
-            return SourceError(f"not readable as XML: {error}", self._here())
+            return SourceError(f"not readable as XML: {error}", self._here(), "save it as UTF-8")
         except SourceError as error:
             return error
         return None
@@ -164,9 +165,8 @@ class _Parser:
         hint = _HINTS.get(reason, "")
         if self._open and not hint:
             hint = f"<{self._open[-1].spelled}> of line {self._open[-1].source.line} is open there"
-        return SourceError(
-            f"not well-formed XML in column {error.offset + 1}: {reason.removeprefix('not well-formed ')}", source, hint
-        )
+        words = reason.removeprefix("not well-formed (").removesuffix(")")
+        return SourceError(f"not well-formed XML in column {error.offset + 1}: {words}", source, hint)
 
     def _here(self) -> Source:
         return Source(self._path, self._expat.CurrentLineNumber, self._included_from)
