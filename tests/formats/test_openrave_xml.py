@@ -525,6 +525,8 @@ class TestFindings:
             ("<Body name='a'><Translation>nan inf 1e999</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
             ("<Body name='a'><Translation>1\u00a02 3 4</Translation></Body>", "bad-number", "OpenRAVE reads 1 0 0"),
             ("<Body name='a'><Translation>\uff11 2 3</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<RotationMat>-1 0 0 0 1 0 0 0 1</RotationMat>", "bad-rotation", "holds no rotation"),
+            ("<RotationAxis>0 0 0 90</RotationAxis>", "bad-rotation", "turns nothing"),
             ("<Body name='a' enable='no'/>", "bad-flag", "counts as true"),
             ("<Body name='a'><Geom render='off'/></Body>", "bad-flag", "counts as true"),
             ("<KinBody skipgeometry='yes'/>", "bad-flag", "counts as false"),

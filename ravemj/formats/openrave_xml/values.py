@@ -16,6 +16,7 @@ from ravemj.core.transforms import (
     add,
     multiply,
     normalize,
+    rows_from_wxyz,
     wxyz_from_axis_angle,
     wxyz_from_rows,
 )
@@ -28,6 +29,10 @@ _WORD = re.compile(r"\S+", re.ASCII)
 
 _PLAIN = "0123456789.+-eE \t\r\n"
 """What almost every text with numbers consists of; then Python makes of their words what C++ makes of them."""
+
+
+_OF_FEW_DIGITS = 0.01
+"""How far the numbers of a rotation matrix are from one where somebody wrote two digits."""
 
 
 class Numbers(NamedTuple):
@@ -203,15 +208,24 @@ class Placement:
 def axis_angle(element: Element, diagnostics: Diagnostics) -> Wxyz:
     """Return the rotation of a ``<RotationAxis>``: an axis of any length, then an angle in degrees."""
     x, y, z, degrees = numbers(element, 4, diagnostics)
+    if x == y == z == 0.0 != degrees:  # transform-24
+        message = f"<{element.spelled}> turns nothing: its axis is 0 0 0"
+        diagnostics.warn("bad-rotation", message, element.source, "write x y z of the axis, and then the angle")
     return wxyz_from_axis_angle((x, y, z), math.radians(degrees))
 
 
 def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
     m = numbers(element, 9, diagnostics)
     try:
-        return wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
+        wxyz = wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
     except ZeroDivisionError:
         raise SourceError(f"<{element.spelled}> holds no rotation: {element.text.strip()}", element.source) from None
+    taken = [entry for row in rows_from_wxyz(wxyz) for entry in row]
+    if any(abs(one - other) > _OF_FEW_DIGITS for one, other in zip(taken, m, strict=True)):  # transform-09
+        rows = " ".join(f"{entry:.3g}" for entry in taken)
+        message = f"<{element.spelled}> holds no rotation; OpenRAVE makes {rows} of it"
+        diagnostics.warn("bad-rotation", message, element.source, "its rows have length 1 and are perpendicular")
+    return wxyz
 
 
 def _quaternion(element: Element, diagnostics: Diagnostics) -> Wxyz:
