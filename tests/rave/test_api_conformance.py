@@ -119,7 +119,7 @@ def _be_the_script(script: Path, folder: Path, writer: int) -> None:
         alias.install_finder()
         space = {"__name__": "__main__", "__file__": script.name, "raises": raises}
         try:
-            text = script.read_text().replace(*REPLACED.get(script.stem, ("", "", 0)))
+            text = script.read_text().replace(*REPLACED.get(script.stem, ("", "")))
             exec(compile(text, script.name, "exec"), space)
             answer = {"result": plain(space["result"])}
         except BaseException as error:
