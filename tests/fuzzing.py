@@ -23,10 +23,11 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import Diagnostics, RavemjError, RavemjWarning
 from ravemj.formats import mjcf
 from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS
 from ravemj.formats.openrave_xml.environment import ENVIRONMENT_IGNORED
 from ravemj.formats.openrave_xml.geom import GEOM_TAGS
 from ravemj.formats.openrave_xml.joint import JOINT_ATTRIBUTES, JOINT_TAGS
-from ravemj.formats.openrave_xml.sensor import COMMON_TAGS, PLACEMENT_TAGS, device_tags
+from ravemj.formats.openrave_xml.sensor import COMMON_TAGS, device_tags
 from ravemj.formats.readers import read_file
 from ravemj.model.scene import SENSOR_KINDS
 

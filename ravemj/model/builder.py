@@ -261,6 +261,11 @@ class BodyBuilder:
         mimic_joints = MimicJoints(joints)
         mimic_joints.evaluate(firsts)
         for mimic in mimic_joints.joints:
+            follower = joints[mimic.joint]
+            if follower.places_child and math.isnan(firsts[mimic.joint]):
+                message = f"the equation of joint '{follower.name}' has no value where the model starts"
+                raise SourceError(message, follower.source, "look for a division by 0, or a root of a negative number")
+        for mimic in mimic_joints.joints:
             values[mimic.joint][0] = firsts[mimic.joint]
         return [_at_values(joint, joint_values) for joint, joint_values in zip(joints, values, strict=True)]
 
@@ -331,7 +336,7 @@ def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -
     """Return a weld as OpenRAVE reports it: at the value 0, with the frame of its child, and limits of 0."""
     T_parent_child = displaced_pose(joint, [0.0] * len(joint.axes))
     if any(axis.lower for axis in joint.axes):
-        message = "a joint with equal limits does not move; OpenRAVE moves the limits to 0"
+        message = "a joint between whose limits there is nothing does not move; OpenRAVE moves the limits to 0"
         diagnostics.warn("openrave-bug", message, joint.source)
     turn = T_parent_child.wxyz if built.weld_turn is None else built.weld_turn
     is_z = joint.kind == "hinge" and built.weld_turn is None  # whatever the file says

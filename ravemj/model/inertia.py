@@ -74,6 +74,8 @@ def _axes(inertial: Inertial) -> Wxyz:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
     if inertial.axes is not None:
         return inertial.axes
+    if not np.isfinite(inertial.inertia).all():  # of enormous shapes; no axes are better than others
+        return UNIT_WXYZ
     if max(abs(xy), abs(xz), abs(yz)) <= _ROUNDING * max(abs(xx), abs(yy), abs(zz)):
         return UNIT_WXYZ  # a cylinder's axes in XML, turned a quarter, are those of its link but for rounding
     _, axes = np.linalg.eigh(np.array(inertial.inertia))

@@ -32,6 +32,10 @@ def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnosti
         for name in (built.base, built.effector)
     )
     arm = () if base is None or effector is None else _arm_dofs(body, base, effector)
+    if effector is not None and base != effector and not arm:
+        ends = f"its base '{built.base}' and its effector '{built.effector}'"
+        message = f"manipulator '{built.name}' has no arm: no joint with a DOF lies between {ends}"
+        diagnostics.warn("no-arm", message, built.source)
     gripper = _gripper(built, body, arm, diagnostics)
     return scene.Manipulator(
         name=built.name,
@@ -86,6 +90,8 @@ def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
             message = f"manipulator '{manipulator.name}': joint '{joint.name}' does not move its effector"
             link = body.links[effector].name
             hint = f"name as base a link between '{body.links[0].name}' and '{link}'"
+            if effector == 0:
+                hint = "the first link of a body moves by no joint: exchange base and effector"
             raise SourceError(f"{message} '{link}'", manipulator.source, hint)
 
 

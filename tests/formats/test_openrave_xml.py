@@ -31,12 +31,12 @@ def read_text(write):
 
 @pytest.fixture
 def link(read_text):
-    """The only link of a KinBody with the given content, without a finding."""
+    """The only link of a KinBody with the given content, and with no other findings than the given ones."""
 
-    def link(content: str) -> scene.Link:
+    def link(content: str, *found: str) -> scene.Link:
         reading = read_text(f'<KinBody name="b">{content}</KinBody>')
         assert reading.failure is None
-        assert codes(reading) == []
+        assert codes(reading) == [*found]
         (only,) = reading.scene.bodies[0].links
         return only
 
@@ -207,7 +207,8 @@ class TestPlacement:
     def test_a_body_of_the_same_name_is_re_opened(self, link):
         again = link(
             '<Body name="a"><Translation>1 0 0</Translation><Mass type="custom"><total>3</total></Mass></Body>'
-            '<Body name="a"><Translation>0 1 0</Translation><RotationAxis>0 0 1 90</RotationAxis></Body>'
+            '<Body name="a"><Translation>0 1 0</Translation><RotationAxis>0 0 1 90</RotationAxis></Body>',
+            "openrave-bug",
         )
         assert again.T_world_link.position == (1, 1, 0)
         assert again.inertial.mass == 1  # the second element has no Mass
@@ -279,7 +280,8 @@ class TestMass:
 
     def test_only_the_upper_triangle_of_an_inertia_counts(self, link):
         numbers = "374 -1.3 63  1.3 845 -3  63 3 698"
-        inertial = link(f'<Body name="a"><Mass type="custom"><inertia>{numbers}</inertia></Mass></Body>').inertial
+        mass = f'<Mass type="custom"><inertia>{numbers}</inertia></Mass>'
+        inertial = link(f'<Body name="a">{mass}</Body>', "asymmetric-inertia").inertial
         assert inertial.inertia == ((374, -1.3, 63), (-1.3, 845, -3), (63, -3, 698))
 
     def test_of_a_kinbody_is_the_default_of_later_bodies(self, read_text):
@@ -498,6 +500,9 @@ JOINT = TWO + "<Body name='c'/><Joint name='j' {}><Body>b</Body><Body>c</Body>{}
 """Two joints; attributes and children of the second one go into the braces."""
 
 
+ARM = '<Manipulator name="m"><base>b</base><effector>a</effector></Manipulator>'
+
+
 class TestFindings:
     def test_none_for_numbers_with_an_enormous_sum(self, read_text):
         reading = read_text('<KinBody name="b"><Body name="a"/><Translation>9e307 9e307 0</Translation></KinBody>')
@@ -518,7 +523,44 @@ class TestFindings:
             ("<Body name='a'><Translation>1 2</Translation></Body>", "number-count", "OpenRAVE reads 1 2 0"),
             ("<Body name='a'><Translation>1 2 3 4</Translation></Body>", "number-count", "OpenRAVE reads 1 2 3"),
             ("<Body name='a'><Translation>nan inf 1e999</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<Body name='a'><Translation>1\u00a02 3 4</Translation></Body>", "bad-number", "OpenRAVE reads 1 0 0"),
+            ("<Body name='a'><Translation>\uff11 2 3</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<RotationMat>-1 0 0 0 1 0 0 0 1</RotationMat>", "bad-rotation", "holds no rotation"),
+            ("<RotationAxis>0 0 0 90</RotationAxis>", "bad-rotation", "turns nothing"),
+            ("<Body name='a' enable='no'/>", "bad-flag", "counts as true"),
+            ("<Body name='a'><Geom render='off'/></Body>", "bad-flag", "counts as true"),
+            ("<KinBody skipgeometry='yes'/>", "bad-flag", "counts as false"),
+            ("<KinBody makejoinedlinksadjacent='true'/>", "openrave-bug", "counts as 0"),
+            ("<Body name='a' type='fixed'/>", "unknown-type", "a dynamic one"),
+            ("<KinBody scalegeometry='2 3'/>", "number-count", "one number or three"),
+            ("<KinBody scalegeometry='big'/>", "bad-number", "one number or three"),
+            (JOINT.format("", "<limits>-1 1 x</limits>"), "bad-number", "holds 'x'"),
+            (JOINT.format("enable='no'", ""), "bad-flag", "counts as true"),
+            ("<Body name='a'/><Body name='b'><offsetfrom>a b</offsetfrom></Body>", "extra-words", "reads 'a'"),
+            ("<Body name='a'/><grabbed body='x' link='a'><Turn/></grabbed>", "unknown-tag", "<Turn> in <grabbed>"),
+            ("<Body name='a'/><grabbed body='x' link='a' at='1'/>", "unknown-attribute", "'at' of <grabbed>"),
             ("<diffuseColor>1 0 0</diffuseColor>", "ignored-tag", "write it in each Geom"),
+            (JOINT.format("", "<axis>0 0 1</axis>" * 2), "repeated-tag", "overrides <axis>"),
+            (
+                "<Body name='a'><Geom><extents>1 1 1</extents><radius>1</radius><radius>2</radius></Geom></Body>",
+                "repeated-tag",
+                "<radius>",
+            ),
+            (
+                "<Body name='a'><Mass type='custom'><total>1</total><total>2</total></Mass></Body>",
+                "repeated-tag",
+                "<total>",
+            ),
+            (
+                "<Body name='a'><Mass type='custom'><inertia>2 1 0 -1 2 0 0 0 2</inertia></Mass></Body>",
+                "asymmetric-inertia",
+                "above",
+            ),
+            (
+                "<Body name='a'><Mass type='custom'><total>3</total></Mass></Body><Body name='a'/>",
+                "openrave-bug",
+                "no longer 3 kg",
+            ),
             ("<Body name='a'><offsetfrom>b</offsetfrom></Body>", "unknown-body", "no Body 'b'"),
             ("<adjacent>a b</adjacent>", "unknown-body", "two Bodies"),
             ("<Body name='a'><Geom type='teapot'/></Body>", "unsupported-geometry", "teapot"),
@@ -545,6 +587,32 @@ class TestFindings:
         assert finding.source.line == 3
         assert words in str(finding)
 
+    def test_a_second_mesh_file(self, read_text):
+        files = "<data>one.stl big</data><data>two.stl</data>"
+        reading = read_text(f'<KinBody name="b"><Body name="a"><Geom type="trimesh">{files}</Geom></Body></KinBody>')
+        assert set(codes(reading)) == {"bad-number", "repeated-tag", "missing-file"}
+
+    @pytest.mark.parametrize(
+        ("content", "code"),
+        [
+            ('<Module type="basemanipulation"/>', "ignored-tag"),
+            ('<Controller type="nobody"/>', "unknown-interface"),
+            ('<Sensor name="s" type="BaseCamra"/>', "unknown-interface"),
+            ('<Environment><PhysicsEngine type="ode" gravity="0 0 -9"/></Environment>', "unknown-attribute"),
+        ],
+    )
+    def test_without_bodies(self, read_text, content, code):
+        reading = read_text(content)
+        assert (reading.failure, codes(reading)) == (None, [code])
+
+    @pytest.mark.parametrize("inner", ["<Environment>{}</Environment>", '<Environment file="inner.xml"/>'])
+    def test_an_environment_without_a_camera_leaves_that_of_the_one_inside(self, write, inner):
+        tags = "<camtrans>1 2 3</camtrans><bkgndcolor>0 0 1</bkgndcolor>"
+        write(f"<Environment>{tags}</Environment>", "inner.xml")
+        view = read(write(f"<Environment>{inner.format(tags)}</Environment>")).scene.view
+        assert view.T_world_camera.position == (1, 2, 3)
+        assert view.background == (1, 1, 1)
+
     def test_several_values_of_one_kind_are_no_repetition(self, read_text):
         children = "<axis1>0 0 1</axis1><axis2>1 0 0</axis2><hardmaxvel>1 1</hardmaxvel><maxjerk>1 1</maxjerk>"
         content = JOINT.format("type='hinge2'", children)
@@ -556,6 +624,11 @@ class TestFindings:
         (finding,) = reading.diagnostics
         assert finding.code == "value-outside-limits"
         assert [joint.axes[0].value for joint in reading.scene.bodies[0].joints] == [0.1, 0]
+
+    def test_a_manipulator_without_an_arm(self, read_text):
+        arm = "<Manipulator name='m'><base>a</base><effector>c</effector></Manipulator>"
+        reading = read_text(f'<Robot name="r"><KinBody>{TWO}<Body name="c"/></KinBody>{arm}</Robot>')
+        assert codes(reading) == ["no-arm"]
 
     def test_manipulators_of_one_name(self, read_text):
         arm = '<Manipulator name="arm"><base>a</base><effector>{}</effector></Manipulator>'
@@ -582,7 +655,21 @@ class TestFailures:
     @pytest.mark.parametrize(
         ("content", "line", "words"),
         [
-            ("<Environment>\n<Robot>\n</Environment>", 3, "not well-formed XML"),
+            (
+                "<Environment>\n<Robot>\n</Environment>",
+                3,
+                "not well-formed XML in column 3: mismatched tag; <Robot> of line 2",
+            ),
+            ('<KinBody name="a&b"/>', 1, "invalid token; write & as &amp;"),
+            ('<?xml version="1.0" encoding="utf-16"?><KinBody name="b"/>', 1, "leave the encoding out"),
+            ('<?xml version="1.0" encoding="shift_jis"?><KinBody name="b"/>', 1, "save it as UTF-8"),
+            ('<Robot name="r">\n<KinBody/>', 2, "no element found; <Robot> of line 1 is open there"),
+            (
+                "<KinBody name='b'>\n" + JOINT.format("mimic_pos='1/lead'", "") + "</KinBody>",
+                2,
+                "joint 'j' has no value",
+            ),
+            (f'<Robot name="r"><KinBody>{TWO}</KinBody>\n{ARM}</Robot>', 2, "exchange base"),
             ("", 0, "the file is empty"),
             ("<Nonsense/>", 1, "the root element is <Nonsense>"),
             ('<KinBody name="b"><Body name="A"/>\n<Joint>\n<Body>nope</Body></Joint></KinBody>', 3, "there are: A"),

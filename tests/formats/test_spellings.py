@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from strategies import Choices, RandomChoices, chance, choices, examples, number, one_of, vector
 
-from ravemj.core.transforms import Pose, rotate, wxyz_from_axis_angle
+from ravemj.core.transforms import Pose, rotate, rows_from_wxyz, scale, wxyz_from_axis_angle
 from ravemj.errors import Diagnostics
 from ravemj.formats.collada.writer import write as collada_document
 from ravemj.formats.openrave_xml import read, read_text
@@ -163,6 +163,35 @@ def disguised(choices: Choices, xml: str) -> str:
     return "".join(ElementTree.tostring(child, encoding="unicode") for child in root)
 
 
+def respelled(choices: Choices, element: ElementTree.Element, *, slides: bool) -> list[ElementTree.Element]:
+    """Return elements that mean what one element means; ``slides`` tells whether it is of a slider."""
+    words = (element.text or "").split()
+    numbers = [] if element.tag in {"Body", "offsetfrom"} else [float(word) for word in words]
+
+    def child(tag: str, *values: float) -> ElementTree.Element:
+        made = ElementTree.Element(tag)
+        made.text = text(values)
+        return made
+
+    if element.tag == "Geom":
+        element.tag = one_of(choices, ["Geom", "Geometry"])
+    elif element.tag == "extents":
+        tag = one_of(choices, ["extents", "halfextents", "fullextents"])
+        return [child(tag, *scale(tuple(numbers), 2.0 if tag == "fullextents" else 1.0))]
+    elif element.tag == "Translation":
+        share = number(choices, -1, 2)
+        return [child("Translation", *scale(tuple(numbers), part)) for part in (share, 1 - share)]
+    elif element.tag == "limitsdeg" and (slides or chance(choices, 50)):
+        return [child(one_of(choices, ["limits", "limitsrad"]), *(numbers if slides else map(math.radians, numbers)))]
+    elif element.tag == "RotationAxis":
+        *axis, angle = numbers
+        turn = wxyz_from_axis_angle(tuple(axis), math.radians(angle))
+        matrix = [entry for row in rows_from_wxyz(turn) for entry in row]
+        halves = [child("RotationAxis", *scale(tuple(axis), 3.0), angle / 2) for _ in range(2)]
+        return one_of(choices, [halves, [child("Quat", *turn)], [child("RotationMat", *matrix)]])
+    return [element]
+
+
 def body(xml: str):
     reading = read_text(xml, "test")
     assert reading.failure is None
@@ -305,6 +334,94 @@ class TestWhatMeansTheSame:
         named = named.replace("<Body>l", "<Body>p_l").replace("<offsetfrom>l", "<offsetfrom>p_l")
         (found,) = read(folder / "outer.xml").scene.bodies
         assert_same(found, body(f'<Robot name="k"><KinBody>{named}</KinBody></Robot>'))
+
+    @given(choices())
+    @examples(100)
+    def test_offsets_from_any_link_above(self, choices):
+        """Poses, anchors and axes are relative to any link, which need not be at the joint."""
+        parts = draw_parts(choices)
+        poses = placed(parts)
+        xml = ""
+        for index, (part, pose) in enumerate(zip(parts, poses, strict=True)):
+            other = choices.integer(0, index - 1) if index else 0
+            offset = f"<offsetfrom>l{other}</offsetfrom>" if index else ""
+            relative = poses[other].inverse() @ pose if index else pose
+            xml += absolute(index, relative, part).replace("</Body>", f"{offset}</Body>")
+        for index, part in enumerate(parts[1:], 1):
+            other = choices.integer(0, len(parts) - 1) if part.kind == "hinge" else index
+            frame = f"<offsetfrom>l{other}</offsetfrom>"
+            xml += joint(index, part, poses[other].inverse() @ poses[index]).replace("<anchor>", f"{frame}<anchor>")
+        wanted = body(f'<KinBody name="k">{flat(parts, absolutely=True)}</KinBody>')
+        assert_same(body(f'<KinBody name="k">{xml}</KinBody>'), wanted)
+
+    @given(choices())
+    @examples(100)
+    def test_scaled_and_multiplied(self, choices):
+        """A factor multiplies translations and centres of mass, through nested elements, and no shapes and anchors."""
+        parts = draw_parts(choices)
+        inner, outer = (one_of(choices, [0.5, 2.0, 3.0]) for _ in range(2))
+        factor = inner * outer
+        xml = f'<KinBody scalegeometry="{inner}">{flat(parts, absolutely=False)}</KinBody>'
+        larger = [replace(part, position=scale(part.position, factor), com=scale(part.com, factor)) for part in parts]
+        wanted = body(f'<KinBody name="k">{flat(larger, absolutely=False)}</KinBody>')
+        assert_same(body(f'<KinBody name="k" scalegeometry="{outer} {outer} {outer}">{xml}</KinBody>'), wanted)
+
+    @given(choices())
+    @examples(100)
+    def test_other_tags_and_units_of_numbers(self, choices):
+        root = ElementTree.fromstring(f"<KinBody>{flat(draw_parts(choices), absolutely=False)}</KinBody>")
+        plain = "".join(ElementTree.tostring(child, encoding="unicode") for child in root)
+        for parent in [*root.iter()]:
+            for place, child in reversed([*enumerate(parent)]):
+                parent[place : place + 1] = respelled(choices, child, slides=parent.get("type") == "slider")
+        other = "".join(ElementTree.tostring(child, encoding="unicode") for child in root)
+        found, wanted = (body(f'<KinBody name="k">{xml}</KinBody>') for xml in (other, plain))
+        assert_same(found, wanted)
+
+    @given(choices())
+    @examples(60)
+    def test_joints_that_follow_under_a_prefix(self, choices):
+        """The equation of a Robot with a prefix, that with the names spelled out, and the attribute of old files."""
+        parts = draw_parts(choices)
+        follower = choices.integer(1, len(parts) - 1)
+        slope, offset = number(choices, -2, 2), number(choices, -0.1, 0.1)
+        xml = flat(parts, absolutely=chance(choices, 50)) + '<Body name="end"/>'
+        name = f'name="j{follower}"'
+        equations = [
+            f'mimic_pos="{slope:.6f}*lead+{offset:.6f}" mimic_vel="|lead {slope!r}"',
+            f'mimic_pos="{slope:.6f}*p_lead+{offset:.6f}" mimic_vel="|p_lead {slope!r}"',
+            f'mimic="lead {slope!r} {offset!r}"',
+        ]
+        lead = '<Joint name="lead"><Body>l0</Body><Body>end</Body><axis>0 0 1</axis></Joint>'
+        one, spelled, old = (xml.replace(name, f"{name} {equation}") + lead for equation in equations)
+        for tag in ('name="', "<Body>", "<offsetfrom>"):
+            for first in ("l", "j", "end"):
+                spelled = spelled.replace(f"{tag}{first}", f"{tag}p_{first}")
+        wanted = body(f'<Robot name="k"><KinBody>{spelled}</KinBody></Robot>')
+        for text in (one, old):
+            found = body(f'<Robot name="k" prefix="p_"><KinBody>{text}</KinBody></Robot>')
+            assert [part.name for part in found.all_joints] == [part.name for part in wanted.all_joints]
+            assert_same(found, wanted)
+            values = [[axis.value for part in one.passive_joints for axis in part.axes] for one in (found, wanted)]
+            np.testing.assert_allclose(*values, atol=1e-5)  # the old attribute has six digits
+
+    @given(choices=choices())
+    @examples(60)
+    def test_environments_and_their_units(self, choices, tmp_path_factory):
+        """Environments may nest and include one another, and a unit scales nothing."""
+        folder = tmp_path_factory.mktemp("parts")
+        xml = f'<KinBody name="k">{flat(draw_parts(choices), absolutely=False)}</KinBody>'
+        wrapped = xml
+        for depth in range(choices.integer(1, 4)):
+            unit = one_of(choices, ["", "<unit>mm 0.001</unit>"])
+            if chance(choices, 50):
+                (folder / f"{depth}.xml").write_text(wrapped)
+                kind = "Environment" if wrapped.startswith("<E") else 'KinBody name="k"'
+                wrapped = f'<{kind} file="{depth}.xml"/>'
+            wrapped = f"<Environment>{unit}{wrapped}</Environment>"
+        (folder / "outer.xml").write_text(wrapped)
+        (found,) = read(folder / "outer.xml").scene.bodies
+        assert_same(found, body(xml), atol=0)
 
 
 @pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")

@@ -25,7 +25,7 @@ from ravemj.formats.openrave_xml.writer import write as openrave_document
 from ravemj.formats.readers import read_data, read_file
 from ravemj.formats.writers import save
 from ravemj.model.comparison import compare
-from ravemj.model.scene import UNLIMITED, Box, Scene, TriMesh, View
+from ravemj.model.scene import UNLIMITED, Box, Inertial, Scene, TriMesh, View
 
 pytestmark = pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
 
@@ -507,7 +507,15 @@ class TestTrouble:
             env.Save(tmp_path / NAMES[kind], atts={"format": kind})
         assert contents(tmp_path) == {}
 
-    @pytest.mark.parametrize("name", ["a b", " a", "a\tb", "a\xa0b"])
+    @pytest.mark.parametrize("kind", NAMES)
+    def test_an_inertia_that_is_not_finite(self, tmp_path, kind):
+        body = read_file(MODELS / "panda.xml").scene.bodies[0]
+        inertial = Inertial(math.inf, (0.0, 0.0, 0.0), ((math.nan,) * 3,) * 3)
+        link = replace(body.links[0], inertial=inertial)
+        with pytest.raises(OutputError, match=r"number in '(total|mass)': inf"):
+            save(tmp_path / NAMES[kind], Scene((replace(body, links=(link, *body.links[1:])),)), Diagnostics(), kind)
+
+    @pytest.mark.parametrize("name", ["a b", " a", "a\tb"])
     def test_names_that_are_no_words(self, tmp_path, name):
         """Lists of links and joints are words, so that OpenRAVE XML has other names for those in them."""
         body = read_file(MODELS / "panda.xml").scene.bodies[0]

@@ -56,6 +56,7 @@ MISTAKES = {
     "ik-10-param-distance": (r"Lookat3D\[0\]", "OpenRAVE leaves out what is along a direction that nobody can set"),
     "info-23-extract-and-init": ("limits-before-add", "OpenRAVE counts no DOFs of a body that is not added yet"),
     "world-14-rave-environment-ids": ("destroyed|number", "OpenRAVE goes on listing environments that are destroyed"),
+    "gap-18-unnamed-bodies": ("anonymous", "see REPLACED"),
     "name-30-mimic-equations": ("atan2", "OpenRAVE's atan2 is wrong in the third digit"),
     "name-36-spec-of-trajectory-file": (
         "returns_self",
@@ -64,6 +65,14 @@ MISTAKES = {
     "ray-11-inside-start": ("", "what ODE says about rays that start inside a body differs from shape to shape"),
 }
 """Other answers that are OpenRAVE's mistakes or accidents: the places in ``result`` that may differ, and why."""
+
+REPLACED = {"gap-18-unnamed-bodies": ("env.Add(b, True))\nresult['after']", "env.Add(b))\nresult['after']")}
+"""A call of a script and what stands in its place: where two truths exclude each other, all the rest is compared.
+
+OpenRAVE 0.149 refuses a body without a name, whatever ``anonymous`` is. pymanoid, written for OpenRAVE 0.9, makes just
+these calls (``RaveCreateKinBody(env, "")``, ``InitFromBoxes``, ``Add(box, True)``) for each of its boxes and would end
+there, so ravemj gives the body a name (``test_pymanoid``); no rule on the arguments tells the two apart.
+"""
 
 
 def run_case(name: str, folder: Path, cases: Path = CASES) -> dict[str, object]:
@@ -110,7 +119,8 @@ def _be_the_script(script: Path, folder: Path, writer: int) -> None:
         alias.install_finder()
         space = {"__name__": "__main__", "__file__": script.name, "raises": raises}
         try:
-            exec(compile(script.read_text(), script.name, "exec"), space)
+            text = script.read_text().replace(*REPLACED.get(script.stem, ("", "")))
+            exec(compile(text, script.name, "exec"), space)
             answer = {"result": plain(space["result"])}
         except BaseException as error:
             answer = {"error": "".join(traceback.format_exception(error))}
@@ -215,7 +225,7 @@ def test_case(name, tmp_path):
 
 def test_the_lists_name_cases():
     assert len(NAMES) == 503
-    assert {*MISTAKES, *SLIDER_FORCES} <= set(NAMES)
+    assert {*MISTAKES, *SLIDER_FORCES, *REPLACED} <= set(NAMES)
     assert set(NAMES) >= NOT_YET
     assert LIST.read_text().split() == sorted(NOT_YET)
 

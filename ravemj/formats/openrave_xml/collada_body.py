@@ -32,9 +32,9 @@ def add_collada(
         found = next(iter((*content.bodies, *content.others)), None)
         if found is None:
             raise SourceError("there is no body in it", Source(found_path, included_from=source))
-        if found.is_robot and not body.is_robot:
+        if found.is_robot and not body.is_robot:  # gap-66
             raise SourceError("it holds a robot, and OpenRAVE takes no robot for a KinBody", source, "write <Robot>")
-        found.joint_values = None  # those of the file hold only where it is loaded by itself
+        found.joint_values = None  # those of the file hold only where it is loaded by itself (gap-51)
         placed = found.freeze(Diagnostics())
     except SourceError as error:
         context.diagnostics.error("broken-file", error.message, error.source)

@@ -3,13 +3,15 @@
 import functools
 import os
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 
 from ravemj.core.transforms import UNSCALED, Vec3
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
 from ravemj.formats.meshes import MeshPart
-from ravemj.formats.openrave_xml.tags import Tag, Target
+from ravemj.formats.openrave_xml.tags import Tag, Target_contra
 from ravemj.formats.openrave_xml.tree import Document, Element, parse_file
+from ravemj.formats.openrave_xml.values import Placement, is_false, is_true
 from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
@@ -17,6 +19,8 @@ MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 _MOST_ABOVE = 4
 """Folders above a file in which what it names is looked for: robots in repositories lie no deeper."""
+FLAGS = {"enable", "circular", "render", "modifiable", "selfcollision", "skipgeometry"}
+"""Attributes that are true or false, of any element."""
 _LONGEST_NAME = 80
 """No known name is anywhere near as long."""
 
@@ -43,9 +47,9 @@ class Context:
     def walk(
         self,
         element: Element,
-        tags: Mapping[str, Tag[Target]],
+        tags: Mapping[str, Tag[Target_contra]],
         ignored: Mapping[str, str],
-        target: Target,
+        target: Target_contra,
     ) -> None:
         """Read each child element that is in a table, in document order; report the others.
 
@@ -61,7 +65,7 @@ class Context:
             if tag is not None:
                 if child.complete:
                     if tag.once:
-                        self._check_first(child, before.setdefault(tag.read, child))
+                        self._check_first(child, before.setdefault(tag.read if tag.once is True else tag.once, child))
                     try:
                         tag.read(target, child)
                     except ArithmeticError as error:
@@ -90,6 +94,7 @@ class Context:
 
     def check_attributes(self, element: Element, known: Mapping[str, str], ignored: Mapping[str, str]) -> None:
         """Report the attributes of an element that nothing reads; the tables give meanings and reasons."""
+        self._check_flags(element)
         if element.attributes.keys() <= known.keys():
             return
         for name in element.attributes:
@@ -101,6 +106,15 @@ class Context:
             elif not name.startswith("xmlns"):
                 message = f"OpenRAVE knows no attribute '{name}' of <{element.spelled}> and skips it"
                 self.diagnostics.warn("unknown-attribute", message, element.source, did_you_mean(name, known))
+
+    def _check_flags(self, element: Element) -> None:
+        """Warn of flags that are neither true nor false."""
+        for name in FLAGS & element.attributes.keys():
+            text = element.attributes[name]
+            if not is_true(text) and not is_false(text):
+                counted = "false" if name == "skipgeometry" else "true"
+                message = f'{name}="{text}" counts as {counted} in OpenRAVE'
+                self.diagnostics.warn("bad-flag", message, element.source, "write true or false")
 
     def include(self, element: Element) -> Element | None:
         """Return the root of the file that an element's ``file`` attribute names.
@@ -182,7 +196,7 @@ class Context:
             self._found[question] = above
             return above
         hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
-        message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
+        message = f"there is no file '{name}'; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
 
@@ -221,6 +235,30 @@ class Context:
             return ()
 
 
+@dataclass
+class Placed:
+    """An open element that has a transform of its own."""
+
+    context: Context
+    placement: Placement = field(default_factory=Placement)
+
+    def translate(self, element: Element) -> None:
+        """Read a ``<Translation>``."""
+        self.placement.translate(element, self.context.diagnostics)
+
+    def rotate(self, element: Element) -> None:
+        """Read a rotation."""
+        self.placement.rotate(element, self.context.diagnostics)
+
+
+PLACEMENT_TAGS: dict[str, Tag[Placed]] = {
+    "translation": Tag(Placed.translate, "x y z [m]; several add up, and rotations do not turn them"),
+    "rotationaxis": Tag(Placed.rotate, "axis x y z of any length, angle [deg]"),
+    "rotationmat": Tag(Placed.rotate, "nine numbers, row by row"),
+    "quat": Tag(Placed.rotate, "w x y z"),
+}
+
+
 def _found_above(name: str, folder: str) -> str | None:
     """Return the path of a file in the one of the folders above another that has it; None if several have.
 
@@ -245,8 +283,8 @@ def _is_same_file(first: str, second: str) -> bool:
 
 
 _HOMES = {
-    **dict.fromkeys(("body", "joint", "adjacent", "mass"), "KinBody"),
-    **dict.fromkeys(("geom", "offsetfrom"), "Body"),
+    **dict.fromkeys(("body", "joint", "adjacent"), "KinBody"),
+    **dict.fromkeys(("geom", "mass", "offsetfrom"), "Body"),
     **dict.fromkeys(("extents", "radius", "height", "diffusecolor", "ambientcolor", "transparency"), "Geom"),
     **dict.fromkeys(("axis", "anchor", "limits", "limitsdeg", "maxvel", "weight"), "Joint"),
     **dict.fromkeys(("manipulator", "attachedsensor", "controller"), "Robot"),

@@ -129,7 +129,9 @@ class _Document:
         elif root.tag in readers:
             if root.complete:
                 readers[root.tag](root)
-        elif root.tag not in INTERFACES:
+        elif root.tag in INTERFACES:
+            _EnvironmentScope(self).read_interface(root)
+        else:
             if root.tag == "mujoco":
                 raise _other_format("MJCF, MuJoCo's own format", root.source)
             raise SourceError(
@@ -145,7 +147,9 @@ class _Document:
             self.read(root)
         environment = _EnvironmentScope(self)
         self.context.walk(element, ENVIRONMENT_TAGS, ENVIRONMENT_IGNORED, environment)
-        self.view = environment.view
+        # An <Environment> that ends sets the background, but the camera only where it has tags of it.
+        camera = environment.view.T_world_camera or (self.view and self.view.T_world_camera)
+        self.view = replace(environment.view, T_world_camera=camera)
         for child in element.children:
             if not child.complete and child.tag == "environment":
                 self.read_environment(child)
@@ -239,6 +243,7 @@ class _EnvironmentScope:
 
     def read_physics(self, element: Element) -> None:
         """Read the gravity of a physics engine; ODE without one has none."""
+        self.document.context.check_attributes(element, PHYSICS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "").lower()
         if kind not in {"ode", "bullet", "genericphysicsengine", ""}:
             message = f"there is no physics engine '{kind}' here"
@@ -280,15 +285,20 @@ ENVIRONMENT_TAGS: dict[str, Tag[_EnvironmentScope]] = {
     "robot": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
     "kinbody": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
     "sensor": Tag(_EnvironmentScope.read_sensor, "see below; also as the root; no robot carries it"),
-    "bkgndcolor": Tag(_EnvironmentScope.read_background, "red green blue, from 0 to 1"),
-    "camtrans": Tag(_EnvironmentScope.read_camera_position, "position of the camera [m]"),
-    "camrotationaxis": Tag(_EnvironmentScope.read_camera_rotation, "axis x y z, angle [deg]; z looks forward, y down"),
-    "camrotmat": Tag(_EnvironmentScope.read_camera_matrix, "nine numbers, row by row"),
-    "camrotaxis": Tag(_EnvironmentScope.read_old_camera_rotation, "deprecated: a half turn about x comes first"),
+    "bkgndcolor": Tag(_EnvironmentScope.read_background, "red green blue, from 0 to 1", once=True),
+    "camtrans": Tag(_EnvironmentScope.read_camera_position, "position of the camera [m]", once=True),
+    "camrotationaxis": Tag(
+        _EnvironmentScope.read_camera_rotation, "axis x y z, angle [deg]; z looks forward, y down", once="rotation"
+    ),
+    "camrotmat": Tag(_EnvironmentScope.read_camera_matrix, "nine numbers, row by row", once="rotation"),
+    "camrotaxis": Tag(
+        _EnvironmentScope.read_old_camera_rotation, "deprecated: a half turn about x comes first", once="rotation"
+    ),
     "physicsengine": Tag(_EnvironmentScope.read_physics, "only its gravity; `ode` without one has none"),
     **dict.fromkeys(INTERFACES, _INTERFACE),
 }
 ENVIRONMENT_ATTRIBUTES = {"file": "read first, as if its content stood here"}
+PHYSICS_ATTRIBUTES = {"type": "ode, bullet"}
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
     "unit": "OpenRAVE keeps it as a label and scales nothing; lengths are in metres here",
@@ -306,4 +316,5 @@ def check_name(name: str, element: Element) -> None:
     if not name:
         raise UnnamedError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
     if " " in name or not name.isprintable():  # other spaces than this one are not printable
-        raise SourceError(f"the name '{name}' has spaces or control characters", element.source)
+        hint = "scripts find bodies by names of one word; write _ in their place"
+        raise SourceError(f"the name {name!r} has spaces or control characters", element.source, hint)

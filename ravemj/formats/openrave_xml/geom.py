@@ -9,17 +9,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import UNSCALED, ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, wxyz_from_axis_angle
+from ravemj.errors import Diagnostics
 from ravemj.formats.meshes import MeshPart
-from ravemj.formats.openrave_xml.context import Context
-from ravemj.formats.openrave_xml.tags import Tag, placement_tags
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
+from ravemj.formats.openrave_xml.tags import Tag
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
-    Placement,
     hadamard,
     is_false,
     leading_numbers,
     number,
     vector,
+    words,
 )
 from ravemj.model.scene import (
     SHAPE_TYPES,
@@ -54,12 +55,10 @@ class GeometryScope(NamedTuple):
 
 
 @dataclass(slots=True)
-class _Geom:
+class _Geom(Placed):
     """An open ``<Geom>``: what its children have set so far."""
 
-    context: Context
     name: str = ""
-    placement: Placement = field(default_factory=Placement)
     vectors: dict[str, Vec3] = field(default_factory=lambda: {})
     numbers: dict[str, float] = field(default_factory=lambda: {})
     cross_section: tuple[tuple[float, float], ...] = ()
@@ -69,12 +68,6 @@ class _Geom:
     diffuse: Rgb | None = None
     ambient: Rgb | None = None
     transparency: float | None = None
-
-    def translate(self, element: Element) -> None:
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        self.placement.rotate(element, self.context.diagnostics)
 
     def read_half_extents(self, element: Element) -> None:
         self.vectors["half_extents"] = vector(element, self.context.diagnostics, self.vectors.get("half_extents", ZERO))
@@ -103,14 +96,22 @@ class _Geom:
         if rest or len(self.vertices) % 9:
             message = f"<{element.spelled}> needs nine numbers for each triangle, and holds {len(self.vertices)}"
             self.context.diagnostics.warn("number-count", message, element.source)
-        if len(self.vertices) % 9:
+        if len(self.vertices) % 9:  # errors-37
             self.vertices = ()
 
     def read_collision(self, element: Element) -> None:
-        self.collision = self.collision or _mesh_file(element)
+        self.collision = self._first(self.collision, element)
 
     def read_render(self, element: Element) -> None:
-        self.render = self.render or _mesh_file(element)
+        self.render = self._first(self.render, element)
+
+    def _first(self, before: MeshFile | None, element: Element) -> MeshFile:
+        """Return the file that was named before, if any, and else that of an element."""
+        if before is None or not before.name:
+            return _mesh_file(element, self.context.diagnostics)
+        message = f"<{element.spelled}> is left out: the first file, '{before.name}', counts"
+        self.context.diagnostics.warn("repeated-tag", message, element.source, "write one")
+        return before
 
     def read_diffuse(self, element: Element) -> None:
         self.diffuse = vector(element, self.context.diagnostics, self.diffuse or UNSCALED)
@@ -126,12 +127,12 @@ class _Geom:
 
 
 GEOM_TAGS: dict[str, Tag[_Geom]] = {
-    **placement_tags(_Geom.translate, _Geom.rotate),
+    **PLACEMENT_TAGS,
     "extents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "halfextents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "fullextents": Tag(_Geom.read_full_extents, "of a box: sizes x y z [m]"),
-    "radius": Tag(_Geom.read_number, "of a sphere, cylinder or capsule [m]"),
-    "height": Tag(_Geom.read_number, "of a cylinder, along y, and of a capsule or prism, along z [m]"),
+    "radius": Tag(_Geom.read_number, "of a sphere, cylinder or capsule [m]", once="radius"),
+    "height": Tag(_Geom.read_number, "of a cylinder, along y, and of a capsule or prism, along z [m]", once="height"),
     "outer_extents": Tag(_Geom.read_vector, "of a container: sizes x y z [m]"),
     "inner_extents": Tag(_Geom.read_vector, "of a container: sizes of the inside [m]"),
     "bottom_cross": Tag(_Geom.read_vector, "of a container: sizes of a cross on the bottom [m]"),
@@ -139,14 +140,14 @@ GEOM_TAGS: dict[str, Tag[_Geom]] = {
     "crosssection": Tag(
         _Geom.read_cross_section, "of a prism: x y of its corners [m]; it has walls, and no top and bottom"
     ),
-    "vertices": Tag(_Geom.read_vertices, "of a trimesh: nine numbers a triangle [m]"),
+    "vertices": Tag(_Geom.read_vertices, "of a trimesh: nine numbers a triangle [m]", once=True),
     "data": Tag(_Geom.read_collision, "mesh file that collides, and scale"),
     "collision": Tag(_Geom.read_collision, "the same as Data, also as attributes file and scale"),
     "render": Tag(_Geom.read_render, "mesh file that is drawn, and scale"),
-    "diffusecolor": Tag(_Geom.read_diffuse, "red green blue, from 0 to 1"),
-    "ambientcolor": Tag(_Geom.read_ambient, "red green blue, from 0 to 1"),
-    "transparency": Tag(_Geom.read_transparency, "from 0 to 1"),
-    "name": Tag(_Geom.read_name, "name of the shape"),
+    "diffusecolor": Tag(_Geom.read_diffuse, "red green blue, from 0 to 1", once=True),
+    "ambientcolor": Tag(_Geom.read_ambient, "red green blue, from 0 to 1", once=True),
+    "transparency": Tag(_Geom.read_transparency, "from 0 to 1", once=True),
+    "name": Tag(_Geom.read_name, "name of the shape", once=True),
 }
 GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
 GEOM_ATTRIBUTES = {
@@ -168,13 +169,13 @@ _NO_SIZES = {**dict.fromkeys(_VECTORS, ZERO), "radius": 0.0, "height": 0.0}
 def read_geometries(element: Element, scope: GeometryScope, context: Context) -> list[Geometry]:
     """Read a ``<Geom>``: one geometry, or one for each part of its mesh file."""
     context.check_attributes(element, GEOM_ATTRIBUTES, {})
-    kind = element.attributes.get("type", "").lower() or "box"
+    kind = element.attributes.get("type", "").lower() or "box"  # gap-31
     geom = _Geom(context, name=element.attributes.get("name", ""))
     context.walk(element, GEOM_TAGS, GEOM_IGNORED, geom)
     shape = _SHAPES.get(kind)
     if shape is TriMesh:
         return _trimesh(geom, element, scope)
-    if shape is None:
+    if shape is None:  # geom-26
         message = f"a geometry of type '{kind}' has no shape here"
         context.diagnostics.warn("unsupported-geometry", message, element.source)
     display = _surfaces(geom, geom.render, element, scope)
@@ -196,7 +197,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
         ]
         if parts:
             break
-    if found:
+    if found:  # the name is that of the first part alone (gap-69)
         return [found[0], *(replace(geometry, name="") for geometry in found[1:])]
     corners = np.array(geom.vertices).reshape(-1, 3)
     mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
@@ -204,7 +205,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 
 
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
-    """Return what OpenRAVE makes of a file that is not there: of an absolute path, which it trusts, an empty mesh."""
+    """Return what OpenRAVE makes of a file that is not there: nothing (gap-71), of an absolute path a mesh (gap-72)."""
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()
     return (_REDDISH,)
@@ -283,14 +284,18 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
     return Mesh(mesh.vertices @ in_geometry.T, mesh.triangles)
 
 
-def _mesh_file(element: Element) -> MeshFile:
+def _mesh_file(element: Element, diagnostics: Diagnostics) -> MeshFile:
     """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
-    words = element.text.split(maxsplit=1)
-    name, numbers = (words[0] if words else ""), (words[1] if len(words) > 1 else "")
+    name = next(iter(words(element.text)), "")
+    numbers = element.text.lstrip().removeprefix(name)
     if element.tag != "data":
         name = element.attributes.get("file", name)
         numbers = element.attributes.get("scale", numbers)
-    values, _ = leading_numbers(numbers)
+    values, rest = leading_numbers(numbers)
+    if rest or len(values) > 3:
+        message = f"<{element.spelled}> holds '{numbers.strip()}' where a scale of one to three numbers should stand"
+        hint = "names of files cannot hold spaces"
+        diagnostics.warn("bad-number" if rest else "number-count", message, element.source, hint)
     if len(values) < 2:
         uniform = values[0] if values else 1.0
         return MeshFile(name, (uniform, uniform, uniform))

@@ -9,7 +9,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from ravemj.core.transforms import Vec3
-from ravemj.errors import Source
+from ravemj.errors import Diagnostics, Source
 from ravemj.formats.openrave_xml.context import Context, did_you_mean
 from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
 from ravemj.formats.openrave_xml.tree import Element
@@ -49,14 +49,14 @@ def with_given(root: Element, given: Attributes, context: Context) -> Element:
     attributes = root.attributes | {name: text for name, text in given.items() if name in KNOWN and text}
     attributes["prefix"] = given.get("prefix", "") + root.attributes.get("prefix", "")
     if given.get("scalegeometry"):
-        factors = hadamard(given_scale(given), scale_attribute(root))
+        factors = hadamard(given_scale(given), scale_attribute(root, context.diagnostics))
         attributes["scalegeometry"] = " ".join(map(repr, factors))
     return replace(root, attributes=attributes)
 
 
 def given_scale(given: Attributes) -> Vec3:
     """Return the factors of lengths along x, y and z."""
-    return scale_attribute(Element("", "", dict(given), Source("")))
+    return scale_attribute(Element("", "", dict(given), Source("")), Diagnostics())
 
 
 def give(given: Attributes, bodies: Sequence[BodyBuilder]) -> None:

@@ -13,6 +13,7 @@ from ravemj.formats.openrave_xml.values import (
     hadamard,
     is_false,
     leading_numbers,
+    number_list,
     numbers,
     scale_attribute,
     vector,
@@ -49,8 +50,8 @@ class _JointReader:
     parameters: Parameters = NO_PARAMETERS
 
     def read_body(self, element: Element) -> None:
-        """Take the first name for the first link and every later one for the second."""
-        name = word(element)
+        """Take the first name for the first link and every later one for the second, in any letter case (errors-50)."""
+        name = word(element, self.context.diagnostics)
         link = self.body.find_link_any_case(name)
         if link is None:
             known = ", ".join(link.name for link in self.body.links) or "none"
@@ -67,43 +68,43 @@ class _JointReader:
         self.anchor = hadamard(self.scale, vector(element, self.context.diagnostics, self.anchor))
 
     def read_direction(self, element: Element) -> None:
-        """Read an axis; ``axis1`` and ``axis2`` are those of a joint with two, ``axis`` that of one with one."""
-        index = {"axis2": 1}.get(element.tag, 0)
+        """Read an axis: ``axis1`` and ``axis2``, in this order, of a joint with two (random-xml-127), else ``axis``."""
+        index = 1 if element.tag == "axis2" else 0
         if self.kind == "hinge2" and index == 1 and 0 not in self.directions:
             raise SourceError(
                 f"OpenRAVE refuses <{element.spelled}> before <axis1>", element.source, "write axis1 first"
             )
-        if (element.tag == "axis") != (self.kind in {"hinge", "slider"}):
+        if (element.tag == "axis") != (self.kind in {"hinge", "slider"}):  # joint-53
             message = f"<{element.spelled}> has no effect on a joint of type {self.kind}"
             self.context.diagnostics.warn("ignored-tag", message, element.source)
             return
         x, y, z = vector(element, self.context.diagnostics, self.directions.get(index, ZERO))
         length = math.hypot(x, y, z)
-        if length == 0.0:
+        if length == 0.0:  # errors-27
             raise SourceError("the axis of a joint cannot be 0 0 0", element.source)
         self.directions[index] = scale((x, y, z), 1 / length)
 
     def read_limits(self, element: Element) -> None:
         """Read a pair of numbers for each axis; ``limitsdeg`` is in degrees but for sliders."""
-        if self.stops:
+        if self.stops:  # errors-31
             raise SourceError(f"<{element.spelled}> cannot be mixed with <lostop> and <histop>", element.source)
-        values = leading_numbers(element.text).values
+        values = number_list(element, self.context.diagnostics)
         wanted = 2 * len(self.axes)
-        if len(values) != wanted:
+        if len(values) != wanted:  # joint-14
             message = f"<{element.spelled}> holds {len(values)} numbers where {wanted} should stand; it has no effect"
             self.context.diagnostics.warn("number-count", message, element.source)
             return
         factor = math.pi / 180 if element.tag == "limitsdeg" and self.kind != "slider" else 1.0
         for index, axis in enumerate(self.axes):
-            lower, upper = sorted(value * factor for value in values[2 * index : 2 * index + 2])
+            lower, upper = sorted(value * factor for value in values[2 * index : 2 * index + 2])  # joint-12
             if not self.circular or index > 0:
                 axis.update(lower=lower, upper=upper)
-            elif (lower, upper) != (0.0, 0.0):
+            elif (lower, upper) != (0.0, 0.0):  # as ravemj writes them, where other axes have limits
                 message = f"<{element.spelled}> has no effect on a circular joint"
                 self.context.diagnostics.warn("ignored-tag", message, element.source)
 
     def read_stop(self, element: Element) -> None:
-        """Read one of the deprecated limits, in degrees but for sliders; they also turn every axis round."""
+        """Read one of the deprecated limits, in degrees but for sliders; they also turn every axis round (joint-17)."""
         factor = 1.0 if self.kind == "slider" else math.pi / 180
         limit = "lower" if element.tag == "lostop" else "upper"
         before = [axis[limit] for axis in self.axes]
@@ -120,7 +121,7 @@ class _JointReader:
         self._set_all(element, "weight")
 
     def read_resolution(self, element: Element) -> None:
-        """Read a step for each axis, or one for all."""
+        """Read a step for each axis, or one for all (gap-38)."""
         self._set_all(element, "resolution", 1.0 if self.kind == "slider" else math.pi / 180)
         if len(leading_numbers(element.text).values) == 1:
             for axis in self.axes:
@@ -153,11 +154,11 @@ class _JointReader:
         return math.pi / 180 if element.tag.endswith("deg") else 1.0
 
     def _set_all(self, element: Element, name: str, factor: float = 1.0, *, not_negative: bool = False) -> None:
-        """Read a number for each axis; those that are missing keep their values, which the factor multiplies, too."""
+        """Read a number for each axis; those that are missing keep their values, times the factor (gap-38)."""
         before = [axis[name] if name in axis else float(getattr(_PLAIN_AXIS, name)) for axis in self.axes]
         values = numbers(element, len(self.axes), self.context.diagnostics, before)
         if not_negative:
-            self.negative.pop(name, None)
+            self.negative.pop(name, None)  # a later number that is none makes up for it (random-xml-24)
             if min(values) < 0:
                 self.negative[name] = element
         for axis, value in zip(self.axes, values, strict=True):
@@ -177,9 +178,9 @@ JOINT_TAGS: dict[str, Tag[_JointReader]] = {
     "body": Tag(_JointReader.read_body, "twice: the names of the Bodies that it joins"),
     "offsetfrom": Tag(_JointReader.read_frame, "name of the Body that anchor and axis are relative to", once=True),
     "anchor": Tag(_JointReader.read_anchor, "a point on the axis [m]", once=True),
-    "axis": Tag(_JointReader.read_direction, "direction x y z, of a hinge or slider"),
-    "axis1": Tag(_JointReader.read_direction, "first axis of a hinge2"),
-    "axis2": Tag(_JointReader.read_direction, "second axis of a hinge2"),
+    "axis": Tag(_JointReader.read_direction, "direction x y z, of a hinge or slider", once="axis"),
+    "axis1": Tag(_JointReader.read_direction, "first axis of a hinge2", once="axis1"),
+    "axis2": Tag(_JointReader.read_direction, "second axis of a hinge2", once="axis2"),
     "limits": Tag(_JointReader.read_limits, "lower and upper [rad, m]", once=True),
     "limitsrad": Tag(_JointReader.read_limits, "lower and upper [rad, m]", once=True),
     "limitsdeg": Tag(_JointReader.read_limits, "lower and upper [deg; of a slider m]", once=True),
@@ -225,14 +226,14 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
         SourceError: it names bodies that are not there, or has impossible numbers.
     """
     context.check_attributes(element, JOINT_ATTRIBUTES, {})
-    if element.attributes.get("type", "").lower() == "universal":
+    if element.attributes.get("type", "").lower() == "universal":  # the body stays (joint-22)
         body.refusal = SourceError("OpenRAVE refuses joints of type 'universal'", element.source, "write two hinges")
         return
     kind = _read_kind(element, context)
     circular = not is_false(element.attributes.get("circular", "false"))
     spans = [UNLIMITED if circular and index == 0 else _DEFAULT_LIMIT[kind] for index in range(len(AXES[kind]))]
     limits: list[dict[str, float]] = [{"lower": -span, "upper": span} for span in spans]
-    reader = _JointReader(context, body, kind, scale_attribute(element), circular, limits)
+    reader = _JointReader(context, body, kind, scale_attribute(element, context.diagnostics), circular, limits)
     context.walk(element, JOINT_TAGS, JOINT_IGNORED, reader)
     for limit in reader.negative.values():
         raise SourceError(f"<{limit.spelled}> is {limit.text.strip()}, and cannot be negative", limit.source)
@@ -240,10 +241,11 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
         raise SourceError(
             f"the joint names {len(reader.links)} bodies; a joint needs two", element.source, "add <Body> elements"
         )
-    if reader.links[0] == reader.links[1]:
+    if reader.links[0] == reader.links[1]:  # errors-14
         body.refusal = SourceError("the joint names the same body twice", element.source)
         return
     first, second = reader.links
+    # Of a static and another link the static one comes first, and link 0 stays where it is (gap-07, joint-29).
     exchanged = first != 0 and body.links[second].static and not body.links[first].static
     if exchanged:
         first, second = second, first
@@ -272,7 +274,10 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
 
 
 def _direction(reader: _JointReader, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
-    """Return an axis in the first link's frame; where it is not given, what OpenRAVE takes, whatever the order."""
+    """Return an axis in the first link's frame; where it is not given, what OpenRAVE takes, whatever the order.
+
+    That is z of the first link (errors-26); a slider without an axis does not move.
+    """
     direction = _UNIT[index] if reader.kind == "spherical" else reader.directions.get(index)
     if direction is not None:
         turned = rotate(frame.wxyz, direction)
@@ -283,8 +288,8 @@ def _direction(reader: _JointReader, index: int, frame: Pose, *, exchanged: bool
 
 
 def frame_of_link(body: BodyBuilder, element: Element, context: Context) -> Pose:
-    """Return the pose of the link that an ``<offsetfrom>`` names; an unknown one counts as absent."""
-    name = word(element)
+    """Return the pose of the link that an ``<offsetfrom>`` names; an unknown one counts as absent (errors-29, -30)."""
+    name = word(element, context.diagnostics)
     link = body.find_link(name)
     if link is None:
         message = f"there is no Body '{name}' to take an offset from; read as if the tag were not there"
@@ -304,8 +309,7 @@ def _read_kind(element: Element, context: Context) -> JointKind:
 def _equations(element: Element, context: Context) -> Equations | None:
     """Return the equations of a mimic joint, or None."""
     attributes = element.attributes
-    texts = {name: text for name, text in attributes.items() if name.startswith("mimic_")}
-    if texts:
+    if any(name.startswith("mimic_") for name in attributes):
         return Equations(*(attributes.get(f"mimic_{part}", "") for part in ("pos", "vel", "accel")))
     if "mimic" not in attributes:
         return None

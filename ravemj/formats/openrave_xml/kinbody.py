@@ -11,7 +11,7 @@ from ravemj.core.transforms import Vec3
 from ravemj.errors import SourceError
 from ravemj.formats.collada import is_collada
 from ravemj.formats.openrave_xml.collada_body import add_collada
-from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.geom import GeometryScope
 from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
@@ -19,16 +19,18 @@ from ravemj.formats.openrave_xml.mass import DefaultMassReader
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
 from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_sensor, read_manipulator
-from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
-    ROTATIONS,
+    Numbers,
     Placement,
     hadamard,
     is_true,
     leading_numbers,
     number,
+    number_list,
     scale_attribute,
+    words,
 )
 from ravemj.model.builder import BodyBuilder, GrabBuilder
 from ravemj.model.scene import KinBody
@@ -36,7 +38,7 @@ from ravemj.model.scene import KinBody
 Part = TypeVar("Part")
 
 
-class _Scope:
+class _Scope(Placed):
     """An open ``<Robot>`` or ``<KinBody>``.
 
     Attributes:
@@ -44,12 +46,11 @@ class _Scope:
     """
 
     def __init__(self, body: BodyBuilder, context: Context, scale: Vec3, depth: int, *, skip_geometry: bool) -> None:
+        super().__init__(context, Placement(scale=scale))
         self.body = body
-        self.context = context
         self.scale = scale
         self.depth = depth
         self.skip_geometry = skip_geometry
-        self.placement = Placement(scale=scale)
         self.default_mass = DefaultMassReader(context)
         self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
@@ -63,15 +64,15 @@ class _Scope:
         marks = Marks.of(self.body)
         tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
-        self.body.name = element.attributes.get("name", "") or self.body.name
+        self.body.name = element.attributes.get("name", "") or self.body.name  # the last to end with a name gives it
         prefix = element.attributes.get("prefix", "")
         if prefix:
             add_prefix(prefix, self.body, marks, whole=element.tag == "robot")
-        if self.transparency is not None:
+        if self.transparency is not None:  # of all shapes that the body has so far (geom-35)
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
         if element.tag == "robot":
-            self._youngest_first(marks)
+            self._youngest_first(marks)  # gap-43, gap-44, gap-45
         else:
             self._join_links(element)
         if self.placement.moves:
@@ -103,12 +104,15 @@ class _Scope:
             inner.read(wrapper)
         except SourceError as error:
             if self.depth > 0 and (element.tag == "kinbody" or any(before[1:])):
-                raise  # the whole body goes
+                raise  # the whole body goes (random-xml-143); of a Robot without parts what came before stays (-120)
             self.context.diagnostics.error("broken-file", error.message, error.source, error.hint)
             self.body.set_parts(before)
 
     def _youngest_first(self, marks: Marks) -> None:
-        """Move manipulators and sensors that came since some moment before those of then, the last one first."""
+        """Move manipulators and sensors that came since some moment before those of then, the last one first.
+
+        If there were none then, nothing moves (gap-43); parts of a COLLADA file do not turn (gap-75).
+        """
         body = self.body
         arms = [any(built is older for older in marks.manipulators) for built in body.manipulators]
         body.manipulators = _reordered(body.manipulators, arms)
@@ -117,27 +121,26 @@ class _Scope:
         )
 
     def _join_links(self, element: Element) -> None:
-        """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides."""
+        """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides.
+
+        See gap-17, gap-18 and gap-19.
+        """
         text = element.attributes.get("makejoinedlinksadjacent")
-        found = [1.0] if text is None else leading_numbers(text).values
-        self.body.joined_links_adjacent = bool(found and int(found[0]))
+        values, rest = Numbers([1.0], "") if text is None else leading_numbers(text)
+        self.body.joined_links_adjacent = bool(values and int(values[0]))
+        if rest or not values:
+            message = f'makejoinedlinksadjacent="{text}" counts as 0: OpenRAVE reads a whole number'
+            self.context.diagnostics.warn("openrave-bug", message, element.source, "write 1 or 0")
 
     def nest(self, element: Element) -> None:
         """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""
         check_scope_attributes(element, self.context)
-        scale = hadamard(self.scale, scale_attribute(element))
+        scale = hadamard(self.scale, scale_attribute(element, self.context.diagnostics))
         inner = _Scope(self.body, self.context, scale, self.depth + 1, skip_geometry=self.skip_geometry)
         inner.read(element)
+        # Those of the Robot win, and those of included files are lost (robot-13, environment-13).
         if self.depth == 0 and element.tag == "kinbody" and self.body.is_robot and self.joint_values is None:
             self.joint_values = inner.joint_values
-
-    def translate(self, element: Element) -> None:
-        """Read a ``<Translation>`` of the whole element."""
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        """Read a rotation of the whole element."""
-        self.placement.rotate(element, self.context.diagnostics)
 
     def read_default_mass(self, element: Element) -> None:
         """Read the ``<Mass>`` that the following Bodies share."""
@@ -154,12 +157,9 @@ class _Scope:
 
     def read_grabbed(self, element: Element) -> None:
         """Read that a link holds another body."""
-        placement = Placement()
-        for child in element.children:
-            if child.tag == "translation":
-                placement.translate(child, self.context.diagnostics)
-            elif child.tag in ROTATIONS:
-                placement.rotate(child, self.context.diagnostics)
+        self.context.check_attributes(element, GRABBED_ATTRIBUTES, {})
+        grabbed = Placed(self.context)
+        self.context.walk(element, PLACEMENT_TAGS, {}, grabbed)
         link, body, ignored = (element.attributes.get(name, "") for name in ("link", "body", "ignored"))
         links = [self.body.find_link(name) for name in (link, *ignored.split())]
         known = [self.body.links[index] for index in links if index is not None]
@@ -167,11 +167,11 @@ class _Scope:
             message = f"<{element.spelled}> names a link of '{link} {ignored}' that is not above it; it is left out"
             self.context.diagnostics.warn("unknown-body", message, element.source)
         else:
-            self.body.grabs.append(GrabBuilder(body, known[0], placement.pose, tuple(known[1:])))
+            self.body.grabs.append(GrabBuilder(body, known[0], grabbed.placement.pose, tuple(known[1:])))
 
     def read_adjacent(self, element: Element) -> None:
         """Read a pair of links that never collide."""
-        names = element.text.split()[:2]
+        names = words(element.text)[:2]
         links = [link for name in names if (link := self.body.find_link(name)) is not None]
         if len(links) == 2:
             self.body.adjacent.append((min(links), max(links)))
@@ -189,7 +189,7 @@ class _Scope:
 
     def read_joint_values(self, element: Element) -> None:
         """Read the values of all DOFs."""
-        self.joint_values = leading_numbers(element.text).values
+        self.joint_values = number_list(element, self.context.diagnostics)
 
     def read_manipulator(self, element: Element) -> None:
         """Read a ``<Manipulator>``."""
@@ -197,7 +197,7 @@ class _Scope:
         self.body.manipulators.append(built)
 
     def read_controller(self, element: Element) -> None:
-        """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints."""
+        """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints (robot-24)."""
         if self.body.joints:
             hint = "leave it out: robots have a controller without asking"
             raise SourceError("OpenRAVE cannot attach a controller while it reads a robot", element.source, hint)
@@ -217,8 +217,8 @@ def _reordered(parts: list[Part], are_older: list[bool]) -> list[Part]:
 
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
-    **placement_tags(_Scope.translate, _Scope.rotate),
-    "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]"),
+    **PLACEMENT_TAGS,
+    "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]", once=True),
     "grabbed": Tag(_Scope.read_grabbed, "ravemj's own: a body that a link holds, its pose there, and ignored links"),
 }
 ROBOT_TAGS: dict[str, Tag[_Scope]] = {
@@ -233,6 +233,7 @@ ROBOT_TAGS: dict[str, Tag[_Scope]] = {
         left_out=True,
     ),
 }
+GRABBED_ATTRIBUTES = {"body": "the held body", "link": "the link that holds it", "ignored": "links that may touch it"}
 ROBOT_IGNORED = {
     **reasons(NO_EFFECT_HERE, "sendcommand"),
     "conveyorjoint": "a plugin of OpenRAVE's makes links of it that ride along a trajectory; MuJoCo has no such joint",
@@ -245,7 +246,7 @@ KINBODY_TAGS: dict[str, Tag[_Scope]] = {
     "mass": Tag(_Scope.read_default_mass, "the default of the Bodies that follow: see below"),
     "adjacent": Tag(_Scope.read_adjacent, "names of two Bodies that never collide"),
     "modelsdir": Tag(_Scope.read_models_folder, "where meshes of the following Bodies are looked for first"),
-    "transparency": Tag(_Scope.read_transparency, "of all shapes, from 0 to 1"),
+    "transparency": Tag(_Scope.read_transparency, "of all shapes, from 0 to 1", once=True),
 }
 KINBODY_IGNORED = {
     **reasons("OpenRAVE overlooks it here; write it in each Geom", "diffusecolor", "ambientcolor"),
@@ -278,7 +279,7 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
     check_scope_attributes(element, context)
     body = BodyBuilder(element.tag == "robot", element.source)
     skip_geometry = is_true(element.attributes.get("skipgeometry", "false"))
-    scope = _Scope(body, context, scale_attribute(element), 0, skip_geometry=skip_geometry)
+    scope = _Scope(body, context, scale_attribute(element, context.diagnostics), 0, skip_geometry=skip_geometry)
     scope.read(element)
     body.joint_values = scope.joint_values
     _check_type(element, body, context)
@@ -292,7 +293,7 @@ def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
     kind = element.attributes.get("type")
     if kind is None:
         return
-    if "file" in element.attributes:
+    if "file" in element.attributes:  # errors-49
         message = "OpenRAVE throws away what it read from the file of an element that also has a type"
         context.diagnostics.warn("openrave-bug", message, element.source, "leave out the type")
         body.links.clear()
@@ -303,7 +304,7 @@ def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
     if kind.lower() in _PLUGIN_CLASSES:
         message = f"what the class '{kind}' adds to a body is left out"
         context.diagnostics.warn("ignored-type", message, element.source)
-    elif kind.lower() not in {"genericrobot", "kinbody", ""}:
+    elif kind.lower() not in {"genericrobot", "kinbody", ""}:  # errors-43
         message = f"there is no class '{kind}' for bodies here; read as a plain one"
         context.diagnostics.error("unknown-interface", message, element.source)
 

@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 from ravemj.core.transforms import Pose
-from ravemj.formats.openrave_xml.context import Context
+from ravemj.errors import Diagnostics
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.geom import GeometryScope, read_geometries
 from ravemj.formats.openrave_xml.joint import frame_of_link
 from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
-from ravemj.formats.openrave_xml.tags import IGNORED, Tag, placement_tags
+from ravemj.formats.openrave_xml.tags import IGNORED, Tag
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import Placement, hadamard, is_false, scale_attribute
 from ravemj.formats.parameters import PARAMETER_MEANING
@@ -15,18 +16,17 @@ from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import OWN_SHAPES
 
 
-class _LinkScope:
+class _LinkScope(Placed):
     """An open ``<Body>``."""
 
     def __init__(
         self, body: BodyBuilder, link: LinkBuilder, mass: MassReader, context: Context, geometry_scope: GeometryScope
     ) -> None:
+        super().__init__(context, Placement(link.pose, geometry_scope.scale))
         self.body = body
         self.link = link
         self.mass = mass
-        self.context = context
         self.geometry_scope = geometry_scope
-        self.placement = Placement(link.pose, geometry_scope.scale)
         self.T_scope_offset: Pose | None = None
         self.skip_geometry = False
 
@@ -35,7 +35,7 @@ class _LinkScope:
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
         self.link.enabled = not is_false(element.attributes.get("enable", "true"))
         self.link.self_collision_ignored = is_false(element.attributes.get("selfcollision", "true"))
-        self.link.name = element.attributes.get("name", self.link.name)  # a Body in a Body renames the link
+        self.link.name = element.attributes.get("name", self.link.name)  # a Body in a Body renames the link (gap-20)
         if "file" in element.attributes:
             self._include(element)
         self.context.walk(element, LINK_TAGS, {}, self)
@@ -58,7 +58,7 @@ class _LinkScope:
     def read_nested(self, element: Element) -> None:
         """Read a ``<Body>`` in this one: the same link, all of whose shapes so far its transform moves."""
         older = len(self.link.geometries)
-        geometry_scope = _scaled(self.geometry_scope, element)
+        geometry_scope = _scaled(self.geometry_scope, element, self.context.diagnostics)
         mass = MassReader(self.context, None, geometry_scope.scale)
         inner = _LinkScope(self.body, self.link, mass, self.context, geometry_scope)
         inner.placement = Placement(Pose(), geometry_scope.scale)
@@ -75,14 +75,6 @@ class _LinkScope:
             message = "OpenRAVE discards the Mass of a Body in a Body"
             self.context.diagnostics.warn("openrave-bug", message, element.source, "put it into the outer Body")
 
-    def translate(self, element: Element) -> None:
-        """Read a ``<Translation>``."""
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        """Read a rotation."""
-        self.placement.rotate(element, self.context.diagnostics)
-
     def read_offset(self, element: Element) -> None:
         """Read the name of the link that the pose is relative to."""
         self.T_scope_offset = frame_of_link(self.body, element, self.context)
@@ -93,7 +85,7 @@ class _LinkScope:
             return
         found = read_geometries(element, self.geometry_scope, self.context)
         group = element.attributes.get("group", OWN_SHAPES)
-        if group == OWN_SHAPES:
+        if group == OWN_SHAPES:  # geom-36
             self.link.geometries += found
         else:
             self.link.add_to_group(group, found)
@@ -108,7 +100,7 @@ class _LinkScope:
 
 
 LINK_TAGS: dict[str, Tag[_LinkScope]] = {
-    **placement_tags(_LinkScope.translate, _LinkScope.rotate),
+    **PLACEMENT_TAGS,
     "offsetfrom": Tag(_LinkScope.read_offset, "name of the Body that the pose is relative to", once=True),
     "geom": Tag(_LinkScope.read_geometry, "see below"),
     "geometry": Tag(_LinkScope.read_geometry, "the same as Geom"),
@@ -142,27 +134,41 @@ def read_link(
     """Read a ``<Body>``: a new link, or one more piece of the link of that name."""
     name = element.attributes.get("name")
     existing = None if name is None else body.find_link(name)
+    # A known name, also an empty one, goes on with that link; a Body without the attribute is new (transform-26).
     link = LinkBuilder(name or "", element.source) if existing is None else body.links[existing]
-    geometry_scope = _scaled(geometry_scope, element)
+    geometry_scope = _scaled(geometry_scope, element, context.diagnostics)
     mass = MassReader(context, default_mass, geometry_scope.scale)
     scope = _LinkScope(body, link, mass, context, geometry_scope)
     scope.skip_geometry = skip_geometry
     scope.read(element)
     link.pose = scope.pose
     rule = mass.rule or default_mass
-    link.inertial = link_inertial(rule, link.geometries)
+    inertial = link_inertial(rule, link.geometries)
+    if existing is not None and rule is None and inertial.mass != link.inertial.mass:
+        message = (
+            f"link '{link.name}' weighs {inertial.mass:g} kg and no longer {link.inertial.mass:g} kg: "
+            "OpenRAVE computes the mass anew where a Body of the same name goes on with a link"
+        )
+        context.diagnostics.warn("openrave-bug", message, element.source, "repeat the <Mass>, or write it here only")
+    link.inertial = inertial
     if rule is not None and rule.by_total and rule.total and not link.inertial.mass:
         number = "NaN, as in OpenRAVE, and computed with as 0" if link.inertial.undefined else "0"
         message = f"link '{link.name}' has no shape with a volume: its mimicgeom mass is {number}, not {rule.total:g}"
         code = "undefined-mass" if link.inertial.undefined else "openrave-bug"
         context.diagnostics.warn(code, message, element.source, "write the mass as type custom")
     if "type" in element.attributes:
-        link.static = element.attributes["type"].lower() == "static"
+        kind = element.attributes["type"].lower()
+        link.static = kind == "static"
+        if kind not in {"static", "dynamic"}:
+            message = f"there is no Body of type '{kind}'; OpenRAVE takes a dynamic one"
+            context.diagnostics.warn(
+                "unknown-type", message, element.source, "write static for a Body that never moves"
+            )
     if existing is None:
         body.links.append(link)
 
 
-def _scaled(scope: GeometryScope, element: Element) -> GeometryScope:
+def _scaled(scope: GeometryScope, element: Element, diagnostics: Diagnostics) -> GeometryScope:
     if "scalegeometry" not in element.attributes:
         return scope
-    return scope._replace(scale=hadamard(scope.scale, scale_attribute(element)))
+    return scope._replace(scale=hadamard(scope.scale, scale_attribute(element, diagnostics)))

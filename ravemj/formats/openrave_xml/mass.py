@@ -18,6 +18,7 @@ from ravemj.model.builder import DEFAULT_INERTIAL
 from ravemj.model.scene import Box, Geometry, Inertial, Sphere
 
 NO_INERTIA: Rows = (ZERO, ZERO, ZERO)
+_ROUNDING = 1e-6  # of inertias that were printed with few digits
 TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is given
 
 
@@ -47,9 +48,6 @@ class MassRule(NamedTuple):
     axes: Wxyz | None = None
 
 
-_SPHERE = MassRule()
-
-
 class MassReader:
     """Reads ``<Mass>`` elements in order; what one leaves out keeps its value.
 
@@ -60,21 +58,19 @@ class MassReader:
     def __init__(self, context: Context, default: MassRule | None, scale: Vec3) -> None:
         self._context = context
         self._scale = scale
-        rule = default or _SPHERE
-        self._rule = rule._replace(by_total=False) if rule.by_total else rule
+        self._rule = default or MassRule()
         self.rule: MassRule | None = None
 
     def read(self, element: Element) -> None:
         """Read a ``<Mass>`` of a Body."""
         self._context.check_attributes(element, MASS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "sphere").lower()
-        if kind not in {"mimicgeom", "sphere", "box", "custom"}:
+        if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
             self._context.diagnostics.warn(
                 "unknown-type", f"there is no mass of type '{kind}'; OpenRAVE takes a sphere", element.source
             )
             kind = "sphere"
-        if self._rule.kind != kind or self._rule.by_total:
-            self._rule = self._rule._replace(kind=kind, by_total=False)
+        self._rule = self._rule._replace(kind=kind, by_total=False)  # whatever the KinBody's was (gap-22, gap-23)
         self._context.walk(element, MASS_TAGS, {}, self)
         self.rule = self._rule
         if kind == "box" and any(child.tag == "extents" for child in element.children):
@@ -91,7 +87,7 @@ class MassReader:
         self._take_total(self._total(element))
 
     def density(self, element: Element) -> None:
-        """Read a ``<density>``; it has no effect on a custom mass, but on a Mass after it."""
+        """Read a ``<density>``; it has no effect on a custom mass (gap-21), but on a Mass after it."""
         density = single(number(element, self._context.diagnostics, self._rule.density))
         self._rule = self._rule._replace(density=density, by_total=False)
 
@@ -120,7 +116,10 @@ class MassReader:
     def inertia(self, element: Element) -> None:
         """Read the inertia of a custom mass; only its upper triangle counts."""
         before = [value for row in self._rule.inertia for value in row]
-        xx, xy, xz, _, yy, yz, _, _, zz = numbers(element, 9, self._context.diagnostics, before)
+        xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers(element, 9, self._context.diagnostics, before)
+        if max(abs(xy - yx), abs(xz - zx), abs(yz - zy)) > _ROUNDING * max(abs(xx), abs(yy), abs(zz)):
+            message = f"<{element.spelled}> is not symmetric; OpenRAVE takes what stands above its diagonal"
+            self._context.diagnostics.warn("asymmetric-inertia", message, element.source)
         self._rule = self._rule._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
     def axes(self, element: Element) -> None:
@@ -128,21 +127,21 @@ class MassReader:
         self._rule = self._rule._replace(axes=normalize(ROTATIONS["quat"](element, self._context.diagnostics)))
 
     def extents(self, element: Element) -> None:
-        """Accept ``<extents>``, which OpenRAVE does not read in a Body."""
+        """Accept ``<extents>``, which OpenRAVE does not read in a Body (mass-11)."""
 
 
 MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
 MASS_TAGS: dict[str, Tag[MassReader]] = {
-    "density": Tag(MassReader.density, "[kg/m³]"),
-    "total": Tag(MassReader.total, "[kg]"),
+    "density": Tag(MassReader.density, "[kg/m³]", once=True),
+    "total": Tag(MassReader.total, "[kg]", once=True),
     "precisetotal": Tag(
         MassReader.precise_total,
         "[kg] of which OpenRAVE, which does not know it, has single precision; ravemj writes it",
     ),
-    "radius": Tag(MassReader.radius, "of a sphere [m]"),
-    "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so"),
-    "com": Tag(MassReader.com, "centre of a custom mass [m]"),
-    "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]"),
+    "radius": Tag(MassReader.radius, "of a sphere [m]", once=True),
+    "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so", once=True),
+    "com": Tag(MassReader.com, "centre of a custom mass [m]", once=True),
+    "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]", once=True),
     "principalaxes": Tag(
         MassReader.axes,
         "w x y z of the principal axes that a custom mass has of all that fit its inertia; ravemj's own",
@@ -169,7 +168,7 @@ class DefaultMassReader:
         """Read a ``<Mass>`` of a KinBody."""
         self._context.check_attributes(element, DEFAULT_MASS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "sphere").lower()
-        if kind not in {"mimicgeom", "sphere", "box"}:
+        if kind not in {"mimicgeom", "sphere", "box"}:  # "custom" too
             message = f"OpenRAVE takes a mass of type '{kind}' in a KinBody for a sphere"
             self._context.diagnostics.warn("openrave-bug", message, element.source, "give each Body its own Mass")
             kind = "sphere"
@@ -191,7 +190,7 @@ class DefaultMassReader:
         self._number, self._is_total = self._read(element), False
 
     def total(self, element: Element) -> None:
-        """Read a ``<total>``; it lands in the same place as a density."""
+        """Read a ``<total>``; it lands in the same place as a density (mass-21)."""
         self._number, self._is_total = self._read(element), True
 
     def _read(self, element: Element) -> float:
@@ -203,7 +202,7 @@ class DefaultMassReader:
         self._half_extents = (number(element, self._context.diagnostics, before), second, third)
 
     def extents(self, element: Element) -> None:
-        """Read the half sizes of a box; of other kinds and behind a total they have no effect."""
+        """Read the half sizes of a box; of other kinds and behind a total they have no effect (gap-24)."""
         half_extents = vector(element, self._context.diagnostics, self._half_extents)
         if self._kind == "box" and not self._is_total:
             self._half_extents = half_extents
@@ -211,10 +210,10 @@ class DefaultMassReader:
 
 DEFAULT_MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box; others count as sphere"}
 DEFAULT_MASS_TAGS: dict[str, Tag[DefaultMassReader]] = {
-    "density": Tag(DefaultMassReader.density, "[kg/m³]"),
-    "total": Tag(DefaultMassReader.total, "[kg]; of mimicgeom OpenRAVE takes it for a density"),
-    "radius": Tag(DefaultMassReader.radius, "of a sphere [m]"),
-    "extents": Tag(DefaultMassReader.extents, "of a box: half sizes [m]"),
+    "density": Tag(DefaultMassReader.density, "[kg/m³]", once=True),
+    "total": Tag(DefaultMassReader.total, "[kg]; of mimicgeom OpenRAVE takes it for a density", once=True),
+    "radius": Tag(DefaultMassReader.radius, "of a sphere [m]", once=True),
+    "extents": Tag(DefaultMassReader.extents, "of a box: half sizes [m]", once=True),
 }
 
 
@@ -237,8 +236,8 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
 def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     """Combine the solids of all shapes by the parallel axis theorem.
 
-    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias. It divides a total by 0 where
-    there are shapes and none has a volume.
+    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias (mass-06). It divides a total
+    by 0 where there are shapes and none has a volume (random-xml-132), and not where there are none (gap-25).
     """
     density = TOTAL_DENSITY if rule.by_total else rule.density
     solids = [geometry.shape.mass_moments(density) for geometry in geometries]
@@ -246,9 +245,6 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     if mass == 0.0:
         return Inertial(0.0, ZERO, NO_INERTIA, undefined=rule.by_total and bool(geometries))
     factor = rule.total / mass if rule.by_total else 1.0
-    if len(geometries) == 1:
-        position, wxyz = geometries[0].T_link_geometry
-        return Inertial(mass * factor, position, _rotated(solids[0][1], wxyz))
     com = ZERO
     for geometry, (part, _) in zip(geometries, solids, strict=True):
         com = add(com, scale(geometry.T_link_geometry.position, part / mass))

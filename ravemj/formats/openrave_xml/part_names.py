@@ -1,9 +1,8 @@
 """Names of links and joints by which a written document refers to them."""
 
-from collections.abc import Collection
-
 from ravemj.errors import Diagnostics
-from ravemj.model.scene import KinBody
+from ravemj.formats.openrave_xml.values import words
+from ravemj.model.scene import Joint, KinBody, Link
 
 
 class PartNames:
@@ -22,31 +21,23 @@ class PartNames:
         referred |= {link for pair in body.adjacent for link in pair}
         referred |= {link for one in body.manipulators for link in (one.base, one.effector) if link is not None}
         referred |= {sensor.link for sensor in body.sensors if sensor.link is not None}
-        links = [link.name for link in body.links]
-        known = {name.lower() for name in links}
         self.links: list[str] = []
-        for index, name in enumerate(links):
+        known = {link.name.lower() for link in body.links}
+        for index, link in enumerate(body.links):
+            name = link.name
             in_any_case = any(name.lower() == other.lower() for other in self.links)
-            is_word = name.split() == [name] or not name
+            is_word = words(name) == [name] or not name
             is_taken = (name and name in self.links) or (index in referred and (in_any_case or not is_word))
-            given = _unused("_".join(name.split()) or "link", known) if is_taken else name
-            self.links.append(given)
-            known.add(given.lower())
-            if is_taken:
-                message = f"the link '{name}' of '{body.name}' is called '{given}' in the file"
-                diagnostics.warn("renamed", message, body.links[index].source)
+            self.links.append(_renamed("link", link, body, known, diagnostics) if is_taken else name)
         joints = [joint.name for joint in body.all_joints]
         active = set(joints[: len(body.joints)])
         listed = {joint for one in body.manipulators for joint in one.gripper_joints}  # in a list of words
         self.joints: list[str] = []
-        for index, name in enumerate(joints):
-            is_taken = (name in active and name in self.joints) or (index in listed and name.split() != [name])
-            known = {other.lower() for other in (*joints, *self.joints)}
-            given = _unused("_".join(name.split()) or "joint", known) if is_taken else name
-            self.joints.append(given)
-            if is_taken:
-                message = f"the joint '{name}' of '{body.name}' is called '{given}' in the file"
-                diagnostics.warn("renamed", message, body.all_joints[index].source)
+        known = {name.lower() for name in joints}
+        for index, joint in enumerate(body.all_joints):
+            name = joint.name
+            is_taken = (name in active and name in self.joints) or (index in listed and words(name) != [name])
+            self.joints.append(_renamed("joint", joint, body, known, diagnostics) if is_taken else name)
         self._in_file = dict(zip(reversed(joints), reversed(self.joints), strict=True))  # of one name, the first counts
 
     def equation(self, text: str) -> str:
@@ -58,7 +49,12 @@ class PartNames:
         return substitute(text, self._in_file)
 
 
-def _unused(name: str, known: Collection[str]) -> str:
-    """Return a name with a number behind it that no known name, in lower case, has."""
+def _renamed(kind: str, part: Link | Joint, body: KinBody, known: set[str], diagnostics: Diagnostics) -> str:
+    """Return a name for a part that no known name, in lower case, is; it is known from now on."""
+    name = "_".join(words(part.name)) or kind
     numbered = (f"{name}_{count}" for count in range(1, len(known) + 2))
-    return next(other for other in numbered if other.lower() not in known)
+    given = next(other for other in numbered if other.lower() not in known)
+    known.add(given.lower())
+    message = f"the {kind} '{part.name}' of '{body.name}' is called '{given}' in the file"
+    diagnostics.warn("renamed", message, part.source)
+    return given

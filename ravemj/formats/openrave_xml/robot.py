@@ -1,41 +1,32 @@
 """``<Manipulator>`` and ``<AttachedSensor>``, which only robots have."""
 
 from ravemj.errors import Diagnostics
-from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.sensor import SensorElement, read_device
-from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import Placement, leading_numbers, vector, word
+from ravemj.formats.openrave_xml.values import number_list, vector, word, words
 from ravemj.model.builder import BodyBuilder, SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.scene import AttachedSensor
 
 
 def named_link(body: BodyBuilder, element: Element, owner: str, context: Context) -> str:
-    """Return the name of a link. One that is not there yet is an error, though it may be there in the end."""
-    name = word(element)
+    """Return the name of a link. One that is not there yet is an error, though it may be there in the end (gap-29)."""
+    name = word(element, context.diagnostics)
     if body.find_link(name) is None:
         message = f"there is no Body '{name}' for the <{element.spelled}> of {owner}"
         context.diagnostics.error("unknown-body", message, element.source, "put it behind the Body")
     return name
 
 
-class _ManipulatorScope:
+class _ManipulatorScope(Placed):
     """An open ``<Manipulator>``."""
 
     def __init__(self, body: BodyBuilder, built: ManipulatorBuilder, context: Context) -> None:
+        super().__init__(context)
         self.body = body
         self.built = built
-        self.context = context
-        self.placement = Placement()
-
-    def translate(self, element: Element) -> None:
-        """Read a ``<Translation>`` of the tool."""
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        """Read a rotation of the tool."""
-        self.placement.rotate(element, self.context.diagnostics)
 
     def read_base(self, element: Element) -> None:
         """Read the name of the link that the arm starts from."""
@@ -50,11 +41,11 @@ class _ManipulatorScope:
 
     def read_gripper(self, element: Element) -> None:
         """Read the names of the gripper's joints."""
-        self.built.gripper_joints = element.text.split()
+        self.built.gripper_joints = words(element.text)
 
     def read_closing(self, element: Element) -> None:
         """Read the signs of closing."""
-        self.built.closing_direction = leading_numbers(element.text).values
+        self.built.closing_direction = number_list(element, self.context.diagnostics)
 
     def read_direction(self, element: Element) -> None:
         """Read the direction that the tool points along."""
@@ -62,7 +53,7 @@ class _ManipulatorScope:
 
 
 MANIPULATOR_TAGS: dict[str, Tag[_ManipulatorScope]] = {
-    **placement_tags(_ManipulatorScope.translate, _ManipulatorScope.rotate),
+    **PLACEMENT_TAGS,
     "base": Tag(_ManipulatorScope.read_base, "name of the Body that the arm starts from", once=True),
     "effector": Tag(_ManipulatorScope.read_effector, "name of the Body that carries the tool", once=True),
     "joints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints", once=True),
@@ -96,23 +87,14 @@ def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> M
     return scope.built
 
 
-class _SensorScope:
+class _SensorScope(Placed):
     """An open ``<AttachedSensor>``."""
 
     def __init__(self, body: BodyBuilder, context: Context) -> None:
+        super().__init__(context)
         self.body = body
-        self.context = context
-        self.placement = Placement()
         self.link: str | None = None
         self.device = SensorElement()
-
-    def translate(self, element: Element) -> None:
-        """Read a ``<Translation>``."""
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        """Read a rotation."""
-        self.placement.rotate(element, self.context.diagnostics)
 
     def read_link(self, element: Element) -> None:
         """Read the name of the link that carries the sensor."""
@@ -124,9 +106,9 @@ class _SensorScope:
 
 
 SENSOR_TAGS: dict[str, Tag[_SensorScope]] = {
-    "link": Tag(_SensorScope.read_link, "name of the Body that carries it"),
-    **placement_tags(_SensorScope.translate, _SensorScope.rotate),
-    "sensor": Tag(_SensorScope.read_device, "see below"),
+    "link": Tag(_SensorScope.read_link, "name of the Body that carries it", once=True),
+    **PLACEMENT_TAGS,
+    "sensor": Tag(_SensorScope.read_device, "see below", once=True),
 }
 SENSOR_ATTRIBUTES = {"name": "name of the sensor"}
 SENSOR_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")
@@ -154,7 +136,7 @@ def read_attached_sensor(body: BodyBuilder, element: Element, context: Context) 
 
 
 def check_sensors(body: BodyBuilder, diagnostics: Diagnostics) -> None:
-    """Warn of sensors whose link is not there at the end of the robot, where OpenRAVE looks it up."""
+    """Warn of sensors whose link is not there at the end of the robot, when OpenRAVE looks it up (gap-28, robot-21)."""
     for sensor, name in body.sensors:
         if name and body.find_link(name) is None:
             message = f"sensor '{sensor.name}' is attached to nothing: in the end there is no Body '{name}'"

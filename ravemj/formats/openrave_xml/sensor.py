@@ -5,10 +5,10 @@ from functools import partial
 from typing import NamedTuple
 
 from ravemj.core.transforms import Pose
-from ravemj.formats.openrave_xml.context import Context
-from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
+from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed, did_you_mean
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import Placement, is_true, leading_numbers, numbers, vector
+from ravemj.formats.openrave_xml.values import is_true, number_list, numbers, vector
 from ravemj.formats.sensor_tags import SensorTag, described, is_text, sensor_tags
 from ravemj.model.scene import (
     SENSOR_COLOR,
@@ -42,15 +42,14 @@ class SensorElement(NamedTuple):
     name: str = ""
 
 
-class _Sensor:
+class _Sensor(Placed):
     """An open ``<Sensor>``."""
 
     def __init__(self, context: Context, device: Device) -> None:
-        self.context = context
+        super().__init__(context)
         self.device = device
         self.is_on = False
         self.color = SENSOR_COLOR
-        self.placement = Placement()
 
     def describe(self, element: Element, tag: SensorTag) -> None:
         """Read an element that the tables shared with COLLADA describe."""
@@ -59,7 +58,7 @@ class _Sensor:
         elif tag.numbers:
             self.device = described(self.device, tag, numbers(element, tag.numbers, self.context.diagnostics))
         else:
-            self.device = described(self.device, tag, leading_numbers(element.text).values)
+            self.device = described(self.device, tag, number_list(element, self.context.diagnostics))
 
     def switch(self, element: Element) -> None:
         """Read whether it measures from the start."""
@@ -69,20 +68,11 @@ class _Sensor:
         """Read the colour of what viewers draw."""
         self.color = vector(element, self.context.diagnostics, self.color)
 
-    def translate(self, element: Element) -> None:
-        """Read a ``<Translation>``."""
-        self.placement.translate(element, self.context.diagnostics)
-
-    def rotate(self, element: Element) -> None:
-        """Read a rotation."""
-        self.placement.rotate(element, self.context.diagnostics)
-
 
 COMMON_TAGS: dict[str, Tag[_Sensor]] = {
     "power": Tag(_Sensor.switch, "1: it measures from the start"),
     "color": Tag(_Sensor.paint, "of what viewers draw: red, green, blue from 0 to 1"),
 }
-PLACEMENT_TAGS: dict[str, Tag[_Sensor]] = placement_tags(_Sensor.translate, _Sensor.rotate)
 DEVICE_ATTRIBUTES = {
     "type": ", ".join(kind.name for kind in SENSOR_KINDS.values()),
     "file": "read in its place",
@@ -161,7 +151,10 @@ def _read(
         return found._replace(pose=place.placement.pose, name=name)
     kind = SENSOR_KINDS.get(next(iter(type_name.split()), "").lower())
     if kind is None:
-        context.diagnostics.error("unknown-interface", f"there is no sensor of type '{type_name}'", element.source)
+        hint = did_you_mean(type_name, [one.name for one in SENSOR_KINDS.values()])
+        context.diagnostics.error(
+            "unknown-interface", f"there is no sensor of type '{type_name}'", element.source, hint
+        )
         return SensorElement()
     sensor = _Sensor(context, kind.device)
     tags = {**device_tags(kind), **COMMON_TAGS, **placement}

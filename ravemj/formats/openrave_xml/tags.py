@@ -8,38 +8,26 @@ from typing import Generic, NamedTuple, TypeVar
 
 from ravemj.formats.openrave_xml.tree import Element
 
-Target = TypeVar("Target")
+Target_contra = TypeVar("Target_contra", contravariant=True)
 
 IGNORED = "OpenRAVE reads it and makes nothing of it"
 NO_EFFECT_HERE = "it has no effect on the model"
 
 
-class Tag(NamedTuple, Generic[Target]):
+class Tag(NamedTuple, Generic[Target_contra]):
     """A child element that the reader knows.
 
     Attributes:
         read: Reads the element into the object that stands for its parent.
         meaning: What the element means, or why it is left out, in a few words.
         left_out: Whether it has no effect on the model.
-        once: Whether only the last one of an element counts, among all tags with this ``read``.
+        once: Whether only the last one of an element counts, among all tags with this ``read``; or of this name.
     """
 
-    read: Callable[[Target, Element], None]
+    read: Callable[[Target_contra, Element], None]
     meaning: str
     left_out: bool = False
-    once: bool = False
-
-
-def placement_tags(
-    translate: Callable[[Target, Element], None], rotate: Callable[[Target, Element], None]
-) -> dict[str, Tag[Target]]:
-    """Return the tags that place an element: translations and rotations."""
-    return {
-        "translation": Tag(translate, "x y z [m]; several add up, and rotations do not turn them"),
-        "rotationaxis": Tag(rotate, "axis x y z of any length, angle [deg]"),
-        "rotationmat": Tag(rotate, "nine numbers, row by row"),
-        "quat": Tag(rotate, "w x y z"),
-    }
+    once: bool | str = False
 
 
 def reasons(reason: str, *names: str) -> dict[str, str]:

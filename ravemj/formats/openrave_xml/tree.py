@@ -99,6 +99,16 @@ def os_reason(error: OSError) -> str:
     return (error.strerror or os.strerror(error.errno or 0)).lower()
 
 
+_HINTS = {
+    expat.errors.XML_ERROR_INVALID_TOKEN: "write & as &amp;, < as &lt;, attributes in quotes, and no -- in a comment",
+    expat.errors.XML_ERROR_UNDEFINED_ENTITY: "write the text itself in its place",
+    expat.errors.XML_ERROR_DUPLICATE_ATTRIBUTE: "write it once",
+    expat.errors.XML_ERROR_INCORRECT_ENCODING: "leave the encoding out of its first line",
+    expat.errors.XML_ERROR_MISPLACED_XML_PI: "let the file begin with <?xml",
+}
+"""What to do about expat's syntax errors; about others, the element that is open says more."""
+
+
 class _Parser:
     """Builds the tree from expat's events."""
 
@@ -128,7 +138,7 @@ class _Parser:
         except expat.ExpatError as error:
             return self._explained(error)
         except (LookupError, ValueError) as error:  # an encoding that Python does not know
-            return SourceError(f"not readable as XML: {error}", self._here())
+            return SourceError(f"not readable as XML: {error}", self._here(), "save it as UTF-8")
         except SourceError as error:
             return error
         return None
@@ -151,7 +161,12 @@ class _Parser:
                         'save it as UTF-8, or name its encoding in the first line: <?xml version="1.0" encoding="…"?>'
                     )
                     return SourceError(f"the byte 0x{byte:02X} is not UTF-8, the encoding of the file", source, hint)
-        return SourceError(f"not well-formed XML: {expat.ErrorString(error.code) or 'syntax error'}", source)
+        reason = expat.ErrorString(error.code) or "syntax error"
+        hint = _HINTS.get(reason, "")
+        if self._open and not hint:
+            hint = f"<{self._open[-1].spelled}> of line {self._open[-1].source.line} is open there"
+        words = reason.removeprefix("not well-formed (").removesuffix(")")
+        return SourceError(f"not well-formed XML in column {error.offset + 1}: {words}", source, hint)
 
     def _here(self) -> Source:
         return Source(self._path, self._expat.CurrentLineNumber, self._included_from)

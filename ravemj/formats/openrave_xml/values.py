@@ -16,16 +16,23 @@ from ravemj.core.transforms import (
     add,
     multiply,
     normalize,
+    rows_from_wxyz,
     wxyz_from_axis_angle,
     wxyz_from_rows,
 )
 from ravemj.errors import Diagnostics, SourceError
 from ravemj.formats.openrave_xml.tree import Element
 
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))", re.ASCII)
+_WORD = re.compile(r"\S+", re.ASCII)
+"""C++ takes only ASCII's digits for digits and only ASCII's spaces for spaces."""
 
 _PLAIN = "0123456789.+-eE \t\r\n"
 """What almost every text with numbers consists of; then Python makes of their words what C++ makes of them."""
+
+
+_OF_FEW_DIGITS = 0.01
+"""How far the numbers of a rotation matrix are from one where somebody wrote two digits."""
 
 
 class Numbers(NamedTuple):
@@ -68,7 +75,7 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
     """Return exactly ``count`` numbers from an element's text.
 
     A word that is no number counts as 0 and ends the reading (``bad-number``); numbers that are missing keep their
-    values, and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
+    values (gap-14, gap-15), and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
 
     Args:
         element: The element.
@@ -98,6 +105,16 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
     return values
 
 
+def number_list(element: Element, diagnostics: Diagnostics) -> list[float]:
+    """Return the numbers that an element's text begins with; a word behind them ends the list (``bad-number``)."""
+    values, rest = leading_numbers(element.text)
+    if rest:
+        taken = " ".join(f"{value:g}" for value in values) or "none"
+        message = f"<{element.spelled}> holds '{rest}' where only numbers should stand; OpenRAVE reads {taken}"
+        diagnostics.warn("bad-number", message, element.source)
+    return values
+
+
 def number(element: Element, diagnostics: Diagnostics, before: float = 0.0) -> float:
     """Return the one number in an element's text."""
     return numbers(element, 1, diagnostics, (before,))[0]
@@ -109,20 +126,35 @@ def vector(element: Element, diagnostics: Diagnostics, before: Vec3 = ZERO) -> V
     return (x, y, z)
 
 
-def scale_attribute(element: Element) -> Vec3:
-    """Return the ``scalegeometry`` of an element: one number for all axes, or three."""
+def scale_attribute(element: Element, diagnostics: Diagnostics) -> Vec3:
+    """Return the ``scalegeometry`` of an element: one number for all axes, or three; of others the first counts."""
     if "scalegeometry" not in element.attributes:
         return UNSCALED
-    values, _ = leading_numbers(element.attributes["scalegeometry"])
+    text = element.attributes["scalegeometry"]
+    values, rest = leading_numbers(text)
+    if rest or len(values) not in {1, 3}:
+        message = f'scalegeometry="{text}" should be one number or three'
+        diagnostics.warn("bad-number" if rest else "number-count", message, element.source)
     if len(values) == 3:
         return (values[0], values[1], values[2])
     uniform = values[0] if values else 1.0
     return (uniform, uniform, uniform)
 
 
-def word(element: Element) -> str:
-    """Return the first word of an element's text; names cannot hold spaces."""
-    return next(iter(element.text.split()), "")
+def words(text: str) -> list[str]:
+    """Return the words of a text, as C++ streams would read them."""
+    return _WORD.findall(text)
+
+
+def word(element: Element, diagnostics: Diagnostics) -> str:
+    """Return the first word of an element's text, a name; more words have no effect (``extra-words``)."""
+    found = words(element.text) or [""]
+    if len(found) > 1:
+        message = (
+            f"<{element.spelled}> holds '{' '.join(found)}' where one name should stand; OpenRAVE reads '{found[0]}'"
+        )
+        diagnostics.warn("extra-words", message, element.source, "names that others refer to cannot hold spaces")
+    return found[0]
 
 
 def is_true(value: str) -> bool:
@@ -176,15 +208,24 @@ class Placement:
 def axis_angle(element: Element, diagnostics: Diagnostics) -> Wxyz:
     """Return the rotation of a ``<RotationAxis>``: an axis of any length, then an angle in degrees."""
     x, y, z, degrees = numbers(element, 4, diagnostics)
+    if x == y == z == 0.0 != degrees:  # transform-24
+        message = f"<{element.spelled}> turns nothing: its axis is 0 0 0"
+        diagnostics.warn("bad-rotation", message, element.source, "write x y z of the axis, and then the angle")
     return wxyz_from_axis_angle((x, y, z), math.radians(degrees))
 
 
 def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
     m = numbers(element, 9, diagnostics)
     try:
-        return wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
+        wxyz = wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
     except ZeroDivisionError:
         raise SourceError(f"<{element.spelled}> holds no rotation: {element.text.strip()}", element.source) from None
+    taken = [entry for row in rows_from_wxyz(wxyz) for entry in row]
+    if any(abs(one - other) > _OF_FEW_DIGITS for one, other in zip(taken, m, strict=True)):  # transform-09
+        rows = " ".join(f"{entry:.3g}" for entry in taken)
+        message = f"<{element.spelled}> holds no rotation; OpenRAVE makes {rows} of it"
+        diagnostics.warn("bad-rotation", message, element.source, "its rows have length 1 and are perpendicular")
+    return wxyz
 
 
 def _quaternion(element: Element, diagnostics: Diagnostics) -> Wxyz:
