@@ -1,7 +1,11 @@
-"""The base class of API objects: how they appear in an interactive prompt."""
+"""The base class of API objects: how they appear in an interactive prompt, and how they speak of wrong arguments."""
 
-from collections.abc import Iterable
-from typing import ClassVar
+from collections.abc import Callable, Iterable
+from inspect import CO_VARARGS, CO_VARKEYWORDS
+from types import FunctionType
+from typing import Any, ClassVar
+
+from ravemj.core.argument_errors import explained
 
 
 class _ApiType(type):
@@ -20,11 +24,26 @@ class ApiObject(metaclass=_ApiType):
 
     _internal: ClassVar[tuple[str, ...]] = ()
 
+    def __init_subclass__(cls, **kwargs: object) -> None:
+        """Let the public methods that take arguments name one of a wrong type; see ``argument_errors``."""
+        super().__init_subclass__(**kwargs)
+        public: dict[FunctionType, Callable[..., Any]] = {}  # a method with two names stays one
+        for name, method in tuple(vars(cls).items()):
+            if isinstance(method, FunctionType) and name[0] != "_" and name not in cls._internal and _takes(method):
+                public[method] = public.get(method) or explained(method)
+                setattr(cls, name, public[method])
+
     def __dir__(self) -> list[str]:
         return _listed(type(self), super().__dir__())
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}>"
+
+
+def _takes(method: FunctionType) -> bool:
+    """Return whether a method takes arguments beside its object."""
+    code = method.__code__
+    return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
 
 
 def _listed(kind: type, names: Iterable[str]) -> list[str]:

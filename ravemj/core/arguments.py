@@ -29,8 +29,12 @@ def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable
             return function(*args, **kwargs)
 
         original = signature(function)
-        further = [Parameter(name, Parameter.KEYWORD_ONLY, default=...) for name in names]
-        parameters = [*original.parameters.values(), *further]
+        known = original.parameters
+        further = [
+            Parameter(name, Parameter.KEYWORD_ONLY, default=..., annotation=known[argument].annotation)
+            for name, argument in names.items()
+        ]
+        parameters = [*known.values(), *further]
         parameters.sort(key=lambda one: one.kind)
         vars(renamed)["__signature__"] = original.replace(parameters=parameters)
         pairs = ", ".join(f"``{name}`` for ``{argument}``" for name, argument in names.items())

@@ -73,6 +73,18 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     return vector
 
 
+def checked_number(value: float, name: str, least: float = -math.inf, unit: str = "") -> float:
+    """Return a finite number.
+
+    Raises:
+        ArgumentError: it is no number, not finite, or below the least.
+    """
+    (number,) = checked_vector([value], 1, name).tolist()
+    if number < least:
+        raise ArgumentError(f"{name} is {value}, and should be a finite number, {least:g}{unit} or more")
+    return number
+
+
 def finite_vector(values: ArrayLike, length: int, name: str) -> Floats:
     """Return ``checked_vector``, or the array itself where it is one already, for what is only read."""
     if (

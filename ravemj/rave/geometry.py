@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
-from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.arrays import checked_number, checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, Vec3, pose_of
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -226,7 +226,7 @@ class Geometry(ApiObject):
 
     def SetTransparency(self, transparency: float) -> None:
         """Set the transparency: 0 is opaque, 1 invisible."""
-        (value,) = checked_vector([transparency], 1, "SetTransparency: transparency").tolist()
+        value = checked_number(transparency, "SetTransparency: transparency")
         self._edit(transparency=value)
 
     def IsVisible(self) -> bool:

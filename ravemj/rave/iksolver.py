@@ -180,7 +180,7 @@ def split_options(
     if unknown:
         raise TypeError(f"{caller}: has no argument {', '.join(unknown)}")
     if _OPTIONS not in given or len(given) != len(arguments) + len(named):
-        raise TypeError(f"{caller}: takes a goal, [{free_name},] {_OPTIONS}; see IkFilterOptions")
+        raise TypeError(f"{caller}: takes param, the goal, [{free_name},] {_OPTIONS}; see IkFilterOptions")
     options = given[_OPTIONS]
     try:
         number = operator.index(cast("int", options))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_indices, checked_vector
+from ravemj.core.arrays import checked_indices, checked_number, checked_vector
 from ravemj.core.transforms import Floats, Ints, Pose, conjugate, pose_of, rotate
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.geometry_functions import quatRotateDirection
@@ -116,7 +116,7 @@ class Joint(JointLimits):
             where a static link carries it.
         """
         difference = float(value0) - float(value1)
-        in_turns = self._scene.axes[axis].circular and subtracts_in_turns(self._state.scene, self._scene)
+        in_turns = self._axis(axis).circular and subtracts_in_turns(self._state.scene, self._scene)
         return float(wrapped_angle(difference)) if in_turns else difference
 
     def SubtractValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
@@ -139,7 +139,7 @@ class Joint(JointLimits):
         Args:
             axis: Which axis of the joint.
         """
-        return self._scene.axes[axis].wrap_offset
+        return self._axis(axis).wrap_offset
 
     def SetWrapOffset(self, offset: float, axis: int = 0) -> None:
         """Count full turns so that the joint's value is at most half a turn from another value. Nothing moves.
@@ -148,10 +148,11 @@ class Joint(JointLimits):
             offset: The other value [rad].
             axis: Which axis.
         """
-        (chosen,) = checked_vector([offset], 1, "SetWrapOffset: offset").tolist()
+        chosen = checked_number(offset, "SetWrapOffset: offset")
+        changed = replace(self._axis(axis), wrap_offset=chosen)
         with self._state.simulation.lock:
             axes = list(self._scene.axes)
-            axes[axis] = replace(axes[axis], wrap_offset=chosen)
+            axes[axis] = changed
             self._state.edit_joint(self._index, axes=tuple(axes))
             if self.IsActive() and self.IsRevolute(axis):
                 values = self._state.kinematics.values()
@@ -177,7 +178,7 @@ class Joint(JointLimits):
         Args:
             axis: Which axis of the joint.
         """
-        return self._scene.axes[axis].circular
+        return self._axis(axis).circular
 
     def IsStatic(self) -> bool:
         """Return whether the joint is a weld: its limits leave no room."""
@@ -282,7 +283,7 @@ class Joint(JointLimits):
         Args:
             axis: Which axis of the joint.
         """
-        return np.array(rotate(conjugate(self._left().wxyz), self._scene.axes[axis].direction))
+        return np.array(rotate(conjugate(self._left().wxyz), self._axis(axis).direction))
 
     def GetInternalHierarchyLeftTransform(self) -> Floats:
         """Return the joint's frame in the parent link: at the anchor; z of a hinge's is its axis, others are parallel.

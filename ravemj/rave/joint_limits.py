@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_numbers
+from ravemj.core.arrays import checked_indices, checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import scene
@@ -47,11 +47,7 @@ class JointLimits(Member):
         return -limits, limits
 
     def SetVelocityLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the velocity limits, the same in both directions.
-
-        Args:
-            maxlimits: Limits [rad/s or m/s], shape (axes,).
-        """
+        """Set the velocity limits, the same in both directions [rad/s or m/s], shape (axes,)."""
         self._set_axes("SetVelocityLimits", max_velocity=maxlimits)
 
     def GetAccelerationLimits(self) -> Floats:
@@ -59,11 +55,7 @@ class JointLimits(Member):
         return self._of_axes("max_acceleration")
 
     def SetAccelerationLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the acceleration limits, the same in both directions.
-
-        Args:
-            maxlimits: Limits [rad/s^2 or m/s^2], shape (axes,).
-        """
+        """Set the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (axes,)."""
         self._set_axes("SetAccelerationLimits", max_acceleration=maxlimits)
 
     def GetJerkLimits(self) -> Floats:
@@ -71,11 +63,7 @@ class JointLimits(Member):
         return self._of_axes("max_jerk")
 
     def SetJerkLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the jerk limits, the same in both directions.
-
-        Args:
-            maxlimits: Limits [rad/s^3 or m/s^3], shape (axes,).
-        """
+        """Set the jerk limits, the same in both directions [rad/s^3 or m/s^3], shape (axes,)."""
         self._set_axes("SetJerkLimits", max_jerk=maxlimits)
 
     def GetHardVelocityLimits(self) -> Floats:
@@ -83,11 +71,7 @@ class JointLimits(Member):
         return self._of_axes("hard_max_velocity")
 
     def SetHardVelocityLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the velocities that planners never exceed.
-
-        Args:
-            maxlimits: Limits [rad/s or m/s], shape (axes,); 0: none.
-        """
+        """Set the velocities that planners never exceed [rad/s or m/s], shape (axes,); 0: none."""
         self._set_axes("SetHardVelocityLimits", hard_max_velocity=maxlimits)
 
     def GetHardAccelerationLimits(self) -> Floats:
@@ -95,11 +79,7 @@ class JointLimits(Member):
         return self._of_axes("hard_max_acceleration")
 
     def SetHardAccelerationLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the accelerations that planners never exceed.
-
-        Args:
-            maxlimits: Limits [rad/s^2 or m/s^2], shape (axes,); 0: none.
-        """
+        """Set the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (axes,); 0: none."""
         self._set_axes("SetHardAccelerationLimits", hard_max_acceleration=maxlimits)
 
     def GetHardJerkLimits(self) -> Floats:
@@ -107,11 +87,7 @@ class JointLimits(Member):
         return self._of_axes("hard_max_jerk")
 
     def SetHardJerkLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the jerks that planners never exceed.
-
-        Args:
-            maxlimits: Limits [rad/s^3 or m/s^3], shape (axes,); 0: none.
-        """
+        """Set the jerks that planners never exceed [rad/s^3 or m/s^3], shape (axes,); 0: none."""
         self._set_axes("SetHardJerkLimits", hard_max_jerk=maxlimits)
 
     def GetTorqueLimits(self) -> Floats:
@@ -119,87 +95,47 @@ class JointLimits(Member):
         return self._of_axes("max_torque")
 
     def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the torque or force limits.
-
-        Args:
-            maxlimits: Limits [N m or N], shape (axes,).
-        """
+        """Set the torque or force limits [N m or N], shape (axes,)."""
         self._set_axes("SetTorqueLimits", max_torque=maxlimits)
 
     def GetMaxVel(self, axis: int = 0) -> float:
-        """Return the velocity limit [rad/s or m/s].
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].max_velocity
+        """Return the velocity limit [rad/s or m/s]."""
+        return self._axis(axis).max_velocity
 
     def GetMaxAccel(self, axis: int = 0) -> float:
-        """Return the acceleration limit [rad/s^2 or m/s^2].
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].max_acceleration
+        """Return the acceleration limit [rad/s^2 or m/s^2]."""
+        return self._axis(axis).max_acceleration
 
     def GetMaxJerk(self, axis: int = 0) -> float:
-        """Return the jerk limit [rad/s^3 or m/s^3].
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].max_jerk
+        """Return the jerk limit [rad/s^3 or m/s^3]."""
+        return self._axis(axis).max_jerk
 
     def GetHardMaxVel(self, axis: int = 0) -> float:
-        """Return the velocity that planners never exceed [rad/s or m/s]; 0 if none is set.
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].hard_max_velocity
+        """Return the velocity that planners never exceed [rad/s or m/s]; 0 if none is set."""
+        return self._axis(axis).hard_max_velocity
 
     def GetHardMaxAccel(self, axis: int = 0) -> float:
-        """Return the acceleration that planners never exceed [rad/s^2 or m/s^2]; 0 if none is set.
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].hard_max_acceleration
+        """Return the acceleration that planners never exceed [rad/s^2 or m/s^2]; 0 if none is set."""
+        return self._axis(axis).hard_max_acceleration
 
     def GetHardMaxJerk(self, axis: int = 0) -> float:
-        """Return the jerk that planners never exceed [rad/s^3 or m/s^3]; 0 if none is set.
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].hard_max_jerk
+        """Return the jerk that planners never exceed [rad/s^3 or m/s^3]; 0 if none is set."""
+        return self._axis(axis).hard_max_jerk
 
     def GetMaxTorque(self, axis: int = 0) -> float:
-        """Return the torque or force limit [N m or N]; 0 where the file says nothing.
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].max_torque
+        """Return the torque or force limit [N m or N]; 0 where the file says nothing."""
+        return self._axis(axis).max_torque
 
     def GetWeights(self) -> Floats:
         """Return the weights in distances between configurations, shape (axes,)."""
         return self._of_axes("weight")
 
     def GetWeight(self, axis: int = 0) -> float:
-        """Return the weight in distances between configurations.
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].weight
+        """Return the weight in distances between configurations."""
+        return self._axis(axis).weight
 
     def SetWeights(self, weights: ArrayLike) -> None:
-        """Set the weights in distances between configurations; all should be positive.
-
-        Args:
-            weights: Weights, shape (axes,).
-        """
+        """Set the weights in distances between configurations, shape (axes,); all should be positive."""
         if not np.all(checked_numbers(weights, "SetWeights: weights") > 0):
             raise RavemjError(f"SetWeights: weights are {weights}, and should be positive", ErrorCode.Assert)
         self._set_axes("SetWeights", weight=weights)
@@ -209,12 +145,8 @@ class JointLimits(Member):
         return self._of_axes("resolution")
 
     def GetResolution(self, axis: int) -> float:
-        """Return the step of planners [rad or m].
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].resolution
+        """Return the step of planners [rad or m]."""
+        return self._axis(axis).resolution
 
     def SetResolution(self, resolution: float) -> None:
         """Set the step of planners, the same for all axes.
@@ -223,6 +155,15 @@ class JointLimits(Member):
             resolution: Step [rad or m]; planners take one of their own where it is not positive.
         """
         self._set_axes("SetResolution", resolution=[resolution] * len(self._scene.axes))
+
+    def _axis(self, axis: int) -> scene.Axis:
+        """Return one axis of the joint.
+
+        Raises:
+            IndexError: the joint has no such axis.
+        """
+        checked_indices([axis], len(self._scene.axes), "axis")
+        return self._scene.axes[axis]
 
     def _of_axes(self, field: str) -> Floats:
         return np.array([getattr(axis, field) for axis in self._scene.axes], dtype=np.float64)

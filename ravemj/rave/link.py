@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.arrays import checked_number, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.model import chains
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
@@ -182,7 +182,7 @@ class Link(LinkGeometries):
         Args:
             mass: The mass [kg].
         """
-        (value,) = checked_vector([mass], 1, "SetMass: mass").tolist()
+        value = checked_number(mass, "SetMass: mass")
         self._set_inertial(replace(self._inertial, mass=value, undefined=False))
 
     def SetLocalMassFrame(self, massframe: ArrayLike) -> None:

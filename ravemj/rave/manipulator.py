@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows, wxyz_jacobian
 from ravemj.errors import ArgumentError
@@ -35,11 +36,12 @@ class Manipulator(ArmEnd, ArmRedundancy):
         Raises:
             openrave_exception: the name is empty, or another manipulator of the robot has it.
         """
+        checked_kind(name, str, "SetName: name", "a text")
         taken = {arm.name for arm in self._state.scene.manipulators} - {self.GetName()}
         if not name or name in taken:
             problem = f"the robot has another manipulator '{name}'" if name else "the name is empty"
             raise ArgumentError(f"SetName: {problem}; choose another name")
-        self._edit(name=str(name))
+        self._edit(name=name)
 
     def GetId(self) -> str:
         """Return the id of the manipulator in OpenRAVE's JSON, which is always empty."""

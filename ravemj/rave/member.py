@@ -114,6 +114,7 @@ class Member(ApiObject):
         self._set_parameter("texts", key, checked_kind(value, str, "SetStringParameters: value", "a text"))
 
     def _set_parameter(self, field: str, key: str, value: Hashable) -> None:
+        checked_kind(key, str, "key", "a text")
         with self._state.simulation.lock:
             items: tuple[tuple[str, Hashable], ...] = getattr(self._scene.parameters, field)
             kept = tuple(item for item in items if item[0] != key)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_numbers, checked_vector
+from ravemj.core.arrays import checked_number, checked_numbers, checked_vector
 from ravemj.core.transforms import ZERO, Floats, Vec3
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
@@ -308,7 +308,7 @@ class SimulatedEngine(PhysicsEngine):
     def SimulateStep(self, timestep: float) -> None:
         """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this."""
         with self._env.simulation.lock:
-            self._physics.step(timestep)
+            self._physics.step(checked_number(timestep, "SimulateStep: timestep", 0, " s"))
 
     def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
         """Return the force and torque that a joint transmits to its child link.

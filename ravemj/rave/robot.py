@@ -197,7 +197,9 @@ class Robot(ActiveDofs, Equipment, KinBody):
         dofs = None if dofindices is ... or isinstance(dofindices, str) else dofindices
         if controller is None and dofs is not None:
             raise RavemjError("SetController: controller is None, and can have no DOFs")
-        if controller and checked_kind(controller, Controller, "SetController: controller").GetEnv() is not self._env:
+        if controller is not None:
+            checked_kind(controller, Controller, "SetController: controller")
+        if controller is not None and controller.GetEnv() is not self._env:
             raise ArgumentError("SetController: controller was made for another environment")
         indices = None if dofs is None else checked_indices(dofs, self.GetDOF())
         with self._simulation.lock:

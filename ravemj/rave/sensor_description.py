@@ -97,10 +97,10 @@ class DescribedSensor(Interface):
             openrave_exception: a robot carries the sensor, or the environment has another one of that name.
         """
         self._check_loose("SetName", "its robot and its place on it name it")
-        other = self._env.GetSensor(name)
+        other = self._env.GetSensor(checked_kind(name, str, "SetName: name", "a text"))
         if other is not None and other is not self and self in self._env.GetSensors():
             raise RavemjError(f"SetName: there already is a sensor '{name}'", ErrorCode.SensorNameConflict)
-        self._edit(name=str(name))
+        self._edit(name=name)
 
     def _check_loose(self, caller: str, reason: str) -> None:
         if self.attached is not None:

@@ -1,7 +1,6 @@
 """Sensors: on the links of robots, or on their own."""
 
 import logging
-import math
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_vector
+from ravemj.core.arrays import checked_number
 from ravemj.core.transforms import Ints, Pose
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.model import scene
@@ -200,7 +199,7 @@ class Sensor(DescribedSensor):
         Args:
             timeelapsed: The duration of the step [s].
         """
-        checked = float(checked_vector([timeelapsed], 1, "SimulationStep: timeelapsed")[0])
+        checked = checked_number(timeelapsed, "SimulationStep: timeelapsed", 0)
         with self._env.simulation.lock:
             self.advance(checked, self._env.clock.now)
 
@@ -293,9 +292,7 @@ class Sensor(DescribedSensor):
         Raises:
             openrave_exception: the deviation is negative or not finite.
         """
-        if not (math.isfinite(deviation) and deviation >= 0):
-            raise ArgumentError(f"set_noise: deviation is {deviation}, and should be a number from 0")
-        self._instrument.set_noise(float(deviation), seed)
+        self._instrument.set_noise(checked_number(deviation, "set_noise: deviation", 0), seed)
 
     def take_state(self, other: DescribedSensor) -> None:
         """Copy the state of another sensor of the same kind: its noise, whether it is on, and whether it is drawn."""

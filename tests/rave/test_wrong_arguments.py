@@ -1,5 +1,6 @@
 """Mistakes that scripts make: each error says what was found, and what was expected."""
 
+import inspect
 import math
 
 import numpy as np
@@ -26,6 +27,31 @@ MISTAKES = {
     "no step": (lambda env, robot: env.StepSimulation(None), "StepSimulation: timestep"),
     "endless step": (lambda env, robot: env.StepSimulation(math.inf), "StepSimulation: timestep"),
     "backwards": (lambda env, robot: env.StepSimulation(-1), "timestep is -1, .* 0 s or more"),
+    "axis": (
+        lambda env, robot: robot.GetJoints()[0].GetMaxVel([]),
+        "GetMaxVel: axis: is a list, and should be a whole",
+    ),
+    "key": (
+        lambda env, robot: robot.GetJoints()[0].SetStringParameters([], "x"),
+        "key: is a list, and should be a text",
+    ),
+    "leader": (
+        lambda env, robot: robot.GetJoints()[0].SetMimicEquations(0, 3),
+        "poseq: is a int, and should be a text",
+    ),
+    "command": (lambda env, robot: robot.SupportsCommand(None), "SupportsCommand: cmd: is None, and should be a text"),
+    "info": (lambda env, robot: robot.UpdateFromKinBodyInfo(3), "info: is a int, and should be a KinBodyInfo"),
+    "name for body": (lambda env, robot: env.Remove("PUMA560"), "Remove: takes a body, .* not a str"),
+    "add mode": (lambda env, robot: env.Add(robot, "x"), "addMode is 'x', and should be True, False or an Interface"),
+    "callback": (lambda env, robot: env.RegisterBodyCallback(3), "callback is 3, and should be a function"),
+    "false checker": (
+        lambda env, robot: env.SetCollisionChecker(""),
+        "collisionchecker: is a str, and should be a Coll",
+    ),
+    "new name": (
+        lambda env, robot: env.TriangulateScene(options=[]),
+        "TriangulateScene: options: is a list, and should be a whole number",
+    ),
     "engine": (lambda env, robot: env.SetPhysicsEngine("newton"), "no physics engine 'newton'; there are ode, bullet"),
 }
 
@@ -48,3 +74,57 @@ def test_errors_say_what_was_expected(scene, name):
     assert (robot.GetDOFValues() == before[0]).all()
     assert (robot.GetTransform() == before[1]).all()
     assert env.GetBodies() == [robot]
+
+
+def test_an_axis_that_a_joint_does_not_have_is_an_index_error(scene):
+    joint = scene[1].GetJoints()[0]
+    for index in (-1, 1):
+        with pytest.raises(IndexError, match="axis are"):
+            joint.GetMaxVel(index)
+
+
+KINDS = {
+    "robot": lambda env, robot: robot,
+    "link": lambda env, robot: robot.GetLinks()[1],
+    "joint": lambda env, robot: robot.GetJoints()[0],
+    "geometry": lambda env, robot: robot.GetLinks()[1].GetGeometries()[0],
+    "manipulator": lambda env, robot: robot.GetManipulators()[0],
+    "checker": lambda env, robot: env.GetCollisionChecker(),
+    "engine": lambda env, robot: ravemj.RaveCreatePhysicsEngine(env, "ode"),
+    "controller": lambda env, robot: ravemj.RaveCreateController(env, "IdealController"),
+    "sensor": lambda env, robot: ravemj.RaveCreateSensor(env, "BaseLaser2D"),
+    "trajectory": lambda env, robot: ravemj.RaveCreateTrajectory(env, ""),
+    "module": lambda env, robot: ravemj.RaveCreateModule(env, "BaseManipulation"),
+}
+"""What scripts hold and call, in an environment with a robot."""
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_pythons_own_errors_name_the_argument(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # some write files
+    env = ravemj.Environment()
+    env.Load(ravemj.model_path("puma560"))
+    thing, calls = KINDS[name](env, env.GetRobots()[0]), 0
+    for method, argument in calls_with_one_argument(thing):
+        for wrong in (None, [], {}, object()):
+            calls += 1
+            try:
+                getattr(thing, method)(**{argument: wrong})
+            except ravemj.openrave_exception:
+                pass
+            except (TypeError, AttributeError, ValueError, LookupError) as error:
+                assert argument in str(error), (method, argument, wrong, error)  # noqa: PT017 - of many calls
+    assert calls > 20
+    env.Destroy()
+
+
+def calls_with_one_argument(thing):
+    """Return each method that takes one argument alone, and the name of that argument."""
+    for method in dir(thing):
+        found = inspect.getattr_static(type(thing), method, None)
+        if method[0] == "_" or not inspect.isfunction(found):
+            continue
+        arguments = list(inspect.signature(found).parameters.values())[1:]
+        required = [one.name for one in arguments if one.default is one.empty and one.kind is one.POSITIONAL_OR_KEYWORD]
+        named = [one.name for one in arguments if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
+        yield from ((method, argument) for argument in named if set(required) <= {argument})

@@ -60,7 +60,7 @@ class Collision(Contents):
             True.
         """
         self._check_alive()
-        checker = collisionchecker or NoCollisionChecker(self._environment)
+        checker = NoCollisionChecker(self._environment) if collisionchecker is None else collisionchecker
         checked_kind(checker, CollisionChecker, "SetCollisionChecker: collisionchecker")
         if checker.GetEnv() is not self._environment:
             raise ArgumentError("SetCollisionChecker: collisionchecker was made for another environment")
@@ -147,6 +147,8 @@ class Collision(Contents):
         Returns:
             A handle. The function is called as long as the handle exists.
         """
+        if not callable(callback):
+            raise ArgumentError(f"RegisterCollisionCallback: callback is {callback!r}, and should be a function")
         self.collision_callbacks.append(callback)
         return CollisionCallbackHandle(self.collision_callbacks.remove, callback)
 

@@ -125,11 +125,11 @@ class Contents(EnvironmentPart):
         """
         self._check_alive()
         self._check_ours(body, "Add")
-        state = body.simulation_state
+        state, renames = body.simulation_state, _renames(addMode)
         with self._simulation.lock:
             if self._simulation.holds(state):
                 return
-            if _renames(addMode):  # also an empty name: pymanoid adds such bodies, though OpenRAVE 0.149 refuses them
+            if renames:  # also an empty name: pymanoid adds such bodies, though OpenRAVE 0.149 refuses them
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             elif not body.GetName():
                 raise RavemjError("Add: the body has no name; give it one with SetName", ErrorCode.Failed)
@@ -200,6 +200,10 @@ class Contents(EnvironmentPart):
         Returns:
             Whether it was in the environment.
 
+        Raises:
+            openrave_exception: it is something else (``InvalidArguments``) or None (``Failed``), or a body of another
+                environment.
+
         Example:
             >>> env.Remove(env.GetKinBody("Pendulum"))
             True
@@ -238,8 +242,10 @@ class Contents(EnvironmentPart):
 
     def _remove_other(self, interface: object) -> bool:
         """Remove a module, a sensor or a viewer, and return whether it was in the environment."""
-        if interface is None:
-            raise ArgumentError("Remove: takes a body, a sensor, a module or a viewer, not None", ErrorCode.Failed)
+        if not isinstance(interface, Interface) and all(interface is not viewer for viewer in self._viewers):
+            kind = "None" if interface is None else f"a {type(interface).__name__}"
+            code = ErrorCode.Failed if interface is None else ErrorCode.InvalidArguments
+            raise ArgumentError(f"Remove: takes a body, a sensor, a module or a viewer, not {kind}", code)
         if isinstance(interface, Module) and interface in self._modules:
             self._modules.remove(interface)
             interface.end()
@@ -389,12 +395,16 @@ class Contents(EnvironmentPart):
         Returns:
             A handle. The function is called as long as the handle exists.
         """
+        if not callable(callback):
+            raise ArgumentError(f"RegisterBodyCallback: callback is {callback!r}, and should be a function")
         self._body_callbacks.append(callback)
         return BodyCallbackHandle(self._body_callbacks.remove, callback)
 
 
-def _renames(mode: object) -> bool:
+def _renames(mode: Any) -> bool:  # noqa: ANN401 - a number or an enumeration
     """Return whether ``addMode`` allows another name: True, or a mode without strict checking of names."""
     if mode is None or isinstance(mode, bool):
         return bool(mode)
-    return not InterfaceAddMode(int(cast("int", mode))) & InterfaceAddMode.StrictNameChecking
+    if mode not in InterfaceAddMode.values:
+        raise ArgumentError(f"addMode is {mode!r}, and should be True, False or an InterfaceAddMode")
+    return not InterfaceAddMode(mode) & InterfaceAddMode.StrictNameChecking

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_vector
+from ravemj.core.arrays import checked_number
 from ravemj.engine.clock import Clock
 from ravemj.engine.simulation import DEFAULT_GRAVITY
 from ravemj.errors import ArgumentError, RavemjError
@@ -44,7 +44,7 @@ class Simulating(Contents):
             realtime: Whether a second of simulation takes a second; False runs it as fast as possible.
         """
         self._check_alive()
-        self._clock.start(_checked_step(timestep, "StartSimulation", least=1e-6), realtime=realtime)
+        self._clock.start(checked_number(timestep, "StartSimulation: timestep", 1e-6, " s"), realtime=realtime)
 
     def StopSimulation(self, shutdownthread: int = 1) -> None:
         """Stop simulation time until ``StartSimulation``. ``StepSimulation`` still works.
@@ -67,7 +67,7 @@ class Simulating(Contents):
             ...     env.StepSimulation(0.01)
         """
         self._check_alive()
-        self._clock.step(_checked_step(timestep, "StepSimulation"))
+        self._clock.step(checked_number(timestep, "StepSimulation: timestep", 0, " s"))
 
     def IsSimulationRunning(self) -> bool:
         """Return whether simulation time runs in a thread."""
@@ -203,14 +203,6 @@ class Simulating(Contents):
         for sensor in tuple(self._sensors):
             sensor.advance(timestep, stamp)
         self._simulation.publish()
-
-
-def _checked_step(timestep: float, name: str, least: float = 0.0) -> float:
-    (checked,) = checked_vector([timestep], 1, f"{name}: timestep").tolist()
-    if checked < least:
-        wanted = f"at least {least:g} s" if least else "0 s or more"
-        raise ArgumentError(f"{name}: timestep is {timestep}, and should be a finite number, {wanted}")
-    return checked
 
 
 def _state(body: KinBody) -> State:

@@ -1,0 +1,107 @@
+"""Errors that name the argument of a wrong type.
+
+A wrong argument often fails deep inside of a method, with an error of Python's that speaks of something else. The
+public methods of API objects then compare their arguments with the annotations. Calls that succeed skip this.
+"""
+
+import os
+import re
+from collections.abc import Callable, Iterable, Mapping
+from enum import Enum
+from functools import wraps
+from inspect import formatannotation, signature
+from types import EllipsisType, FunctionType, MappingProxyType, NoneType
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_numbers
+from ravemj.errors import ArgumentError, RavemjError
+
+_PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, KeyError, OverflowError)
+
+
+def _are_numbers(value: object) -> bool:
+    try:
+        checked_numbers(cast("ArrayLike", value), "")
+    except ArgumentError:
+        return False
+    return True
+
+
+def _is_list(value: object) -> bool:
+    return isinstance(value, Iterable) and not isinstance(value, str | bytes)
+
+
+def _is_any(*classes: type) -> Callable[[object], bool]:
+    return lambda value: isinstance(value, classes)
+
+
+_KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
+    {
+        "str": ("a text", _is_any(str)),
+        "bytes": ("bytes", _is_any(bytes, bytearray)),
+        "int": ("a whole number", _is_any(int, np.integer)),
+        "float": ("a number", _is_any(int, float, np.integer, np.floating)),
+        "None": ("None", _is_any(NoneType)),
+        "EllipsisType": ("...", _is_any(EllipsisType)),
+        "PathLike": ("a path", _is_any(os.PathLike)),
+        "Callable": ("a function", callable),
+        **dict.fromkeys(("Mapping", "dict"), ("a dictionary", _is_any(Mapping))),
+        **dict.fromkeys(("Iterable", "Sequence", "MutableSequence", "list", "tuple"), ("a list", _is_list)),
+        # numpy's ArrayLike is a Union, and annotations have no other
+        **dict.fromkeys(
+            ("ArrayLike", "Floats", "Ints", "ndarray", "_SupportsArray", "Union"), ("numbers", _are_numbers)
+        ),
+        **dict.fromkeys(("bool", "Any", "object", "_empty"), ("anything", _is_any(object))),
+    }
+)
+"""What errors call a type, and what is taken for it, by the name of the type in annotations."""
+
+
+def explained(method: FunctionType) -> Callable[..., Any]:
+    """Make a method raise an ``ArgumentError`` where an argument of a wrong type leads to an error of Python's."""
+
+    @wraps(method)
+    def call(*args: Any, **kwargs: Any) -> Any:  # noqa: ANN401 - those of the method
+        try:
+            return method(*args, **kwargs)
+        except _PYTHONS_ERRORS as error:
+            message = None if isinstance(error, RavemjError) else _message(method, args, kwargs)
+            if message is None:
+                raise
+            raise ArgumentError(message) from error
+
+    return call
+
+
+def _message(method: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str | None:
+    """Return what is wrong with the first argument that is not of the annotated type; None if there is none."""
+    try:
+        given = signature(method).bind(*args, **kwargs)
+    except TypeError:  # its message names the argument that is missing or unknown
+        return None
+    for name, value in given.arguments.items():
+        kinds = _kinds(given.signature.parameters[name].annotation)
+        if not any(_is_of(value, kind) for kind in kinds):
+            found = "None" if value is None else f"a {type(value).__name__}"
+            wanted = " or ".join(dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else f"a {kind}" for kind in kinds))
+            return f"{method.__name__}: {name}: is {found}, and should be {wanted}"
+    return None
+
+
+def _kinds(annotation: object) -> list[str]:
+    """Return the names of the types in an annotation, without what their containers hold."""
+    text = annotation if isinstance(annotation, str) else formatannotation(annotation)
+    while "[" in text:
+        text = re.sub(r"\[[^\[\]]*\]", "", text)
+    names = [name.strip().rpartition(".")[2] for name in text.split("|")]
+    is_enumeration = isinstance(annotation, type) and issubclass(annotation, Enum)
+    return [*names, "int"] if is_enumeration else names
+
+
+def _is_of(value: object, kind: str) -> bool:
+    if kind in _KINDS:
+        return _KINDS[kind][1](value)
+    return any(base.__name__ == kind for base in type(value).__mro__)
