@@ -746,7 +746,7 @@ def test_batch_follows_mimic_and_displaced_joints(place):
     finger = panda.GetLinks()[-1]
     finger.SetTransform(finger.GetTransform() @ ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.3]))
     displaced = finger.GetTransform()
-    values = np.random.default_rng(5).uniform(*panda.GetDOFLimits(), (40, panda.GetDOF()))
+    values = np.random.default_rng(5).uniform(*panda.GetDOFLimits(), (60, panda.GetDOF()))
     found = {itself: panda.batch_collides(values, itself).tolist() for itself in (False, True)}
     np.testing.assert_array_equal(finger.GetTransform(), displaced)
     for row, *answers in zip(values, *found.values(), strict=True):
@@ -754,6 +754,8 @@ def test_batch_follows_mimic_and_displaced_joints(place):
         others = env.CheckCollision(panda)
         assert answers == [others, others or panda.CheckSelfCollision()]
     assert sum(found[False]) == len(values) if place[0] == 0 else 0 < sum(found[False]) < len(values)
+    env.GetKinBody("box").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 9, 9, 9]))
+    assert not panda.batch_collides(values, itself_too=False).any()
 
 
 @pytest.mark.parametrize("texts", [(ARM, THING), (THING, ARM)], ids=["the arm first", "what it holds first"])

@@ -10,12 +10,15 @@ from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.held import HeldRoots
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
-from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.collision.world import MOST_AT_ONCE, CollisionWorld
 from ravemj.engine.kinematics import fixed_view
 from ravemj.engine.simulation import BodyState
 
 _KEY = 1 << 31
 """More than the number of geoms: makes one number of a pair."""
+
+_MANY = 50
+"""For fewer configurations threads do not pay."""
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
@@ -32,7 +35,7 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     world = body.simulation.collisions()
     if body.kinematics.displaced:
         return None
-    return _MovingTest(world, body, _placement(world, body, dofs), _pairs(world, body, MovedBy(tuple(dofs))))
+    return _MovingTest(world, body, _Placement(world, body, dofs), _pairs(world, body, MovedBy(tuple(dofs))))
 
 
 def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDArray[np.bool_]:
@@ -51,51 +54,18 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
     try:
         if len(values) and body.kinematics.displaced:
             body.set_values(values[0])  # brings displaced links back to their joints
-        dofs, world = range(body.dof), body.simulation.collisions()
+        world = body.simulation.collisions()
         kinds = (body_and_others, itself) if itself_too else (body_and_others,)
-        moved = MovedBy(tuple(dofs))
+        moved = MovedBy(tuple(range(body.dof)))
         if any(world.collide(_apart_from(world, kind(world, body), kind(world, body, moved))) for kind in kinds):
             return np.ones(len(values), dtype=bool)
         pairs = np.concatenate([_as_array(kind(world, body, moved)) for kind in kinds])
-        collides = _MovingTest(world, body, _placement(world, body, dofs), pairs)
-        return np.array([collides(one) for one in values], dtype=bool)
+        return _MovingTest(world, body, _Placement(world, body, range(body.dof)), pairs).of_many(values)
     finally:
         body.restore(before)
         for one, configuration in held:
             one.restore(configuration)
         body.stamp = stamp
-
-
-def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None]:
-    """Return a function that moves joints of a body in the model of the world."""
-    kinematics, part, qpos, columns = body.kinematics, world.model.part(body), world.model.data.qpos, list(dofs)
-    followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
-    places, multiples = world.model.qpos_indices(body)[columns], kinematics.multiples
-    full = kinematics.values()
-    target, indices = fixed_view(qpos, places)
-
-    def place(values: Floats) -> None:
-        target[indices] = values
-
-    def place_with_multiples(values: Floats) -> None:
-        target[indices] = values
-        for column, slope, offset, lower, upper, index in followers:
-            qpos[index] = min(max(slope * values.item(column) + offset, lower), upper)
-
-    def place_all(values: Floats) -> None:
-        full[columns] = values
-        kinematics.set_values(full)
-        if part.take(kinematics):
-            world.model.pose_stamp += 1
-
-    if (places < 0).any() or (multiples is None and followed & set(dofs)):
-        return place_all
-    followers = [
-        (columns.index(dof), *equation, part.qpos.start + kinematics.inner_index(index))
-        for dof, *equation, index in multiples or ()
-        if dof in columns
-    ]
-    return place_with_multiples if followers else place
 
 
 def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy) -> Ints:
@@ -120,10 +90,52 @@ def _keys(pairs: Ints) -> Ints:
     return pairs[:, 0] * _KEY + pairs[:, 1]
 
 
+class _Placement:
+    """Moves joints of a body in the model of the world.
+
+    Attributes:
+        is_plain: Whether joint values are written into ``qpos`` as they are, or with multiples for mimic joints.
+    """
+
+    def __init__(self, world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> None:
+        self._kinematics, self._model = kinematics, model = body.kinematics, world.model
+        self._part, self._qpos, self._dofs = model.part(body), model.data.qpos, list(dofs)
+        followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
+        self._places, multiples = model.qpos_indices(body)[self._dofs], kinematics.multiples
+        self._full = kinematics.values()
+        self._target, self._indices = fixed_view(self._qpos, self._places)
+        self.is_plain = bool((self._places >= 0).all()) and (multiples is not None or not followed & set(dofs))
+        self._followers = [
+            (self._dofs.index(dof), *equation, self._part.qpos.start + kinematics.inner_index(index))
+            for dof, *equation, index in multiples or ()
+            if dof in self._dofs
+        ]
+
+    def __call__(self, values: Floats) -> None:
+        """Write joint values [rad or m], shape (dofs,)."""
+        if not self.is_plain:
+            self._full[self._dofs] = values
+            self._kinematics.set_values(self._full)
+            if self._part.take(self._kinematics):
+                self._model.pose_stamp += 1
+            return
+        self._target[self._indices] = values
+        for column, slope, offset, lower, upper, index in self._followers:
+            self._qpos[index] = min(max(slope * values.item(column) + offset, lower), upper)
+
+    def qpos_of_many(self, values: Floats) -> Floats:
+        """Return ``qpos`` of the world for many configurations, shape (n, nq), where the placement is plain."""
+        qpos = np.tile(self._qpos, (len(values), 1))
+        qpos[:, self._places] = values
+        for column, slope, offset, lower, upper, index in self._followers:
+            qpos[:, index] = np.clip(slope * values[:, column] + offset, lower, upper)
+        return qpos
+
+
 class _MovingTest:
     """See ``moving_test``: MuJoCo's own collision detection, and the pairs of geoms that it leaves out."""
 
-    def __init__(self, world: CollisionWorld, body: BodyState, place: Callable[[Floats], None], pairs: Ints) -> None:
+    def __init__(self, world: CollisionWorld, body: BodyState, place: _Placement, pairs: Ints) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
         self._held = held = HeldRoots(world, body) if body.grabs else None
@@ -154,6 +166,21 @@ class _MovingTest:
                 if first * _KEY + second in self._meant and touch(first, second):
                     return True
         return self._rest is not None and self._world.collide(self._rest)
+
+    def of_many(self, values: Floats) -> NDArray[np.bool_]:
+        """Return for each configuration, shape (n, dofs), whether the body collides.
+
+        Where nothing is held and MuJoCo looks at all pairs, its threads first count the contacts of all configurations.
+        Those with contacts are looked at again, unless all that MuJoCo finds are convex shapes that are meant.
+        """
+        if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
+            return np.array([self(one) for one in values], dtype=bool)
+        parts = np.array_split(values, -(-len(values) // MOST_AT_ONCE))
+        touching = np.concatenate([self._world.have_contacts(self._place.qpos_of_many(part)) for part in parts])
+        if not self._world.finds_only(len(self._meant) // 2):  # which has each pair in both orders
+            for index in np.flatnonzero(touching).tolist():
+                touching[index] = self(values[index])
+        return touching
 
     def _detect_with(self, held: HeldRoots) -> None:
         """Let MuJoCo look for contacts, with what is held where its carriers are."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -15,8 +16,16 @@ from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
 
+if TYPE_CHECKING:
+    from mujoco.batch import Batch
+
 MOST_PAIRS = 300_000
 """Pairs of geoms that are kept for all queries together."""
+
+MOST_AT_ONCE = 1000
+"""Configurations that threads work on together, so that memory does not grow with their number."""
+
+_POSITIONS = int(mujoco.mjtStage.mjSTAGE_POS)
 
 
 class CollisionWorld:
@@ -133,6 +142,40 @@ class CollisionWorld:
     def found_by_mujoco(self, first: Ints, second: Ints) -> NDArray[np.bool_]:
         """Return which pairs of geoms MuJoCo's own collision detection looks at, shape (n,)."""
         return self._detection.finds(first, second)
+
+    def finds_only(self, count: int) -> bool:
+        """Return whether so many pairs of geoms are all that MuJoCo looks at, and all geoms are convex."""
+        return count == self._found_count and not self._has_concave
+
+    @cached_property
+    def _found_count(self) -> int:
+        first, second = np.triu_indices(self._model.ngeom, 1)
+        return int(np.count_nonzero(self._detection.finds(first, second)))
+
+    @cached_property
+    def _has_concave(self) -> bool:
+        return any(map(self.shapes.is_concave, self._colliding.tolist()))
+
+    def have_contacts(self, qpos: Floats) -> NDArray[np.bool_]:
+        """Return for each configuration of the world whether MuJoCo finds contacts, on all processors at once.
+
+        Args:
+            qpos: The configurations, ``MOST_AT_ONCE`` at most, shape (n, nq).
+        """
+        batch, count = self._batch, len(qpos)
+        batch.bind("qpos")[:count] = qpos
+        batch.forward(np.arange(count), stage=_POSITIONS)
+        return batch.bind("ncon")[:count] > 0
+
+    @cached_property
+    def _batch(self) -> "Batch":
+        """Many states of the model, in which bodies without joints move, too, since it reads the model itself."""
+        from mujoco.batch import Batch  # noqa: PLC0415 - slow to import
+
+        batch = Batch(self._model, MOST_AT_ONCE)
+        batch.set_models(self._model)
+        batch.bind("ncon")
+        return batch
 
     def collide(self, pairs: Pairs) -> bool:
         """Return whether any of the pairs touch or overlap."""
