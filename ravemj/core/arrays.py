@@ -217,10 +217,16 @@ def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
     determinant = dot(x, cross(y, z))
     off = math.inf
     if determinant > 0:
+        if _off_orthonormal(x, y, z) < ROUNDING / 4:  # so its scale is exact, too
+            return True
         unscale = 1 / math.cbrt(determinant)
-        x, y, z = scale(x, unscale), scale(y, unscale), scale(z, unscale)
-        squares = max(abs(dot(x, x) - 1), abs(dot(y, y) - 1), abs(dot(z, z) - 1))
-        off = max(squares, abs(dot(x, y)), abs(dot(y, z)), abs(dot(z, x)))
+        off = _off_orthonormal(scale(x, unscale), scale(y, unscale), scale(z, unscale))
     if not off <= NOT_RIGID:
         raise ArgumentError(f"{name}: the rotation {rows} is not one: its rows should be orthonormal")
     return off < ROUNDING and abs(determinant - 1) < ROUNDING
+
+
+def _off_orthonormal(x: Vec3, y: Vec3, z: Vec3) -> float:
+    """Return the largest entry of ``R R^T - I`` for the rows of R."""
+    squares = max(abs(dot(x, x) - 1), abs(dot(y, y) - 1), abs(dot(z, z) - 1))
+    return max(squares, abs(dot(x, y)), abs(dot(y, z)), abs(dot(z, x)))

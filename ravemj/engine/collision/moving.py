@@ -1,6 +1,6 @@
 """The query that planners make most: does a body collide when some of its joints have these values?"""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import mujoco
 import numpy as np
@@ -13,6 +13,9 @@ from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.engine.collision.world import MOST_AT_ONCE, CollisionWorld
 from ravemj.engine.kinematics import fixed_view
 from ravemj.engine.simulation import BodyState
+
+_Kind = Callable[[CollisionWorld, BodyState, MovedBy | None], Pairs]
+_KINDS: tuple[_Kind, ...] = (body_and_others, itself)
 
 _KEY = 1 << 31
 """More than the number of geoms: makes one number of a pair."""
@@ -35,7 +38,7 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     world = body.simulation.collisions()
     if body.kinematics.displaced:
         return None
-    return _MovingTest(world, body, _Placement(world, body, dofs), _pairs(world, body, MovedBy(tuple(dofs))))
+    return _MovingTest(world, body, _Placement(world, body, dofs), _pairs(world, body, MovedBy(tuple(dofs)), _KINDS))
 
 
 def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDArray[np.bool_]:
@@ -55,12 +58,12 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
         if len(values) and body.kinematics.displaced:
             body.set_values(values[0])  # brings displaced links back to their joints
         world = body.simulation.collisions()
-        kinds = (body_and_others, itself) if itself_too else (body_and_others,)
+        kinds = _KINDS if itself_too else _KINDS[:1]
         moved = MovedBy(tuple(range(body.dof)))
-        if any(world.collide(_apart_from(world, kind(world, body), kind(world, body, moved))) for kind in kinds):
+        if any(world.collide(_apart_from(world, kind(world, body, None), kind(world, body, moved))) for kind in kinds):
             return np.ones(len(values), dtype=bool)
-        pairs = np.concatenate([_as_array(kind(world, body, moved)) for kind in kinds])
-        return _MovingTest(world, body, _Placement(world, body, range(body.dof)), pairs).of_many(values)
+        place = _Placement(world, body, range(body.dof))
+        return _MovingTest(world, body, place, _pairs(world, body, moved, kinds)).of_many(values)
     finally:
         body.restore(before)
         for one, configuration in held:
@@ -68,9 +71,9 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
         body.stamp = stamp
 
 
-def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy) -> Ints:
-    """Return the pairs of geoms that joints move against each other, shape (n, 2)."""
-    return np.concatenate([_as_array(body_and_others(world, body, moved)), _as_array(itself(world, body, moved))])
+def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy, kinds: Iterable[_Kind]) -> Ints:
+    """Return the pairs of geoms, of some kinds, that joints move against each other, shape (n, 2)."""
+    return np.concatenate([_as_array(kind(world, body, moved)) for kind in kinds])
 
 
 def _as_array(pairs: Pairs) -> Ints:
