@@ -1,6 +1,7 @@
 """The query that planners make most: does a body collide when some of its joints have these values?"""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -38,7 +39,7 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     world = body.simulation.collisions()
     if body.kinematics.displaced:
         return None
-    return _MovingTest(world, body, _Placement(world, body, dofs), _pairs(world, body, MovedBy(tuple(dofs)), _KINDS))
+    return _MovingTest(world, body, _Placement(world, body, dofs), _Chosen.of(world, body, dofs, _KINDS))
 
 
 def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDArray[np.bool_]:
@@ -59,11 +60,11 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
             body.set_values(values[0])  # brings displaced links back to their joints
         world = body.simulation.collisions()
         kinds = _KINDS if itself_too else _KINDS[:1]
-        moved = MovedBy(tuple(range(body.dof)))
-        if any(world.collide(_apart_from(world, kind(world, body, None), kind(world, body, moved))) for kind in kinds):
+        dofs = range(body.dof)
+        chosen = _Chosen.of(world, body, dofs, kinds)
+        if any(map(world.collide, chosen.resting)):
             return np.ones(len(values), dtype=bool)
-        place = _Placement(world, body, range(body.dof))
-        return _MovingTest(world, body, place, _pairs(world, body, moved, kinds)).of_many(values)
+        return _MovingTest(world, body, _Placement(world, body, dofs), chosen).of_many(values)
     finally:
         body.restore(before)
         for one, configuration in held:
@@ -71,9 +72,38 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
         body.stamp = stamp
 
 
-def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy, kinds: Iterable[_Kind]) -> Ints:
-    """Return the pairs of geoms, of some kinds, that joints move against each other, shape (n, 2)."""
-    return np.concatenate([_as_array(kind(world, body, moved)) for kind in kinds])
+class _Chosen(NamedTuple):
+    """The pairs of geoms that a test of a body is about.
+
+    Attributes:
+        meant: ``_keys`` of those that MuJoCo looks at, in both orders.
+        left_out: Those that it leaves out.
+        resting: Those that joints do not move against each other, of each kind.
+    """
+
+    meant: frozenset[int]
+    left_out: Pairs | None
+    resting: tuple[Pairs, ...]
+
+    @classmethod
+    def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
+        """Choose the pairs, once for a world in which bodies only move."""
+        moved = MovedBy(tuple(dofs))
+        return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
+
+    @classmethod
+    def _chosen(cls, world: CollisionWorld, body: BodyState, moved: MovedBy, kinds: Sequence[_Kind]) -> "_Chosen":
+        sets = [kind(world, body, moved) for kind in kinds]
+        resting = tuple(_apart_from(world, kind(world, body, None), one) for kind, one in zip(kinds, sets, strict=True))
+        pairs = np.concatenate([_as_array(one) for one in sets])
+        with HeldRoots(world, body):  # last, since it does not put the poses back
+            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
+        meant, rest = pairs[tested], pairs[~tested]
+        return cls(
+            frozenset([*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()]),
+            world.make_pairs(rest[:, 0], rest[:, 1]) if len(rest) else None,
+            resting,
+        )
 
 
 def _as_array(pairs: Pairs) -> Ints:
@@ -138,21 +168,11 @@ class _Placement:
 class _MovingTest:
     """See ``moving_test``: MuJoCo's own collision detection, and the pairs of geoms that it leaves out."""
 
-    def __init__(self, world: CollisionWorld, body: BodyState, place: _Placement, pairs: Ints) -> None:
+    def __init__(self, world: CollisionWorld, body: BodyState, place: _Placement, chosen: _Chosen) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
-        self._held = held = HeldRoots(world, body) if body.grabs else None
-        try:
-            if held is not None:
-                held.hang()
-            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
-        finally:
-            if held is not None:
-                held.unhang()
-        meant = pairs[tested]
-        self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
-        rest = pairs[~tested]
-        self._rest = world.make_pairs(rest[:, 0], rest[:, 1]) if len(rest) else None
+        self._held = HeldRoots(world, body) if body.grabs else None
+        self._meant, self._rest, _ = chosen
 
     def __call__(self, values: Floats) -> bool:
         """Return whether the body collides."""
@@ -187,12 +207,9 @@ class _MovingTest:
 
     def _detect_with(self, held: HeldRoots) -> None:
         """Let MuJoCo look for contacts, with what is held where its carriers are."""
-        try:
-            held.hang()
+        with held:
             mujoco.mj_kinematics(self._model, self._data)
             if held.are_late:
                 mujoco.mj_kinematics(self._model, self._data)
             mujoco.mj_collision(self._model, self._data)
-        finally:  # also at Ctrl-C
-            held.unhang()
         self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again

@@ -1,9 +1,10 @@
 """What collision checking knows of a world: which geom is whose, and which pairs of geoms each query is about."""
 
+import os
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import mujoco
 import numpy as np
@@ -19,13 +20,15 @@ from ravemj.engine.simulation.world_model import WorldModel
 if TYPE_CHECKING:
     from mujoco.batch import Batch
 
+_Made = TypeVar("_Made")
+
 MOST_PAIRS = 300_000
 """Pairs of geoms that are kept for all queries together."""
 
 MOST_AT_ONCE = 1000
 """Configurations that threads work on together, so that memory does not grow with their number."""
 
-_POSITIONS = int(mujoco.mjtStage.mjSTAGE_POS)
+_POSITIONS = 1  # mjSTAGE_POS: what follows from joint positions, contacts among it
 
 
 class CollisionWorld:
@@ -49,7 +52,7 @@ class CollisionWorld:
         self._detection = Detection(model, self.shapes)
         self._number = {body: number for number, body in enumerate(self.bodies)}
         self._pairs: dict[Hashable, Pairs] = {}
-        self._geoms_of_groups: dict[BodyState, Ints] = {}
+        self._kept: dict[Hashable, Any] = {}
         self._pair_count = 0
         self._find_owners(model.model)
         self._groups = _groups(self.bodies)
@@ -85,11 +88,7 @@ class CollisionWorld:
 
     def geoms_of_group(self, body: BodyState) -> Ints:
         """Return the geoms of a body and all that are connected to it by grabbing."""
-        geoms = self._geoms_of_groups.get(body)
-        if geoms is None:
-            geoms = np.concatenate([self.geoms_of_body(one) for one in self.group(body)])
-            self._geoms_of_groups[body] = geoms
-        return geoms
+        return self.kept(body, lambda: np.concatenate([self.geoms_of_body(one) for one in self.group(body)]))
 
     def geoms_of_others(self, body: BodyState) -> Ints:
         """Return the geoms of the bodies that are not connected to this one by grabbing."""
@@ -117,6 +116,12 @@ class CollisionWorld:
         bodies, links = indices[self._owner[geoms]], self._link[geoms]
         nothing = geoms < 0
         return np.stack([np.where(nothing, 0, bodies), np.where(nothing, -1, links)], axis=-1)
+
+    def kept(self, query: Hashable, make: Callable[[], _Made]) -> _Made:
+        """Return what was made for a query before, or make it."""
+        if query not in self._kept:
+            self._kept[query] = make()
+        return self._kept[query]
 
     def pairs(self, query: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
         """Return the pairs that a query is about.
@@ -162,10 +167,24 @@ class CollisionWorld:
         Args:
             qpos: The configurations, ``MOST_AT_ONCE`` at most, shape (n, nq).
         """
+        if _processors() == 1:
+            return self._have_contacts_one_by_one(qpos)
         batch, count = self._batch, len(qpos)
         batch.bind("qpos")[:count] = qpos
         batch.forward(np.arange(count), stage=_POSITIONS)
         return batch.bind("ncon")[:count] > 0
+
+    def _have_contacts_one_by_one(self, qpos: Floats) -> NDArray[np.bool_]:
+        """Do the same where there is one processor, on which a ``Batch`` takes longer, since it computes more."""
+        model, data, target = self._model, self._data, self._data.qpos
+        place, detect = mujoco.mj_kinematics, mujoco.mj_collision
+        touching = np.empty(len(qpos), dtype=bool)
+        for index, row in enumerate(qpos):
+            target[...] = row
+            place(model, data)
+            detect(model, data)
+            touching[index] = data.ncon
+        return touching
 
     @cached_property
     def _batch(self) -> "Batch":
@@ -248,6 +267,11 @@ class CollisionWorld:
         finally:
             self._detection.is_overruled = False
             mujoco.mj_kinematics(self._model, self._data)
+
+
+def _processors() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def cross(first: Ints, second: Ints) -> tuple[Ints, Ints]:
