@@ -12,6 +12,7 @@ from ravemj.core.transforms import (
     Ints,
     Vec3,
     cross,
+    cross_rows,
     dot,
     normalize,
     rows_from_wxyz,
@@ -199,7 +200,8 @@ def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
     if given.ndim == 3 and given.shape[1:] == (4, 4) and np.isfinite(given.sum()):
         rotations = given[:, :3, :3]
         off = np.abs(rotations @ rotations.transpose(0, 2, 1) - _IDENTITY[:3, :3]).max(initial=0.0)
-        if off < ROUNDING / 4 and (np.linalg.det(rotations) > 0).all():  # so each one is exact by itself
+        x, y, z = rotations.transpose(1, 0, 2)
+        if off < ROUNDING / 4 and ((x * cross_rows(y, z)).sum(axis=1) > 0).all():  # so each one is exact by itself
             given[:, 3] = _IDENTITY[3]
             return given
     return np.array([checked_transform(one, name) for one in transforms]).reshape(-1, 4, 4)

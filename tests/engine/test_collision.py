@@ -624,7 +624,13 @@ def test_many_rays(env):
     hits, points = env.CheckCollisionRays(rays)
     assert hits.tolist() == [True, False, True, False]
     np.testing.assert_allclose(points[0], [1.5, 0, 0, -1, 0, 0], atol=1e-9)
-    assert env.CheckCollisionRays(rays, front_facing_only=True)[0].tolist() == [True, False, False, False]
+    from_outside = [True, False, False, False]
+    assert env.CheckCollisionRays(rays, front_facing_only=True)[0].tolist() == from_outside
+    for number, ray in enumerate(rays):  # one ray alone takes another way
+        alone, point = env.CheckCollisionRays([ray])
+        assert alone.tolist() == [hits[number]]
+        np.testing.assert_allclose(point, points[[number]], rtol=0, atol=1e-12)
+        assert env.CheckCollisionRays([ray], front_facing_only=True)[0].tolist() == [from_outside[number]]
     np.testing.assert_allclose(env.CheckCollisionRays(rays, inside)[1][0], [1.8, 0, 0, -1, 0, 0], atol=1e-9)
     wall.Enable(False)
     np.testing.assert_allclose(env.CheckCollisionRays(rays)[1][0], [1.8, 0, 0, -1, 0, 0], atol=1e-9)
