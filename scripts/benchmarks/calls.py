@@ -53,7 +53,7 @@ class Call(NamedTuple):
 def rows() -> list[Row]:
     """Compare all calls, for several robots."""
     return [
-        Row(f"{robot}: {call.name}" + (f" : {call.floor}" if call.floor else ""), "µs", ours, bare)
+        Row(f"{robot}: {call.name}{call.floor and f' : {call.floor}'}".replace("`", ""), "µs", ours, bare)
         for robot, call, ours, bare in _measured()
     ]
 
