@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import ravemj
 from ravemj import CollisionOptions, CollisionReport, KinBody, Ray
-from ravemj.engine.collision import pairs
+from ravemj.engine.collision import pairs, world
 from ravemj.engine.collision.moving import moving_test
 from ravemj.geometry_functions import CheckOBBCollision, OrientedBox
 
@@ -745,7 +745,7 @@ class TestManyPairs:
 
 
 @pytest.mark.parametrize("place", [(0.45, 0.1, 0.5), (0, 0, -0.05)], ids=["before it", "under its base"])
-def test_batch_follows_mimic_and_displaced_joints(place):
+def test_batch_follows_mimic_and_displaced_joints(place, monkeypatch):
     env = ravemj.load(MODELS / "panda.xml")
     panda = env.GetRobots()[0]
     box(env, "box", place, (0.15, 0.15, 0.15))
@@ -760,6 +760,10 @@ def test_batch_follows_mimic_and_displaced_joints(place):
         others = env.CheckCollision(panda)
         assert answers == [others, others or panda.CheckSelfCollision()]
     assert sum(found[False]) == len(values) if place[0] == 0 else 0 < sum(found[False]) < len(values)
+    with monkeypatch.context() as patch:
+        for processors in (1, 2):
+            patch.setattr(world, "_processors", lambda processors=processors: processors)
+            assert panda.batch_collides(values).tolist() == found[True]
     env.GetKinBody("box").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 9, 9, 9]))
     assert not panda.batch_collides(values, itself_too=False).any()
 
