@@ -149,8 +149,12 @@ class CollisionWorld:
         return self._detection.finds(first, second)
 
     def finds_only(self, count: int) -> bool:
-        """Return whether so many pairs of geoms are all that MuJoCo looks at, and all geoms are convex."""
-        return count == self._found_count and not self._has_concave
+        """Return whether so many pairs of geoms are all that MuJoCo looks at, and all geoms are convex.
+
+        It is False as well where there are too many geoms to count their pairs.
+        """
+        can_count = self._model.ngeom**2 < 2 * MOST_PAIRS
+        return can_count and count == self._found_count and not self._has_concave
 
     @cached_property
     def _found_count(self) -> int:
