@@ -12,6 +12,7 @@ from ravemj.core.transforms import (
     Ints,
     Vec3,
     cross,
+    cross_rows,
     dot,
     normalize,
     rows_from_wxyz,
@@ -211,7 +212,8 @@ def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
     if given.ndim == 3 and given.shape[1:] == (4, 4) and np.isfinite(given.sum()):
         rotations = given[:, :3, :3]
         off = np.abs(rotations @ rotations.transpose(0, 2, 1) - _IDENTITY[:3, :3]).max(initial=0.0)
-        if off < ROUNDING / 4 and (np.linalg.det(rotations) > 0).all():  # so each one is exact by itself
+        x, y, z = rotations.transpose(1, 0, 2)
+        if off < ROUNDING / 4 and ((x * cross_rows(y, z)).sum(axis=1) > 0).all():  # so each one is exact by itself
             given[:, 3] = _IDENTITY[3]
             return given
     return np.array([checked_transform(one, name) for one in transforms]).reshape(-1, 4, 4)
@@ -229,10 +231,16 @@ def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
     determinant = dot(x, cross(y, z))
     off = math.inf
     if determinant > 0:
+        if _off_orthonormal(x, y, z) < ROUNDING / 4:  # so its scale is exact, too
+            return True
         unscale = 1 / math.cbrt(determinant)
-        x, y, z = scale(x, unscale), scale(y, unscale), scale(z, unscale)
-        squares = max(abs(dot(x, x) - 1), abs(dot(y, y) - 1), abs(dot(z, z) - 1))
-        off = max(squares, abs(dot(x, y)), abs(dot(y, z)), abs(dot(z, x)))
+        off = _off_orthonormal(scale(x, unscale), scale(y, unscale), scale(z, unscale))
     if not off <= NOT_RIGID:
         raise ArgumentError(f"{name}: the rotation {rows} is not one: its rows should be orthonormal")
     return off < ROUNDING and abs(determinant - 1) < ROUNDING
+
+
+def _off_orthonormal(x: Vec3, y: Vec3, z: Vec3) -> float:
+    """Return the largest entry of ``R R^T - I`` for the rows of R."""
+    squares = max(abs(dot(x, x) - 1), abs(dot(y, y) - 1), abs(dot(z, z) - 1))
+    return max(squares, abs(dot(x, y)), abs(dot(y, z)), abs(dot(z, x)))

@@ -25,14 +25,13 @@ class Limits:
     def __init__(self, axes: Sequence[Axis]) -> None:
         self.lower = np.array([-LARGEST if axis.circular else axis.lower for axis in axes])
         self.upper = np.array([LARGEST if axis.circular else axis.upper for axis in axes])
-        pairs = list(zip(self.lower.tolist(), self.upper.tolist(), strict=True))
-        self._pairs = pairs if len(pairs) <= _FEW else None
+        self._plain_limits = (self.lower.tolist(), self.upper.tolist()) if len(axes) <= _FEW else None
 
     def contain(self, values: Floats) -> bool:
         """Return whether all values, shape (axes,), are finite numbers within the limits."""
-        if self._pairs is None:
+        if self._plain_limits is None:
             return np.count_nonzero((self.lower <= values) & (values <= self.upper)) == len(values)  # faster than all
-        for value, (lower, upper) in zip(values.tolist(), self._pairs):  # noqa: B905, SIM110 - strict and all take longer
+        for value, lower, upper in zip(values.tolist(), *self._plain_limits):  # noqa: B905, SIM110 - strict, all: slower
             if not lower <= value <= upper:
                 return False
         return True

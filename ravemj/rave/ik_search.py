@@ -188,7 +188,7 @@ class IkSearch(Interface):
             options: ``IkFilterOptions`` combined with ``|``.
             seed: The configuration, shape (n,); None: the present one.
             failures: Gets what is rejected.
-            explain: Whether the answer says why there is no solution.
+            explain: Whether the answer says why there is no solution, or how far away it is.
         """
         solver = self.derived()
         numbers, free = self._numbers(goal), self._free_values(solver, shares)
@@ -199,6 +199,8 @@ class IkSearch(Interface):
                 if explain and not validator.quit:
                     validator.fall_short(*_shortfall(solver, numbers, free), limits=not options & IGNORE_LIMITS)
                 return validator.failure()
+        if not explain:
+            return answer
         from ravemj.ik.limits import distances
 
         away = distances(solver.chain, answer.GetSolution(), start, self._weights())
@@ -270,8 +272,6 @@ class IkSearch(Interface):
     def _validator(
         self, goal: IkParameterization | Floats, options: int, failures: list[IkFailureInfo] | None
     ) -> Validator:
-        if isinstance(goal, np.ndarray):
-            goal = IkParameterization(goal, _Type.Transform6D)
         filters = [] if options & IGNORE_FILTERS else self._filters
         query = Query(self._owner(), self._arm, self._description(), goal, options, filters, failures)
         return Validator(query)

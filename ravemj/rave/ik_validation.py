@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
@@ -29,6 +30,7 @@ IGNORE_LIMITS = int(IkFilterOptions.IgnoreJointLimits)
 IGNORE_FILTERS = int(IkFilterOptions.IgnoreCustomFilters)
 _IGNORE_END = int(IkFilterOptions.IgnoreEndEffectorEnvCollisions)
 _IGNORE_END_SELF = int(IkFilterOptions.IgnoreEndEffectorSelfCollisions)
+_POSE = IkParameterization.Type.Transform6D
 _REJECT, _QUIT = int(IkReturnAction.Reject), int(IkReturnAction.Quit)
 
 FilterAnswer = IkReturnAction | IkReturn | None
@@ -55,7 +57,7 @@ class Query(NamedTuple):
         robot: The robot.
         arm: The manipulator.
         description: Its description.
-        goal: The goal in the frame of the arm's base.
+        goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
         options: ``IkFilterOptions`` combined with ``|``.
         filters: The filters of users.
         failures: Gets what is rejected; None: nothing does.
@@ -64,7 +66,7 @@ class Query(NamedTuple):
     robot: "Robot"
     arm: "Manipulator"
     description: scene.Manipulator
-    goal: IkParameterization
+    goal: IkParameterization | Floats
     options: int
     filters: Sequence[Filter]
     failures: list[IkFailureInfo] | None = None
@@ -105,6 +107,12 @@ class Validator:
         self._query.robot.active_choice = self._chosen
         self._state.restore(self._saved)
         self._state.simulation.lock.release()
+
+    @cached_property
+    def _goal(self) -> IkParameterization:
+        """The goal as users see it; made when it is first asked for, since it checks a pose once more."""
+        goal = self._query.goal
+        return goal if isinstance(goal, IkParameterization) else IkParameterization(goal, _POSE)
 
     def first(self, rows: Iterable[Floats]) -> IkReturn | None:
         """Return the answer for the first good one of solutions, or None."""
@@ -161,7 +169,7 @@ class Validator:
         """
         query = self._query
         try:
-            said: Any = one.function(row.copy(), query.arm, IkParameterization(query.goal))
+            said: Any = one.function(row.copy(), query.arm, IkParameterization(self._goal))
         except Exception as error:
             message = f"a filter of inverse kinematics raised {type(error).__name__}: {error}"
             raise RavemjError(message, ErrorCode.Assert) from error
@@ -182,7 +190,7 @@ class Validator:
         check_env, check_self = options & CHECK_ENV, not options & IGNORE_SELF
         world = state.simulation.collisions()
         without_end = bool(options & _IGNORE_END)
-        if check_env and not without_end and self._query.goal.GetType() == IkParameterization.Type.Transform6D:
+        if check_env and not without_end and self._goal.GetType() == _POSE:
             # All solutions have the end at the same place.
             if not self._end_is_free and self._hits(world, arms.end_and_others(world, state, arm), row, 0x83):
                 self.quit = True
@@ -208,7 +216,7 @@ class Validator:
     def _reject(self, row: Floats, action: int, why: str, report: CollisionReport | None = None) -> None:
         self.action |= int(action)
         if self._query.failures is not None:
-            info = IkFailureInfo(IkReturnAction(action), row.copy(), self._query.goal, report, why)
+            info = IkFailureInfo(IkReturnAction(action), row.copy(), self._goal, report, why)
             self._query.failures.append(info)
 
     def fall_short(self, unreached: bool, limited: bool, *, limits: bool) -> None:

@@ -32,10 +32,12 @@ def joint_values(
         return None
     values = np.zeros(len(indices))
     for group in found:
-        present = joint_indices(group)
+        first_columns: dict[int, int] = {}  # a lookup for each of many indices; a list would be searched
+        for column, index in enumerate(joint_indices(group), group.offset):
+            first_columns.setdefault(index, column)
         for place, index in enumerate(indices):
-            if index in present:
-                values[place] = data[group.offset + present.index(index)]
+            if index in first_columns:
+                values[place] = data[first_columns[index]]
     return values
 
 

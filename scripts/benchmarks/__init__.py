@@ -6,6 +6,7 @@ A new area is a module with such a function, and a line in ``AREAS``.
 from collections.abc import Callable
 
 from benchmarks import (
+    calls,
     collada,
     collision,
     drawing,
@@ -26,6 +27,7 @@ from benchmarks import (
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
+    "calls": calls.rows,
     "kinematics": kinematics.rows,
     "dynamics": dynamics.rows,
     "collision": collision.rows,

@@ -89,7 +89,9 @@ def take_turns(measurements: Sequence[Callable[[], float]], rounds: int, *, warm
     return [statistics.median(numbers) for numbers in zip(*series, strict=True)]
 
 
-def microseconds(function: Callable[[], object], calls: int = 1) -> Callable[[], float]:
+def microseconds(
+    function: Callable[[], object], calls: int = 1, clock: Callable[[], float] = time.process_time
+) -> Callable[[], float]:
     """Return a measurement of the mean time of a call [µs]: of the processor, which other programs do not lengthen.
 
     The garbage collector rests meanwhile, as in ``timeit``, and what the last call returns is freed off the clock.
@@ -97,6 +99,7 @@ def microseconds(function: Callable[[], object], calls: int = 1) -> Callable[[],
     Args:
         function: What is called.
         calls: How many calls one measurement consists of; many for what is fast.
+        clock: Returns the time [s]; ``time.perf_counter`` where several processors work at once.
     """
     repetitions = range(calls)
 
@@ -104,10 +107,10 @@ def microseconds(function: Callable[[], object], calls: int = 1) -> Callable[[],
         result: object = None
         gc.disable()
         try:
-            begin = time.process_time()
+            begin = clock()
             for _ in repetitions:
                 result = function()
-            end = time.process_time()
+            end = clock()
         finally:
             gc.enable()
         del result  # off the clock

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import ravemj
 from ravemj import CollisionOptions, CollisionReport, KinBody, Ray
-from ravemj.engine.collision import pairs
+from ravemj.engine.collision import pairs, world
 from ravemj.engine.collision.moving import moving_test
 from ravemj.geometry_functions import CheckOBBCollision, OrientedBox
 
@@ -624,7 +624,13 @@ def test_many_rays(env):
     hits, points = env.CheckCollisionRays(rays)
     assert hits.tolist() == [True, False, True, False]
     np.testing.assert_allclose(points[0], [1.5, 0, 0, -1, 0, 0], atol=1e-9)
-    assert env.CheckCollisionRays(rays, front_facing_only=True)[0].tolist() == [True, False, False, False]
+    from_outside = [True, False, False, False]
+    assert env.CheckCollisionRays(rays, front_facing_only=True)[0].tolist() == from_outside
+    for number, ray in enumerate(rays):  # one ray alone takes another way
+        alone, point = env.CheckCollisionRays([ray])
+        assert alone.tolist() == [hits[number]]
+        np.testing.assert_allclose(point, points[[number]], rtol=0, atol=1e-12)
+        assert env.CheckCollisionRays([ray], front_facing_only=True)[0].tolist() == [from_outside[number]]
     np.testing.assert_allclose(env.CheckCollisionRays(rays, inside)[1][0], [1.8, 0, 0, -1, 0, 0], atol=1e-9)
     wall.Enable(False)
     np.testing.assert_allclose(env.CheckCollisionRays(rays)[1][0], [1.8, 0, 0, -1, 0, 0], atol=1e-9)
@@ -739,14 +745,14 @@ class TestManyPairs:
 
 
 @pytest.mark.parametrize("place", [(0.45, 0.1, 0.5), (0, 0, -0.05)], ids=["before it", "under its base"])
-def test_batch_follows_mimic_and_displaced_joints(place):
+def test_batch_follows_mimic_and_displaced_joints(place, monkeypatch):
     env = ravemj.load(MODELS / "panda.xml")
     panda = env.GetRobots()[0]
     box(env, "box", place, (0.15, 0.15, 0.15))
     finger = panda.GetLinks()[-1]
     finger.SetTransform(finger.GetTransform() @ ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.3]))
     displaced = finger.GetTransform()
-    values = np.random.default_rng(5).uniform(*panda.GetDOFLimits(), (40, panda.GetDOF()))
+    values = np.random.default_rng(5).uniform(*panda.GetDOFLimits(), (60, panda.GetDOF()))
     found = {itself: panda.batch_collides(values, itself).tolist() for itself in (False, True)}
     np.testing.assert_array_equal(finger.GetTransform(), displaced)
     for row, *answers in zip(values, *found.values(), strict=True):
@@ -754,6 +760,12 @@ def test_batch_follows_mimic_and_displaced_joints(place):
         others = env.CheckCollision(panda)
         assert answers == [others, others or panda.CheckSelfCollision()]
     assert sum(found[False]) == len(values) if place[0] == 0 else 0 < sum(found[False]) < len(values)
+    with monkeypatch.context() as patch:
+        for processors in (1, 2):
+            patch.setattr(world, "_processors", lambda processors=processors: processors)
+            assert panda.batch_collides(values).tolist() == found[True]
+    env.GetKinBody("box").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 9, 9, 9]))
+    assert not panda.batch_collides(values, itself_too=False).any()
 
 
 @pytest.mark.parametrize("texts", [(ARM, THING), (THING, ARM)], ids=["the arm first", "what it holds first"])

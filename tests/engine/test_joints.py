@@ -6,6 +6,18 @@ import numpy as np
 import pytest
 
 import ravemj
+from ravemj.core.transforms import pose_of
+from ravemj.model.joints import measured_values
+
+ANY_JOINTS = """<Environment><KinBody name="any">
+  <Body name="a"/><Body name="b"/><Body name="c"><offsetfrom>b</offsetfrom><translation>.1 .2 .3</translation>
+  <rotationaxis>1 2 3 40</rotationaxis></Body><Body name="d"/><Body name="e"/>
+  <Joint name="ab"><Body>a</Body><Body>b</Body><anchor>.3 .1 .2</anchor><axis>1 2 3</axis>
+  <limits>-200 200</limits><initial>50</initial></Joint>
+  <Joint name="bc" type="slider"><Body>b</Body><Body>c</Body><axis>1 -1 2</axis><limits>-9 9</limits></Joint>
+  <Joint name="cd"><Body>c</Body><Body>d</Body><axis>0 0 1</axis><limits>0 0</limits></Joint>
+  <Joint name="de"><Body>d</Body><Body>e</Body><offsetfrom>e</offsetfrom><axis>0 1 0</axis></Joint>
+</KinBody></Environment>"""
 
 TREE = """<Environment><KinBody name="tree">
   <Body name="root"><Geom type="box"><extents>1 1 1</extents></Geom></Body>
@@ -33,6 +45,13 @@ def env():
 def tree(env):
     env.LoadData(TREE)
     return env.GetKinBody("tree")
+
+
+def random_poses(count, seed=3):
+    random = np.random.default_rng(seed)
+    return [
+        ravemj.matrixFromPose([*ravemj.quatFromAxisAngle(row[:3]), *row[3:]]) for row in random.normal(0, 2, (count, 6))
+    ]
 
 
 def names(things):
@@ -333,3 +352,38 @@ class TestEquationsWithSeveralValues:
         body.GetJoint("follow").SetLimits([1], [2])
         body.SetDOFValues([0.5])
         assert body.GetJoint("follow").GetValue() == 1
+
+
+class TestPosesThatJointsDoNotGive:
+    def test_joints_show_what_each_one_measures(self, env):
+        env.LoadData(ANY_JOINTS)
+        body = env.GetKinBody("any")
+        for seed in range(20):
+            transforms = random_poses(5, seed)
+            body.SetLinkTransformations(transforms, np.zeros(4))
+            poses = [pose_of(transform) for transform in transforms]
+            joints = body.simulation_state.scene.joints
+            shown = [measured_values(one, poses[one.parent].inverse() @ poses[one.child])[0] for one in joints]
+            shown = np.array(shown) - [
+                0 if joint.kind == "slider" else math.tau * round(value / math.tau)
+                for joint, value in zip(joints, shown, strict=True)
+            ]
+            np.testing.assert_allclose(body.GetDOFValues(), shown, rtol=0, atol=1e-9)
+            np.testing.assert_allclose(body.GetLinkTransformations(), transforms, rtol=0, atol=1e-9)
+
+    def test_every_form_of_a_pose_may_stand_beside_the_others(self, env):
+        env.LoadData(ANY_JOINTS)
+        body = env.GetKinBody("any")
+        a, b, c, d, e = random_poses(5)
+        e_below = e.copy()
+        e_below[3] = 5, 6, 7, 8  # never looked at
+        body.SetLinkTransformations([a, b[:3], ravemj.poseFromMatrix(c), d.tolist(), e_below])
+        np.testing.assert_allclose(body.GetLinkTransformations(), [a, b, c, d, e], rtol=0, atol=1e-9)
+        body.SetLinkTransformations([a, b, c, d, e_below])
+        np.testing.assert_allclose(body.GetLinkTransformations(), [a, b, c, d, e], rtol=0, atol=1e-9)
+        for wrong in (np.nan, np.inf):
+            e[0, 3] = wrong
+            with pytest.raises(ravemj.openrave_exception, match="finite"):
+                body.SetLinkTransformations([a, b, c, d, e])
+        with pytest.raises(ravemj.openrave_exception, match="rotation"):
+            body.SetLinkTransformations([a, b, c, d, np.diag([-1.0, 1, 1, 1])])

@@ -5,10 +5,10 @@ from collections.abc import Iterable
 from ravemj.core.graphs import ordered_pair
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Pairs
-from ravemj.engine.collision.queries import LinkOf, body_and_others, held_with, itself, moved_apart
+from ravemj.engine.collision.queries import LinkOf, body_and_others, held_with, itself, moved_apart, moved_links
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
-from ravemj.model.chains import dofs_moving, independent_links, links_beyond
+from ravemj.model.chains import independent_links, links_beyond
 from ravemj.model.scene import Manipulator
 
 
@@ -48,7 +48,7 @@ def arm_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator, *, 
 
     def find() -> tuple[Ints, Ints]:
         left_out = set(links_beyond(body.scene, arm)) if without_end else set[int]()
-        pairs = body_and_others(world, body, frozenset(_moved(body, arm) - left_out))
+        pairs = body_and_others(world, body, frozenset(moved_links(body.scene, arm.arm_dofs) - left_out))
         return pairs.first, pairs.second
 
     return world.pairs(("arm and others", body, arm, without_end), find)
@@ -65,7 +65,7 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
     """
 
     def find() -> tuple[Ints, Ints]:
-        end, moved = set(links_beyond(body.scene, arm)), _moved(body, arm)
+        end, moved = set(links_beyond(body.scene, arm)), moved_links(body.scene, arm.arm_dofs)
         apart = moved_apart(body.scene, arm.arm_dofs)
         if without_end:
             apart = frozenset((a, b) for a, b in apart if not ({a, b} & end and {a, b} - moved))
@@ -73,12 +73,6 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
         return pairs.first, pairs.second
 
     return world.pairs(("arm and rest", body, arm, without_end), find)
-
-
-def _moved(body: BodyState, arm: Manipulator) -> set[int]:
-    """Return the links that the joints of an arm move."""
-    dofs = set(arm.arm_dofs)
-    return {link for link in range(len(body.scene.links)) if dofs & dofs_moving(body.scene, link)}
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:

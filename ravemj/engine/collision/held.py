@@ -12,9 +12,10 @@ from ravemj.engine.simulation import BodyState
 
 
 class HeldRoots:
-    """The root links of what a body holds: children of the world in the model, and for a while of their carriers.
+    """The root links of what a body holds: children of the world in the model.
 
-    Then ``mj_kinematics`` places them, and ``mj_collision`` looks at them and what is fixed to the world.
+    Inside a ``with`` they hang on their carriers: ``mj_kinematics`` places them, and ``mj_collision`` looks at them and
+    what is fixed to the world.
 
     Attributes:
         are_late: Whether one comes before its carrier, so that ``mj_kinematics`` has to run twice.
@@ -39,7 +40,7 @@ class HeldRoots:
             self._welds += zip(fixed, model.body_rootid[fixed].tolist(), strict=True)
         self.are_late = any(one.body_id < one.carrier for one in self._roots)
 
-    def hang(self) -> None:
+    def __enter__(self) -> None:
         """Make them children of their carriers."""
         for index, carrier, position, wxyz, offset, turn in self._roots:
             self._parents[index] = carrier
@@ -49,7 +50,7 @@ class HeldRoots:
         for index, root in self._welds:
             self._weld_ids[index] = root
 
-    def unhang(self) -> None:
+    def __exit__(self, *error: object) -> None:
         """Make them children of the world again; their poses there are for the caller to restore."""
         for one in self._roots:
             self._parents[one.body_id] = self._dof_counts[one.body_id] = 0

@@ -1,6 +1,7 @@
 """The query that planners make most: does a body collide when some of its joints have these values?"""
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -10,12 +11,18 @@ from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.held import HeldRoots
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
-from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.collision.world import MOST_AT_ONCE, CollisionWorld
 from ravemj.engine.kinematics import fixed_view
 from ravemj.engine.simulation import BodyState
 
+_Kind = Callable[[CollisionWorld, BodyState, MovedBy | None], Pairs]
+_KINDS: tuple[_Kind, ...] = (body_and_others, itself)
+
 _KEY = 1 << 31
 """More than the number of geoms: makes one number of a pair."""
+
+_MANY = 50
+"""For fewer configurations threads do not pay."""
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
@@ -32,7 +39,7 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     world = body.simulation.collisions()
     if body.kinematics.displaced:
         return None
-    return _MovingTest(world, body, _placement(world, body, dofs), _pairs(world, body, MovedBy(tuple(dofs))))
+    return _MovingTest(world, body, _Placement(world, body, dofs), _Chosen.of(world, body, dofs, _KINDS))
 
 
 def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDArray[np.bool_]:
@@ -51,14 +58,13 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
     try:
         if len(values) and body.kinematics.displaced:
             body.set_values(values[0])  # brings displaced links back to their joints
-        dofs, world = range(body.dof), body.simulation.collisions()
-        kinds = (body_and_others, itself) if itself_too else (body_and_others,)
-        moved = MovedBy(tuple(dofs))
-        if any(world.collide(_apart_from(world, kind(world, body), kind(world, body, moved))) for kind in kinds):
+        world = body.simulation.collisions()
+        kinds = _KINDS if itself_too else _KINDS[:1]
+        dofs = range(body.dof)
+        chosen = _Chosen.of(world, body, dofs, kinds)
+        if any(map(world.collide, chosen.resting)):
             return np.ones(len(values), dtype=bool)
-        pairs = np.concatenate([_as_array(kind(world, body, moved)) for kind in kinds])
-        collides = _MovingTest(world, body, _placement(world, body, dofs), pairs)
-        return np.array([collides(one) for one in values], dtype=bool)
+        return _MovingTest(world, body, _Placement(world, body, dofs), chosen).of_many(values)
     finally:
         body.restore(before)
         for one, configuration in held:
@@ -66,41 +72,38 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
         body.stamp = stamp
 
 
-def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None]:
-    """Return a function that moves joints of a body in the model of the world."""
-    kinematics, part, qpos, columns = body.kinematics, world.model.part(body), world.model.data.qpos, list(dofs)
-    followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
-    places, multiples = world.model.qpos_indices(body)[columns], kinematics.multiples
-    full = kinematics.values()
-    target, indices = fixed_view(qpos, places)
+class _Chosen(NamedTuple):
+    """The pairs of geoms that a test of a body is about.
 
-    def place(values: Floats) -> None:
-        target[indices] = values
+    Attributes:
+        meant: ``_keys`` of those that MuJoCo looks at, in both orders.
+        left_out: Those that it leaves out.
+        resting: Those that joints do not move against each other, of each kind.
+    """
 
-    def place_with_multiples(values: Floats) -> None:
-        target[indices] = values
-        for column, slope, offset, lower, upper, index in followers:
-            qpos[index] = min(max(slope * values.item(column) + offset, lower), upper)
+    meant: frozenset[int]
+    left_out: Pairs | None
+    resting: tuple[Pairs, ...]
 
-    def place_all(values: Floats) -> None:
-        full[columns] = values
-        kinematics.set_values(full)
-        if part.take(kinematics):
-            world.model.pose_stamp += 1
+    @classmethod
+    def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
+        """Choose the pairs, once for a world in which bodies only move."""
+        moved = MovedBy(tuple(dofs))
+        return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
 
-    if (places < 0).any() or (multiples is None and followed & set(dofs)):
-        return place_all
-    followers = [
-        (columns.index(dof), *equation, part.qpos.start + kinematics.inner_index(index))
-        for dof, *equation, index in multiples or ()
-        if dof in columns
-    ]
-    return place_with_multiples if followers else place
-
-
-def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy) -> Ints:
-    """Return the pairs of geoms that joints move against each other, shape (n, 2)."""
-    return np.concatenate([_as_array(body_and_others(world, body, moved)), _as_array(itself(world, body, moved))])
+    @classmethod
+    def _chosen(cls, world: CollisionWorld, body: BodyState, moved: MovedBy, kinds: Sequence[_Kind]) -> "_Chosen":
+        sets = [kind(world, body, moved) for kind in kinds]
+        resting = tuple(_apart_from(world, kind(world, body, None), one) for kind, one in zip(kinds, sets, strict=True))
+        pairs = np.concatenate([_as_array(one) for one in sets])
+        with HeldRoots(world, body):  # last, since it does not put the poses back
+            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
+        meant, rest = pairs[tested], pairs[~tested]
+        return cls(
+            frozenset([*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()]),
+            world.make_pairs(rest[:, 0], rest[:, 1]) if len(rest) else None,
+            resting,
+        )
 
 
 def _as_array(pairs: Pairs) -> Ints:
@@ -120,24 +123,56 @@ def _keys(pairs: Ints) -> Ints:
     return pairs[:, 0] * _KEY + pairs[:, 1]
 
 
+class _Placement:
+    """Moves joints of a body in the model of the world.
+
+    Attributes:
+        is_plain: Whether joint values are written into ``qpos`` as they are, or with multiples for mimic joints.
+    """
+
+    def __init__(self, world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> None:
+        self._kinematics, self._model = kinematics, model = body.kinematics, world.model
+        self._part, self._qpos, self._dofs = model.part(body), model.data.qpos, list(dofs)
+        followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
+        self._places, multiples = model.qpos_indices(body)[self._dofs], kinematics.multiples
+        self._full = kinematics.values()
+        self._target, self._indices = fixed_view(self._qpos, self._places)
+        self.is_plain = bool((self._places >= 0).all()) and (multiples is not None or not followed & set(dofs))
+        self._followers = [
+            (self._dofs.index(dof), *equation, self._part.qpos.start + kinematics.inner_index(index))
+            for dof, *equation, index in multiples or ()
+            if dof in self._dofs
+        ]
+
+    def __call__(self, values: Floats) -> None:
+        """Write joint values [rad or m], shape (dofs,)."""
+        if not self.is_plain:
+            self._full[self._dofs] = values
+            self._kinematics.set_values(self._full)
+            if self._part.take(self._kinematics):
+                self._model.pose_stamp += 1
+            return
+        self._target[self._indices] = values
+        for column, slope, offset, lower, upper, index in self._followers:
+            self._qpos[index] = min(max(slope * values.item(column) + offset, lower), upper)
+
+    def qpos_of_many(self, values: Floats) -> Floats:
+        """Return ``qpos`` of the world for many configurations, shape (n, nq), where the placement is plain."""
+        qpos = np.tile(self._qpos, (len(values), 1))
+        qpos[:, self._places] = values
+        for column, slope, offset, lower, upper, index in self._followers:
+            qpos[:, index] = np.clip(slope * values[:, column] + offset, lower, upper)
+        return qpos
+
+
 class _MovingTest:
     """See ``moving_test``: MuJoCo's own collision detection, and the pairs of geoms that it leaves out."""
 
-    def __init__(self, world: CollisionWorld, body: BodyState, place: Callable[[Floats], None], pairs: Ints) -> None:
+    def __init__(self, world: CollisionWorld, body: BodyState, place: _Placement, chosen: _Chosen) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
-        self._held = held = HeldRoots(world, body) if body.grabs else None
-        try:
-            if held is not None:
-                held.hang()
-            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
-        finally:
-            if held is not None:
-                held.unhang()
-        meant = pairs[tested]
-        self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
-        rest = pairs[~tested]
-        self._rest = world.make_pairs(rest[:, 0], rest[:, 1]) if len(rest) else None
+        self._held = HeldRoots(world, body) if body.grabs else None
+        self._meant, self._rest, _ = chosen
 
     def __call__(self, values: Floats) -> bool:
         """Return whether the body collides."""
@@ -155,14 +190,26 @@ class _MovingTest:
                     return True
         return self._rest is not None and self._world.collide(self._rest)
 
+    def of_many(self, values: Floats) -> NDArray[np.bool_]:
+        """Return for each configuration, shape (n, dofs), whether the body collides.
+
+        Where nothing is held and MuJoCo looks at all pairs, its threads first count the contacts of all configurations.
+        Those with contacts are looked at again, unless all that MuJoCo finds are convex shapes that are meant.
+        """
+        if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
+            return np.array([self(one) for one in values], dtype=bool)
+        parts = np.array_split(values, -(-len(values) // MOST_AT_ONCE))
+        touching = np.concatenate([self._world.have_contacts(self._place.qpos_of_many(part)) for part in parts])
+        if not self._world.finds_only(len(self._meant) // 2):  # which has each pair in both orders
+            for index in np.flatnonzero(touching).tolist():
+                touching[index] = self(values[index])
+        return touching
+
     def _detect_with(self, held: HeldRoots) -> None:
         """Let MuJoCo look for contacts, with what is held where its carriers are."""
-        try:
-            held.hang()
+        with held:
             mujoco.mj_kinematics(self._model, self._data)
             if held.are_late:
                 mujoco.mj_kinematics(self._model, self._data)
             mujoco.mj_collision(self._model, self._data)
-        finally:  # also at Ctrl-C
-            held.unhang()
         self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again

@@ -141,6 +141,12 @@ def moved_apart(body: KinBody, dofs: Iterable[int]) -> frozenset[Pair]:
     return frozenset((a, b) for a, b in combinations(range(len(movers)), 2) if movers[a] != movers[b])
 
 
+def moved_links(body: KinBody, dofs: Iterable[int]) -> frozenset[int]:
+    """Return the links that any of the DOFs moves."""
+    wanted = frozenset(dofs)
+    return frozenset(link for link in range(len(body.links)) if wanted & dofs_moving(body, link))
+
+
 def body_of(thing: BodyState | LinkOf) -> BodyState:
     """Return a body itself, or the body of a link."""
     return thing if isinstance(thing, BodyState) else thing[0]
@@ -155,8 +161,7 @@ def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:
     if links is None:
         return world.geoms_of_group(body)
     if isinstance(links, MovedBy):
-        wanted = set(links.dofs)
-        links = frozenset(link for link in range(len(body.scene.links)) if wanted & dofs_moving(body.scene, link))
+        links = moved_links(body.scene, links.dofs)
     own = [world.geoms_of_link(body, link) for link in sorted(links)]
     held = [_held(world, grab.body) for grab in body.grabs if grab.link in links]
     return np.concatenate([_nothing(), *own, *held])

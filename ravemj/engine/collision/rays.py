@@ -116,8 +116,13 @@ class RayCaster:
             for the others.
         """
         found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
+        if len(rays) == 1:
+            hit = self.first_hit(geoms, rays[0, :3], rays[0, 3:])
+            if hit is not None and not (front_facing_only and hit.normal @ rays[0, 3:] >= 0):
+                found[0], points[0, :3], points[0, 3:] = True, hit.position, hit.normal
+            return found, points
         long = np.flatnonzero(np.linalg.norm(rays[:, 3:], axis=1) > _SHORTEST)
-        for some in _of_one_start(rays, long) if len(long) > 1 else [long] * len(long):
+        for some in _of_one_start(rays, long) if len(long) else ():
             start, directions, normals = rays[some[0], :3], rays[some, 3:], np.zeros((len(some), 3))
             distances, _ = self.cast(geoms, start, directions, normals=normals)
             is_hit = (distances >= 0) & (distances <= 1)

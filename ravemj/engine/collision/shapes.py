@@ -46,6 +46,10 @@ class ShapeTests:
         self._triangles = _triangle_tests(model, data) if model.nmesh else None
         self._segment = np.zeros(6)
 
+    def is_concave(self, geom: int) -> bool:
+        """Return whether a geom is a mesh that does not fill its hull."""
+        return self._triangles is not None and self._triangles.is_concave(geom)
+
     def touch(self, first: int, second: int) -> bool:
         """Return whether two geoms overlap or touch."""
         hulls = mujoco.mj_geomDistance(self._model, self._data, first, second, _RANGE, None)

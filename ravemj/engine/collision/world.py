@@ -1,8 +1,10 @@
 """What collision checking knows of a world: which geom is whose, and which pairs of geoms each query is about."""
 
+import os
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import mujoco
 import numpy as np
@@ -15,8 +17,18 @@ from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
 
+if TYPE_CHECKING:
+    from mujoco.batch import Batch
+
+_Made = TypeVar("_Made")
+
 MOST_PAIRS = 300_000
 """Pairs of geoms that are kept for all queries together."""
+
+MOST_AT_ONCE = 1000
+"""Configurations that threads work on together, so that memory does not grow with their number."""
+
+_POSITIONS = 1  # mjSTAGE_POS: what follows from joint positions, contacts among it
 
 
 class CollisionWorld:
@@ -40,7 +52,7 @@ class CollisionWorld:
         self._detection = Detection(model, self.shapes)
         self._number = {body: number for number, body in enumerate(self.bodies)}
         self._pairs: dict[Hashable, Pairs] = {}
-        self._geoms_of_groups: dict[BodyState, Ints] = {}
+        self._kept: dict[Hashable, Any] = {}
         self._pair_count = 0
         self._find_owners(model.model)
         self._groups = _groups(self.bodies)
@@ -76,11 +88,7 @@ class CollisionWorld:
 
     def geoms_of_group(self, body: BodyState) -> Ints:
         """Return the geoms of a body and all that are connected to it by grabbing."""
-        geoms = self._geoms_of_groups.get(body)
-        if geoms is None:
-            geoms = np.concatenate([self.geoms_of_body(one) for one in self.group(body)])
-            self._geoms_of_groups[body] = geoms
-        return geoms
+        return self.kept(body, lambda: np.concatenate([self.geoms_of_body(one) for one in self.group(body)]))
 
     def geoms_of_others(self, body: BodyState) -> Ints:
         """Return the geoms of the bodies that are not connected to this one by grabbing."""
@@ -109,6 +117,12 @@ class CollisionWorld:
         nothing = geoms < 0
         return np.stack([np.where(nothing, 0, bodies), np.where(nothing, -1, links)], axis=-1)
 
+    def kept(self, query: Hashable, make: Callable[[], _Made]) -> _Made:
+        """Return what was made for a query before, or make it."""
+        if query not in self._kept:
+            self._kept[query] = make()
+        return self._kept[query]
+
     def pairs(self, query: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
         """Return the pairs that a query is about.
 
@@ -133,6 +147,58 @@ class CollisionWorld:
     def found_by_mujoco(self, first: Ints, second: Ints) -> NDArray[np.bool_]:
         """Return which pairs of geoms MuJoCo's own collision detection looks at, shape (n,)."""
         return self._detection.finds(first, second)
+
+    def finds_only(self, count: int) -> bool:
+        """Return whether so many pairs of geoms are all that MuJoCo looks at, and all geoms are convex.
+
+        It is False as well where there are too many geoms to count their pairs.
+        """
+        can_count = self._model.ngeom**2 < 2 * MOST_PAIRS
+        return can_count and count == self._found_count and not self._has_concave
+
+    @cached_property
+    def _found_count(self) -> int:
+        first, second = np.triu_indices(self._model.ngeom, 1)
+        return int(np.count_nonzero(self._detection.finds(first, second)))
+
+    @cached_property
+    def _has_concave(self) -> bool:
+        return any(map(self.shapes.is_concave, self._colliding.tolist()))
+
+    def have_contacts(self, qpos: Floats) -> NDArray[np.bool_]:
+        """Return for each configuration of the world whether MuJoCo finds contacts, on all processors at once.
+
+        Args:
+            qpos: The configurations, ``MOST_AT_ONCE`` at most, shape (n, nq).
+        """
+        if _processors() == 1:
+            return self._have_contacts_one_by_one(qpos)
+        batch, count = self._batch, len(qpos)
+        batch.bind("qpos")[:count] = qpos
+        batch.forward(np.arange(count), stage=_POSITIONS)
+        return batch.bind("ncon")[:count] > 0
+
+    def _have_contacts_one_by_one(self, qpos: Floats) -> NDArray[np.bool_]:
+        """Do the same where there is one processor, on which a ``Batch`` takes longer, since it computes more."""
+        model, data, target = self._model, self._data, self._data.qpos
+        place, detect = mujoco.mj_kinematics, mujoco.mj_collision
+        touching = np.empty(len(qpos), dtype=bool)
+        for index, row in enumerate(qpos):
+            target[...] = row
+            place(model, data)
+            detect(model, data)
+            touching[index] = data.ncon
+        return touching
+
+    @cached_property
+    def _batch(self) -> "Batch":
+        """Many states of the model, in which bodies without joints move, too, since it reads the model itself."""
+        from mujoco.batch import Batch  # noqa: PLC0415 - slow to import
+
+        batch = Batch(self._model, MOST_AT_ONCE)
+        batch.set_models(self._model)
+        batch.bind("ncon")
+        return batch
 
     def collide(self, pairs: Pairs) -> bool:
         """Return whether any of the pairs touch or overlap."""
@@ -205,6 +271,11 @@ class CollisionWorld:
         finally:
             self._detection.is_overruled = False
             mujoco.mj_kinematics(self._model, self._data)
+
+
+def _processors() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def cross(first: Ints, second: Ints) -> tuple[Ints, Ints]:

@@ -38,6 +38,7 @@ class BodyDynamics:
         self.couplings = CouplingMap(kinematics, self.tree)
         self.motors = Motors.of(kinematics, self.tree)
         self._body_ids: list[int] = kinematics.body_ids.tolist()
+        self._root_ids = model.body_rootid[kinematics.body_ids]
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]
         self._joint_velocities = JointVelocities(kinematics)
         constant = self.couplings.constant
@@ -165,13 +166,13 @@ class BodyDynamics:
     def _arms(self) -> Floats:
         """Return where the links' origins are from the centre that MuJoCo's motions are about [m], shape (links, 3)."""
         ids = self._kinematics.body_ids
-        return self._data.xpos[ids] - self._data.subtree_com[self._model.body_rootid[ids]]
+        return self._data.xpos.take(ids, 0) - self._data.subtree_com.take(self._root_ids, 0)
 
-    def _present_velocities(self) -> Floats:
-        """Return the velocities of the links for those in MuJoCo's data, shape (links, 6)."""
-        motions = self._data.cvel[self._kinematics.body_ids]
+    def _present_velocities(self, arms: Floats) -> Floats:
+        """Return the velocities of the links for those in MuJoCo's data, shape (links, 6); ``arms`` are ``_arms``."""
+        motions = self._data.cvel.take(self._kinematics.body_ids, 0)
         spins = motions[:, :3]
-        return np.concatenate((motions[:, 3:] + cross_rows(spins, self._arms()), spins), axis=1)
+        return np.concatenate((motions[:, 3:] + cross_rows(spins, arms), spins), axis=1)
 
     def link_velocities(self, rates: Floats, base: Floats) -> Floats:
         """Return the velocities of the links.
@@ -189,7 +190,7 @@ class BodyDynamics:
         self._velocities, self._are_moving = None, True
         self._qvel[:] = self.qvel(velocities, rates)
         mujoco.mj_comVel(self._model, self._data)
-        return self._present_velocities()
+        return self._present_velocities(self._arms())
 
     def joint_velocities(self, velocities: Floats, joints: Sequence[Joint]) -> list[Floats]:
         """Return the velocities of joints that velocities of links show; see ``JointVelocities``."""
@@ -215,11 +216,12 @@ class BodyDynamics:
         self._set_velocities(velocities)
         self._set_accelerations(accelerations, external)
         self._gravity[:] = 0.0
-        speeds = self._present_velocities()
+        arms = self._arms()
+        speeds = self._present_velocities(arms)
         mujoco.mj_rnePostConstraint(self._model, data)
-        motions = data.cacc[self._kinematics.body_ids]
+        motions = data.cacc.take(self._kinematics.body_ids, 0)
         turning = motions[:, :3]
-        linear = motions[:, 3:] + cross_rows(turning, self._arms()) + cross_rows(speeds[:, 3:], speeds[:, :3])
+        linear = motions[:, 3:] + cross_rows(turning, arms) + cross_rows(speeds[:, 3:], speeds[:, :3])
         return np.concatenate((linear, turning), axis=1)
 
     def _set_velocities(self, velocities: Floats, *, with_roots: bool = True) -> None:

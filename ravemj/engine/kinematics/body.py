@@ -89,7 +89,6 @@ class BodyKinematics:
         (names,) = compiled.mjcf.names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
         self._body_ids: list[int] = self.body_ids.tolist()
-        self._links = _index_range(self.body_ids)
         self.roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         free = model.body_jntadr[self.body_ids[self.roots]]
         self.root_qpos: list[int] = model.jnt_qposadr[free].tolist()
@@ -103,6 +102,8 @@ class BodyKinematics:
         # Views are made once, since making one takes as long as writing a pose.
         self._position, self._rotation = self._one[:3, 3], self._one[:3, :3]
         self._positions, self._rotations = self._all[:, :3, 3], self._all[:, :3, :3]
+        self._link_xpos, self._of_links = fixed_view(self._xpos, self.body_ids)
+        self._link_xmat, _ = fixed_view(self._xmat, self.body_ids)
         self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
         self.describe(body)
         self.set_values(np.array([axis.value for axis in body.dof_axes]))
@@ -352,8 +353,8 @@ class BodyKinematics:
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
         self.place()
-        self._positions[...] = self._xpos[self._links]
-        self._rotations[...] = self._xmat[self._links]
+        self._positions[...] = self._link_xpos[self._of_links]
+        self._rotations[...] = self._link_xmat[self._of_links]
         return self._all.copy()
 
     def link_transform(self, link: int) -> Floats:

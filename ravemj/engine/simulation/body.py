@@ -224,9 +224,8 @@ class BodyState:
 
     def set_pose(self, T_world_link0: Pose) -> None:
         """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
-        self.own_kinematics.set_transform(T_world_link0.matrix())
+        self.set_transform(T_world_link0.matrix())
         self.own_kinematics.set_root_wxyz(T_world_link0.wxyz)
-        self.moved()
 
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
         """Put every link at a pose; joints get the values that the poses show.

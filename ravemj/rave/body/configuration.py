@@ -96,7 +96,8 @@ class Configuration(Limits):
                 (dofindices is ... or dofindices is None)
                 and type(values) is np.ndarray
                 and values.dtype is FLOAT
-                and values.shape == (kinematics.dof,)
+                and values.ndim == 1
+                and len(values) == kinematics.dof
             ):
                 target = values
             elif dofindices is not None and dofindices is not ... and not np.size(values):
