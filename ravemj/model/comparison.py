@@ -90,6 +90,7 @@ class _Comparison:
     def _bodies(self, first: KinBody, second: KinBody) -> Iterator[Difference]:
         part = f"'{first.name}'"
         yield from self._same(part, "is a robot", first.is_robot, second.is_robot)
+        yield from self._same(part, "description", first.description, second.description)
         yield from self._same(
             part, "has an active manipulator", first.has_active_manipulator, second.has_active_manipulator
         )

@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from ravemj.core.transforms import UNSCALED, Vec3
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
+from ravemj.formats.data_folders import data_folders
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.tags import Tag, Target
 from ravemj.formats.openrave_xml.tree import Document, Element, parse_file
@@ -166,8 +167,7 @@ class Context:
         found = self._found.get(question)
         if found is not None:
             return found
-        data_folders = list(filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep)))
-        places = [*folders, os.path.dirname(source.file), *data_folders]
+        places = [*folders, os.path.dirname(source.file), *data_folders()]
         looked_at: list[str] = []
         for folder in places:
             candidate = os.path.join(folder, name)
@@ -181,7 +181,7 @@ class Context:
             self.diagnostics.warn("found-above", message, source, "OpenRAVE needs its folder in OPENRAVE_DATA")
             self._found[question] = above
             return above
-        hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
+        hint = "" if data_folders() else "put it there, or set OPENRAVE_DATA to the folder that it is in"
         message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None

@@ -18,17 +18,14 @@ class PartNames:
     """
 
     def __init__(self, body: KinBody, diagnostics: Diagnostics) -> None:
-        referred = {link for joint in body.all_joints for link in (joint.parent, joint.child)}
-        referred |= {link for pair in body.adjacent for link in pair}
-        referred |= {link for one in body.manipulators for link in (one.base, one.effector) if link is not None}
-        referred |= {sensor.link for sensor in body.sensors if sensor.link is not None}
+        referenced = body.referenced_links
         links = [link.name for link in body.links]
         known = {name.lower() for name in links}
         self.links: list[str] = []
         for index, name in enumerate(links):
             in_any_case = any(name.lower() == other.lower() for other in self.links)
             is_word = name.split() == [name] or not name
-            is_taken = (name and name in self.links) or (index in referred and (in_any_case or not is_word))
+            is_taken = (name and name in self.links) or (index in referenced and (in_any_case or not is_word))
             given = _unused("_".join(name.split()) or "link", known) if is_taken else name
             self.links.append(given)
             known.add(given.lower())

@@ -176,8 +176,9 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     for one in _checked(info._vLinkInfos, LinkInfo):
         builder.links.append(one.link())
     names = [link.name for link in builder.links]
-    if len(set(names)) < len(names):
-        raise ArgumentError(f"the links are called {', '.join(names)}; each link needs a name of its own")
+    named = [name for name in names if name]
+    if len(set(named)) < len(named):
+        raise ArgumentError(f"the links are called {', '.join(names)}; each link needs a name of its own, or none")
     for index, one in enumerate(info._vLinkInfos):
         builder.adjacent += [(index, other) for other in one.adjacent(names)]
     builder.joints = [one.joint(builder.links) for one in _checked(info._vJointInfos, JointInfo)]
