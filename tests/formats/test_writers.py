@@ -766,6 +766,11 @@ class TestJson:
             (b'{"bodies": [], "gravity": [1]}', "wrong kind"),
             (b'{"bodies": [], "keywords": 7}', "wrong kind"),
             (b"\xff\xfe", "cannot be read"),
+            (b'{"bodies": [[]]}', r"is \[\], and should be an object"),
+            (b'{"bodies": [{"name": "b"}, {"name": "b"}]}', "two are called 'b'"),
+            (b'{"bodies": [{"name": "b", "links": [{"name": "a"}, {"name": "a"}]}]}', "links: two are called 'a'"),
+            (b'{"bodies": [{"name": "b", "dofValues": [{"value": 1}]}]}', "'jointName' is missing"),
+            (b'{"bodies": [{"name": "\\ud800"}]}', "surrogates not allowed"),
         ],
     )
     def test_broken_files(self, tmp_path, content, words):
@@ -775,6 +780,16 @@ class TestJson:
         env = ravemj.Environment()
         assert not env.Load(str(tmp_path / "a.json"))
         assert not env.Load(str(tmp_path / "gone.json"))
+
+    def test_marks_of_the_byte_order_are_no_content(self, tmp_path):
+        (tmp_path / "a.json").write_bytes(b'\xef\xbb\xbf{"bodies": [{"name": "b", "links": [{"name": "a"}]}]}')
+        assert ravemj.load(tmp_path / "a.json").GetBodies()[0].GetName() == "b"
+
+    def test_values_of_joints_that_are_not_there(self, env, tmp_path):
+        content = {"name": "b", "links": [{"name": "a"}], "dofValues": [{"jointName": "j", "value": 1}]}
+        (tmp_path / "a.json").write_text(json.dumps({"bodies": [content]}))
+        with pytest.warns(ravemj.RavemjWarning, match="a value is left out: 'b' has no axis 0 of a joint 'j'"):
+            env.Load(str(tmp_path / "a.json"))
 
     def test_numbers_that_are_none_leave_the_file_alone(self, env, robot, tmp_path):
         (tmp_path / "a.json").write_text("before")

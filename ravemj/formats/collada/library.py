@@ -151,7 +151,10 @@ class Library:
             unit = child(element, "extra", "asset", "unit") if asset is None else asset
             parent = element.getparent()
             outer = 1.0 if parent is None else self._unit(parent)
-            found = self._units[element] = attribute_number(unit, "meter", outer) if unit is not None else outer
+            found = self._units[element] = outer if unit is None else attribute_number(unit, "meter", outer)
+            if unit is not None and unit.get("meter") and attribute_number(unit, "meter", 0.0) <= 0.0:
+                message = f"'{unit.get('meter')}' is no length, which is a number above 0; {found:g} m counts"
+                self.warn("bad-number", message, unit)
         return found
 
 

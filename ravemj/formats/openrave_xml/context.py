@@ -215,7 +215,10 @@ class Context:
         from ravemj.formats.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
 
         try:
-            return read_mesh(path, scale)
+            parts = read_mesh(path, scale)
+            if not parts:
+                self.diagnostics.warn("broken-mesh", f"{path}: there are no triangles in it", source)
+            return parts
         except SourceError as error:
             self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
             return ()

@@ -98,7 +98,7 @@ def _parsed(path: str) -> dict[str, Any]:
         SourceError: The file cannot be read, or does not contain an object with a list of bodies.
     """
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             content = json.load(file, parse_constant=_refuse)
     except json.JSONDecodeError as error:
         raise SourceError(f"not well-formed JSON: {error.msg}", Source(path, error.lineno)) from error
