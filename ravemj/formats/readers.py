@@ -1,4 +1,4 @@
-"""Search for files, and the choice of a reader by their kind."""
+"""The choice of a reader by the kind of a file."""
 
 import difflib
 import os
@@ -7,6 +7,7 @@ from urllib.parse import unquote
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
+from ravemj.formats.data_folders import find
 from ravemj.formats.openrave_xml import Reading, read, read_text
 from ravemj.formats.openrave_xml.collada_body import uniform
 from ravemj.formats.openrave_xml.context import Context
@@ -34,10 +35,10 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: 
         What was read; its ``failure`` says what ended the reading.
     """
     place, wanted = _without_scheme(os.fspath(path)), ""
-    found = find(place)
+    found = find(place, "")
     if found is None:
         place, wanted = collada.split_uri(place)
-        found = find(place)
+        found = find(place, "")
     if found is None:
         failure = missing(os.fspath(path))
     elif not os.path.isfile(found):
@@ -99,9 +100,10 @@ def _read_collada(
     bodies: list[KinBody] = []
     sensors: list[AttachedSensor] = []
     gravity = failure = None
+    description = ""
     try:
         content = read_content(context, metre * uniform(given_scale(given), source, context))
-        gravity = content.gravity
+        gravity, description = content.gravity, content.description
         if not content.bodies and not content.others and not content.sensors:
             raise SourceError("there is no body in it", source)
         if not content.bodies and content.others:
@@ -119,7 +121,7 @@ def _read_collada(
         failure = error
     except ArithmeticError:
         failure = SourceError("a number in the file is too large to compute with", source)
-    scene = Scene(tuple(bodies), None, gravity, tuple(sensors))
+    scene = Scene(tuple(bodies), None, gravity, tuple(sensors), description)
     return Reading(scene, context.diagnostics, failure, tuple(context.files), renames=True)
 
 
@@ -127,13 +129,6 @@ def _unused(name: str, taken: set[str]) -> str:
     """Return a name, with a number behind it where it is taken."""
     numbered = (f"{name}{count}" for count in range(len(taken) + 1))
     return name if name not in taken else next(other for other in numbered if other not in taken)
-
-
-def find(name: str) -> str | None:
-    """Return the path of a file, or None where it is in no known place."""
-    folders = ["", *filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))]
-    candidates = (os.path.join(folder, name) for folder in folders)
-    return next((path for path in candidates if os.path.exists(path)), None)
 
 
 def _without_scheme(uri: str) -> str:

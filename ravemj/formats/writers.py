@@ -50,6 +50,10 @@ def save(
     for body in scene.bodies:
         _warn_of_losses(body, diagnostics)
     if kind == "openrave":
+        described = [body.name for body in scene.bodies if body.description]
+        if described or scene.description:
+            message = f"descriptions are left out, of {', '.join(described) or 'the environment'}"
+            diagnostics.warn("not-written", message, Source(os.fspath(path)), "COLLADA keeps them")
         _save_openrave_xml(Path(path), openrave_xml.write(scene, diagnostics, meshes))
         return
     if scene.view not in (None, View()):
@@ -82,7 +86,7 @@ def _warn_of_losses(body: KinBody, diagnostics: Diagnostics) -> None:
 
 
 def external_bodies(
-    path: AnyPath, scene: Scene, names: Collection[str], diagnostics: Diagnostics
+    path: AnyPath, scene: Scene, names: Collection[str], diagnostics: Diagnostics, scheme: str | None = None
 ) -> dict[str, ExternalBody]:
     """Return the bodies that a COLLADA file can refer to in the files that they were read from.
 
@@ -91,16 +95,19 @@ def external_bodies(
         scene: Its bodies; a reference has to give one as it is now.
         names: Names of those that are asked for.
         diagnostics: Takes a warning for each of them that cannot be had by a reference.
+        scheme: What URIs of files in the folders of ``OPENRAVE_DATA`` start with; None for relative ones.
     """
     asked = [(number, body) for number, body in enumerate(scene.bodies) if body.name in names]
-    found = {body.name: _external(path, body, number, diagnostics) for number, body in asked}
+    found = {body.name: _external(path, body, number, diagnostics, scheme) for number, body in asked}
     return {name: external for name, external in found.items() if external is not None}
 
 
-def _external(path: AnyPath, body: KinBody, number: int, diagnostics: Diagnostics) -> ExternalBody | None:
+def _external(
+    path: AnyPath, body: KinBody, number: int, diagnostics: Diagnostics, scheme: str | None
+) -> ExternalBody | None:
     """Return a reference to a body in its file; None, with a warning, where reading it gives another body."""
     try:
-        reference = find_external(body, number, os.fspath(path))
+        reference = find_external(body, number, os.fspath(path), scheme)
         for root in body.links[:1]:
             there = _referred(path, body, reference)
             T_world_file = root.T_world_link @ there.links[0].T_world_link.inverse()

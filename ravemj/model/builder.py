@@ -118,6 +118,7 @@ class BodyBuilder:
     sensors: list[SensorBuilder] = field(default_factory=lambda: [])
     grabs: list[GrabBuilder] = field(default_factory=lambda: [])
     joint_values: list[float] | None = None
+    description: str = ""
     refusal: SourceError | None = None
 
     def parts(self) -> "BodyParts":
@@ -217,6 +218,7 @@ class BodyBuilder:
             joined_links_adjacent=self.joined_links_adjacent,
             sensors=tuple(self._sensor(built) for built in self.sensors),
             grabs=tuple(self._grabs()),
+            description=self.description,
             source=self.source,
         )
 

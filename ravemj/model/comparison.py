@@ -73,10 +73,12 @@ class _Comparison:
     tolerance: float
 
     def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
-        """Compare the bodies and the loose sensors; gravity and view where both scenes have one."""
+        """Compare the bodies and the loose sensors; gravity, view and description where both scenes have one."""
         part = "the scene"
         yield from self._same(part, "bodies", _names(first.bodies), _names(second.bodies))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
+        if first.description and second.description:
+            yield from self._same(part, "description", first.description, second.description)
         if first.gravity is not None and second.gravity is not None:
             yield from self._near(part, "gravity", first.gravity, second.gravity)
         if first.view is not None and second.view is not None:
@@ -90,6 +92,7 @@ class _Comparison:
     def _bodies(self, first: KinBody, second: KinBody) -> Iterator[Difference]:
         part = f"'{first.name}'"
         yield from self._same(part, "is a robot", first.is_robot, second.is_robot)
+        yield from self._same(part, "description", first.description, second.description)
         yield from self._same(
             part, "has an active manipulator", first.has_active_manipulator, second.has_active_manipulator
         )

@@ -63,6 +63,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
         self._state = state
         self._simulation = state.simulation
         self.annotations = Annotations()
+        self.annotations.description = state.scene.description
         self._open_savers: list[StateSaver] = []
 
     def SetName(self, name: str) -> None:

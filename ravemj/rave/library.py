@@ -5,6 +5,7 @@ import os
 import time
 from pathlib import Path
 
+from ravemj.formats.data_folders import find, name_in_data_folders
 from ravemj.rave import logs
 from ravemj.rave.enums import DebugLevel
 
@@ -122,13 +123,7 @@ def RaveInvertFileLookup(filename: str) -> str:
     Args:
         filename: The path.
     """
-    path = Path(filename).absolute()
-    inside = (folder for folder in _data_folders() if path.is_relative_to(folder))
-    return next((str(path.relative_to(folder)) for folder in inside), "")
-
-
-def _data_folders() -> list[Path]:
-    return [Path(folder).absolute() for folder in os.environ.get("OPENRAVE_DATA", "").split(os.pathsep) if folder]
+    return name_in_data_folders(filename)
 
 
 def RaveGetDefaultViewerType() -> str:
@@ -161,10 +156,7 @@ def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
     Returns:
         The absolute path, or an empty text.
     """
-    from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
-
-    beside = os.path.join(curdir, filename)
-    found = beside if curdir and os.path.exists(beside) else find(filename)
+    found = find(filename, curdir, "")
     if not found or (_data_access and not RaveInvertFileLookup(found)):
         return ""
     return os.path.abspath(found)

@@ -257,6 +257,37 @@ class TestTraps:
         assert grip.mimic is None
         assert findings(replacement) == {"bad-mimic"}
 
+    @pytest.mark.parametrize(
+        ("old", "new", "said"),
+        [
+            ("1 2 3</p>", "1 2 4</p>", "<triangles> in <geometry> 'wedge': only 3 of 4 can be read"),
+            ("1 2 3</p>", "1 2 -1</p>", "only 3 of 4 can be read"),
+            ("1 2 3</p>", "1 2</p>", "only 3 of 4 can be read"),
+            ('stride="3"', 'stride="2"', "only 0 of 4 can be read"),
+            ("</triangles>", "</triangles><lines count='1'/>", "<lines> in <geometry> 'wedge': OpenRAVE reads no such"),
+            ("</triangles>", "</triangles><polygons><p>0 1 2</p></polygons>", "OpenRAVE reads no such primitives"),
+            ("<translate>0 0 1</translate>", "<translate>0 0</translate>", "needs 3 numbers, and has 2"),
+            (
+                "<translate>0 0 1</translate>",
+                "<skew>30 1 0 0 0 1 0</skew>",
+                "<skew> in <node> 'visual1': OpenRAVE leaves",
+            ),
+            ('meter="1"', 'meter="abc"', "'abc' is no length, which is a number above 0; 1 m counts"),
+            ('meter="1"', 'meter="-2"', "-2 m counts"),
+        ],
+    )
+    def test_what_does_not_count_is_reported(self, old, new, said):
+        found = [finding for finding in read_data(changed((old, new))).diagnostics if said in finding.message]
+        assert len(found) == 1
+        assert found[0].source.line
+
+    def test_polygons_may_be_more_triangles_than_they_count(self):
+        primitives = '<polylist count="1"><input semantic="VERTEX" source="#corners" offset="0"/><vcount>4</vcount>'
+        start, end = ARM.index("<triangles"), ARM.index("</triangles>") + len("</triangles>")
+        reading = read_data(f"{ARM[:start]}{primitives}<p>0 1 2 3</p></polylist>{ARM[end:]}")
+        assert len(reading.scene.bodies[0].links[1].geometries[0].shape.mesh.triangles) == 2
+        assert "broken-mesh" not in {finding.code for finding in reading.diagnostics}
+
     def test_a_primitive_stands_in_place_of_triangles(self):
         extra = (
             '</mesh><extra type="geometry_info"><technique profile="OpenRAVE"><translate>0 0 3</translate>'

@@ -107,6 +107,7 @@ SCENE = Scene(
     parts.View((0.1, 0.2, 0.3), UNIT),
     (0.0, 0.0, -9.81),
     (sensor("loose", parts.SENSOR_KINDS["basecamera"].device, None, "BaseCamera"),),
+    "a workshop",
 )
 
 EQUAL = {

@@ -9,6 +9,7 @@ from conftest import DATA
 
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import area, read_mesh, volume
+from ravemj.formats.readers import read_file
 
 FILES = DATA / "meshes"
 WEDGE_AREA = 0.06 + 0.04 + 0.03 + 0.5 * np.sqrt(0.08**2 + 0.06**2 + 0.12**2)
@@ -78,6 +79,19 @@ def test_binary_stl_with_a_colour_and_more_behind(read):
     (part,) = read("mesh.stl", binary_stl(FACE, header=b"COLOR=\x7f\x00\xff\xff", extra=b"garbage"))
     assert part.diffuse == pytest.approx((127 / 255, 0, 1))
     assert read("mesh.stl", binary_stl(FACE, header=b"x" * 73 + b"COLOR=\x7f"))[0].diffuse == (1, 1, 1)
+
+
+def test_bodies_of_files_without_triangles_are_reported(tmp_path):
+    (tmp_path / "empty.stl").write_bytes(binary_stl())
+    (found,) = read_file(tmp_path / "empty.stl").diagnostics
+    assert (found.code, "there are no triangles in it" in found.message) == ("broken-mesh", True)
+
+
+def test_ply_with_a_comment_in_latin_1(read):
+    text = "ply\nformat ascii 1.0\ncomment caf\xe9\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    (part,) = read("mesh.ply", text.encode("latin-1"))
+    assert len(part.mesh.triangles) == 1
 
 
 def test_stl_without_triangles(read):

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import os
 import re
 import signal
 import zipfile
@@ -114,6 +115,7 @@ class TestComparison:
         [
             ("bodies", lambda body: replace(body, name="other")),
             ("is a robot", lambda body: replace(body, is_robot=False)),
+            ("description", lambda body: replace(body, description="other")),
             ("mass", lambda body: with_link(body, inertial=replace(body.links[1].inertial, mass=7.0))),
             ("centre of mass", lambda body: with_link(body, inertial=replace(body.links[1].inertial, com=(9.0, 0, 0)))),
             ("enabled", lambda body: with_link(body, enabled=False)),
@@ -331,6 +333,7 @@ class TestSave:
             ((4,), "needs the name"),
             ((3, {"skipwrite": "gravity"}), "known are"),
             ((3, {"nonsense": "x"}), "nothing reads 'nonsense'"),
+            ((3, {"openravescheme": "ftp"}), "known are openrave"),
             ((3, [("target",)]), "not a pair"),
         ],
     )
@@ -377,6 +380,26 @@ class TestExternalReferences:
         assert contents[0] == contents[1]
         assert "<p>" not in contents[0]
         assert 'url="parts/a%20b/box.zae#' in contents[0]
+
+    def test_by_the_folders_of_openrave_data(self, world, tmp_path, monkeypatch):
+        monkeypatch.setenv("OPENRAVE_DATA", str(tmp_path / "parts"))
+        (tmp_path / "elsewhere").mkdir()
+        target = tmp_path / "scene.dae"
+        world.Save(target, atts={"externalref": "*", "openravescheme": "openrave"})
+        assert set(re.findall(r"[^\"#]*(?:arm.dae|box.zae)", target.read_text())) == {
+            "openrave:/arm.dae",
+            "openrave:/a%20b/box.zae",
+        }
+        target.rename(tmp_path / "elsewhere" / "scene.dae")
+        assert compare(snapshots(world), read_file(tmp_path / "elsewhere" / "scene.dae").scene) == []
+
+    def test_by_the_folders_of_openrave_data_only_where_they_lead_there(self, world, tmp_path, monkeypatch):
+        (tmp_path / "first").mkdir()
+        (tmp_path / "first" / "arm.dae").write_text("another")
+        monkeypatch.setenv("OPENRAVE_DATA", f"{tmp_path / 'first'}{os.pathsep}{tmp_path / 'parts'}")
+        world.Save(tmp_path / "scene.dae", atts={"externalref": "*", "openravescheme": "openrave"})
+        assert 'url="parts/arm.dae#' in (tmp_path / "scene.dae").read_text()
+        assert 'url="openrave:/a%20b/box.zae#' in (tmp_path / "scene.dae").read_text()
 
     def test_follow_their_file(self, world, tmp_path):
         world.Save(tmp_path / "scene.dae", atts={"externalref": "*"})
@@ -534,6 +557,16 @@ class TestTrouble:
         lost = {difference.quantity for difference in compare(Scene((body,)), reading.scene)}
         assert lost == {"links", "joints"}
 
+    @pytest.mark.parametrize("names", [("", "joint0"), ("joint1", ""), ("", ""), ("x y", "x_y"), ("x_y", "x y")])
+    def test_joints_whose_names_collada_readers_take_for_one(self, tmp_path, names):
+        """They change what no name can have, and name those without a name."""
+        bodies = "".join(f'<Body name="{name}"/>' for name in "abc")
+        joints = "".join(f'<Joint name="{a}{b}"><Body>{a}</Body><Body>{b}</Body></Joint>' for a, b in ("ab", "bc"))
+        body = read_data(f'<KinBody name="k">{bodies}{joints}</KinBody>').scene.bodies[0]
+        renamed = [replace(joint, name=name) for joint, name in zip(body.joints, names, strict=True)]
+        scene = Scene((replace(body, joints=tuple(renamed)),))
+        assert check_round_trip(scene, "collada", tmp_path) == set()
+
     def test_meshes_without_triangles(self, tmp_path):
         text = '<KinBody name="k"><Body name="a"><Geom type="trimesh"/><Geom type="none"/></Body></KinBody>'
         scene = read_data(text).scene
@@ -613,8 +646,61 @@ class TestState:
             assert env.LoadData(text.replace('"a"/></Robot>', '"b"/></Robot>').replace('"r"', '"s"', 1))
 
 
+class TestDescriptions:
+    @pytest.fixture
+    def world(self, env, robot):
+        env.SetDescription(" a <b>\n& c ")
+        robot.SetDescription("seven\tjoints ")
+        return env
+
+    def test_stay_in_collada(self, world, robot, tmp_path):
+        world.Save(tmp_path / "a.dae")
+        other = ravemj.load(tmp_path / "a.dae")
+        assert other.GetDescription() == world.GetDescription()
+        assert other.GetRobots()[0].GetDescription() == robot.GetDescription()
+        assert other.ReadRobotURI(str(tmp_path / "a.dae")).GetDescription() == robot.GetDescription()
+        world.SetDescription("new")
+        robot.SetDescription("")
+        world.Save(tmp_path / "b.dae")
+        assert ravemj.load(tmp_path / "b.dae").GetRobots()[0].GetDescription() == ""
+        assert other.Load(str(tmp_path / "b.dae"))
+        assert other.GetDescription() == "new"
+
+    def test_of_the_environment_stay_where_a_file_has_none(self, world):
+        world.LoadData('<KinBody name="k"><Body/></KinBody>')
+        assert world.GetDescription() == " a <b>\n& c "
+
+    def test_that_a_reference_does_not_give_are_written(self, tmp_path):
+        env = ravemj.load(MODELS / "scara.dae")
+        env.GetRobots()[0].SetDescription("picks")
+        with pytest.warns(ravemj.RavemjWarning, match="description differs"):
+            env.Save(tmp_path / "a.dae", atts={"externalref": "*"})
+        assert ravemj.load(tmp_path / "a.dae").GetRobots()[0].GetDescription() == "picks"
+
+    @pytest.mark.parametrize(
+        ("name", "words"), [("a.xml", "descriptions are left out, of"), ("a.json", "description of")]
+    )
+    def test_are_missed_where_a_format_has_no_place_for_them(self, world, robot, tmp_path, name, words):
+        with pytest.warns(ravemj.RavemjWarning, match=f"{words} '?{robot.GetName()}"):
+            world.Save(tmp_path / name, atts={"format": "openrave"} if name.endswith("xml") else None)
+
+
 class TestJson:
     """OpenRAVE's JSON: what infos say, as a file."""
+
+    @pytest.mark.parametrize("links", ['<Body/><Body/><Body name="a"/>', "<Body/>"])
+    def test_links_without_a_name(self, env, tmp_path, links):
+        text = f'<KinBody name="k">{links}</KinBody>'
+        env.LoadData(text)
+        env.Save(tmp_path / "k.json", atts="k", options=env.SelectionOptions.Body)
+        assert compare(read_data(text).scene, snapshots(ravemj.load(tmp_path / "k.json"))) == []
+
+    def test_links_that_names_do_not_tell_apart(self, env, tmp_path):
+        joint = '<Joint name="j"><Body></Body><Body>a</Body></Joint>'
+        env.LoadData(f'<KinBody name="k"><Body/><Body name="a"/><Body/>{joint}</KinBody>')
+        with pytest.raises(OutputError, match="several links of 'k' have no name"):
+            env.Save(tmp_path / "k.json")
+        assert contents(tmp_path) == {}
 
     def test_selection_and_what_is_skipped(self, env, tmp_path):
         env.SetDescription("words")
@@ -688,6 +774,11 @@ class TestJson:
             (b'{"bodies": [], "gravity": [1]}', "wrong kind"),
             (b'{"bodies": [], "keywords": 7}', "wrong kind"),
             (b"\xff\xfe", "cannot be read"),
+            (b'{"bodies": [[]]}', r"is \[\], and should be an object"),
+            (b'{"bodies": [{"name": "b"}, {"name": "b"}]}', "two are called 'b'"),
+            (b'{"bodies": [{"name": "b", "links": [{"name": "a"}, {"name": "a"}]}]}', "links: two are called 'a'"),
+            (b'{"bodies": [{"name": "b", "dofValues": [{"value": 1}]}]}', "'jointName' is missing"),
+            (b'{"bodies": [{"name": "\\ud800"}]}', "surrogates not allowed"),
         ],
     )
     def test_broken_files(self, tmp_path, content, words):
@@ -697,6 +788,16 @@ class TestJson:
         env = ravemj.Environment()
         assert not env.Load(str(tmp_path / "a.json"))
         assert not env.Load(str(tmp_path / "gone.json"))
+
+    def test_marks_of_the_byte_order_are_no_content(self, tmp_path):
+        (tmp_path / "a.json").write_bytes(b'\xef\xbb\xbf{"bodies": [{"name": "b", "links": [{"name": "a"}]}]}')
+        assert ravemj.load(tmp_path / "a.json").GetBodies()[0].GetName() == "b"
+
+    def test_values_of_joints_that_are_not_there(self, env, tmp_path):
+        content = {"name": "b", "links": [{"name": "a"}], "dofValues": [{"jointName": "j", "value": 1}]}
+        (tmp_path / "a.json").write_text(json.dumps({"bodies": [content]}))
+        with pytest.warns(ravemj.RavemjWarning, match="a value is left out: 'b' has no axis 0 of a joint 'j'"):
+            env.Load(str(tmp_path / "a.json"))
 
     def test_numbers_that_are_none_leave_the_file_alone(self, env, robot, tmp_path):
         (tmp_path / "a.json").write_text("before")

@@ -199,7 +199,7 @@ def test_masses_about_turned_axes(made):
 @pytest.mark.parametrize(
     ("links", "joint", "match"),
     [
-        ([link_info("")], None, "_name"),
+        ([link_info(None)], None, "_name"),
         ([link_info("a"), link_info("a")], None, "name of its own"),
         ([link_info("a")], joint_info(ravemj.JointType.Hinge), "link 'b'"),
         ([link_info("a"), link_info("b")], joint_info(ravemj.JointType.Universal), "Universal"),

@@ -617,6 +617,21 @@ class TestCopies:
         checks = commands.PowerCheck, commands.RenderDataCheck, commands.RenderGeometryCheck
         return [sensor.Configure(command) for command in checks]
 
+    def test_the_only_sensor_of_a_file_is_read(self, env, tmp_path):
+        path = tmp_path / "door.xml"
+        path.write_text('<Sensor type="BaseLaser2D" name="door"><maxrange>3</maxrange></Sensor>')
+        sensor = env.ReadInterfaceURI(str(path))
+        assert (sensor.GetName(), sensor.GetSensorGeometry().max_range) == ("door", 3)
+        assert env.GetSensor("door") is None
+        assert str(path) in env.files
+        env.Add(sensor)
+        assert env.GetSensor("door") == sensor
+        path.write_text(f"<Environment>{path.read_text()}<KinBody name='k'><Body/></KinBody></Environment>")
+        assert env.ReadInterfaceURI(str(path)).GetName() == "k"
+        assert env.ReadKinBodyURI(str(path)).GetName() == "k"
+        path.write_text("<Sensor")
+        assert env.ReadInterfaceURI(str(path)) is None
+
     def test_of_an_environment(self, env, devices):
         options = ravemj.CloningOptions.Bodies | ravemj.CloningOptions.Sensors
         copy = env.CloneSelf(options)

@@ -6,6 +6,7 @@ from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, Vec3, add, conjugate, 
 from ravemj.errors import Diagnostics, OutputError
 from ravemj.formats import settled
 from ravemj.formats.collada.geometry_writer import write_pose
+from ravemj.formats.collada.kinematics_model import Names, valid_name
 from ravemj.formats.collada.mathml_writer import TooDeepError, math_of
 from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.supplement import PROFILE
@@ -32,6 +33,7 @@ class BodyWriter:
         self._trees = trees_of(body, sections.models)
         sections.models += len(self._trees)
         self._T_root_links: dict[int, Pose] = {}
+        self._joint_names = _joint_names(body)
 
     def write(self) -> None:
         """Write everything about the body."""
@@ -99,7 +101,7 @@ class BodyWriter:
     def _write_joint(self, index: int, joint: Joint) -> None:
         """Write the kind of a joint and its axes in its own frame, which has the axes of its parent link."""
         out = self._sections.kinematics_models
-        with out.inside("joint", sid=f"joint{index}", name=joint.name):
+        with out.inside("joint", sid=f"joint{index}", name=self._joint_names[index]):
             for place, direction in enumerate(self._directions(joint)):
                 with out.inside("prismatic" if joint.slides(place) else "revolute", sid=f"axis{place}"):
                     out.element("axis", direction)
@@ -203,3 +205,10 @@ class BodyWriter:
                     with models.inside("mass_frame"):
                         write_pose(models, T_root_mass)
                     models.element("inertia", settled.numbers(principal_moments(link.inertial).tolist()))
+
+
+def _joint_names(body: KinBody) -> dict[int, str]:
+    """Return names that readers keep apart, by the joints' indices; a name that they would change comes last."""
+    names, used = [joint.name for joint in body.all_joints], Names(())
+    order = sorted(range(len(names)), key=lambda index: not names[index] or valid_name(names[index]) != names[index])
+    return {index: used.give(valid_name(names[index]) or f"joint{index}") for index in order}

@@ -16,6 +16,7 @@ from ravemj.formats.collada.references import References
 from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.visual import Node, expand
+from ravemj.formats.data_folders import find, name_in_data_folders
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
 from ravemj.model.scene import KinBody
 
@@ -77,13 +78,14 @@ class ExternalBody(NamedTuple):
     T_world_file: Pose = Pose()
 
 
-def find_external(body: KinBody, number: int, target: str) -> ExternalBody:
+def find_external(body: KinBody, number: int, target: str, scheme: str | None = None) -> ExternalBody:
     """Return how the COLLADA file that a body was read from names its parts.
 
     Args:
         body: The body.
         number: Its number in the document that will refer to it.
         target: Where that document will lie.
+        scheme: What URIs of files in the folders of ``OPENRAVE_DATA`` start with; None for relative ones.
 
     Raises:
         SourceError: It comes from no COLLADA file or from the one that will be replaced, or its file is gone or lacks
@@ -102,8 +104,18 @@ def find_external(body: KinBody, number: int, target: str) -> ExternalBody:
     document = library.open_file(path)
     if document.path != file:
         raise SourceError("it comes from a file inside of an archive", body.source)
-    uri = quote(os.path.relpath(path, os.path.dirname(target) or ".").replace(os.sep, "/"))
-    return _Finder(library, document, uri, f".body{number}").find(line)
+    return _Finder(library, document, _uri(path, target, scheme), f".body{number}").find(line)
+
+
+def _uri(path: str, target: str, scheme: str | None) -> str:
+    """Return a URI by which a document finds a file."""
+    name = name_in_data_folders(path) if scheme else ""
+    found = find(name) if name else None
+    if found is not None and os.path.samefile(found, path):  # an earlier folder may have another file of that name
+        start = f"{scheme}:/"
+    else:
+        start, name = "", os.path.relpath(path, os.path.dirname(target) or ".")
+    return start + quote(name.replace(os.sep, "/"))
 
 
 class _Finder:

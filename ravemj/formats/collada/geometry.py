@@ -10,9 +10,17 @@ from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.polar import polar_decomposition, rigid_part
 from ravemj.formats.collada.supplement import own_techniques
 from ravemj.formats.collada.visual import Node, transform_of
-from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.formats.meshes.collada.document import (
+    Element,
+    attribute_number,
+    child,
+    children,
+    local_name,
+    numbers,
+    words,
+)
 from ravemj.formats.meshes.collada.materials import bindings, read_material
-from ravemj.formats.meshes.collada.triangles import triangle_meshes
+from ravemj.formats.meshes.collada.triangles import triangle_meshes, unread_primitives
 from ravemj.formats.meshes.parts import BLACK, WHITE, check_finite, check_size
 from ravemj.model.scene import SHAPE_TYPES, CrossSection, Geometry, Mesh, Rgb, Shape, Surface, TriMesh
 
@@ -115,8 +123,20 @@ class GeometryReader:
         """Return for each primitive element its material's symbol and its triangles [m]."""
         if geometry not in self._meshes:
             document = self._library.document_of(geometry)
-            self._meshes[geometry] = triangle_meshes(document, geometry, self._library.metres(geometry))
+            groups = triangle_meshes(document, geometry, self._library.metres(geometry))
+            for element, mesh in groups:
+                self._check_count(element, len(mesh.triangles))
+            for element in unread_primitives(geometry):
+                self._library.warn("ignored-tag", "OpenRAVE reads no such primitives; they are left out", element)
+            self._meshes[geometry] = [(item.get("material", ""), mesh) for item, mesh in groups if len(mesh.triangles)]
         return self._meshes[geometry]
+
+    def _check_count(self, element: Element, found: int) -> None:
+        """Report triangles that are left out; a polygon of another kind is one triangle or more."""
+        count = attribute_number(element, "count", 0)
+        if found < count and (found == 0 or local_name(element) == "triangles"):
+            message = f"only {found} of {count:.0f} can be read: indices lead nowhere, or numbers are missing"
+            self._library.warn("broken-mesh", message, element)
 
     def _colours(self, instance: Element, symbol: str) -> tuple[Rgb, Rgb, float]:
         """Return the diffuse and the ambient colour and the transparency of a group."""

@@ -65,7 +65,7 @@ class SceneContext:
         return AxisReader(self.library, self.references)
 
 
-class _Names:
+class Names:
     """The names in use, each with the number to append to the next one like it."""
 
     def __init__(self, taken: Iterable[str]) -> None:
@@ -136,7 +136,7 @@ class ModelReader:
         self.values: dict[int, list[float]] = {}
         self._found: list[_FoundJoint] = []
         self.ends: list[_LoopEnd] = []
-        self._link_names = _Names(link.name for link in body.links)
+        self._link_names = Names(link.name for link in body.links)
         self._dummies = 0
 
     def read(self) -> None:

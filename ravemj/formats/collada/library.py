@@ -9,6 +9,7 @@ from lxml import etree
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.collada.archive import Archive
+from ravemj.formats.data_folders import find
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, attribute_number, child, local_name
 from ravemj.formats.meshes.files import read_bytes
 
@@ -111,7 +112,7 @@ class Library:
                 if member is not None:
                     return self._member(archive, member)
             folder = os.path.dirname(name if archive is None else archive.path)
-            path = find_file(plain, *([] if uri.startswith("openrave:") else [folder]))
+            path = find(plain, *([] if uri.startswith("openrave:") else [folder]))
             if path is not None:
                 return self.open_file(path)
             self.warn("missing-file", f"there is no file {uri}", element, "put it there, or set OPENRAVE_DATA")
@@ -150,15 +151,11 @@ class Library:
             unit = child(element, "extra", "asset", "unit") if asset is None else asset
             parent = element.getparent()
             outer = 1.0 if parent is None else self._unit(parent)
-            found = self._units[element] = attribute_number(unit, "meter", outer) if unit is not None else outer
+            found = self._units[element] = outer if unit is None else attribute_number(unit, "meter", outer)
+            if unit is not None and unit.get("meter") and attribute_number(unit, "meter", 0.0) <= 0.0:
+                message = f"'{unit.get('meter')}' is no length, which is a number above 0; {found:g} m counts"
+                self.warn("bad-number", message, unit)
         return found
-
-
-def find_file(name: str, *folders: str) -> str | None:
-    """Return the path of a file in one of some folders or those of ``OPENRAVE_DATA``, or None."""
-    data_folders = filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))
-    candidates = (os.path.join(folder, name) for folder in (*folders, *data_folders))
-    return next((path for path in candidates if "\0" not in path and os.path.isfile(path)), None)
 
 
 def ancestors(element: Element) -> Iterator[Element]:

@@ -31,12 +31,14 @@ class Content(NamedTuple):
         others: Bodies that are only a node of the visual scene.
         gravity: Acceleration of free fall [m/s^2], or None.
         sensors: Sensors that no body carries.
+        description: What its ``<asset>`` says that it is about.
     """
 
     bodies: list[BodyBuilder]
     others: list[BodyBuilder]
     gravity: Vec3 | None
     sensors: list[AttachedSensor]
+    description: str = ""
 
 
 def read_document(library: Library, document: ColladaDocument, wanted: str = "") -> Content:
@@ -75,7 +77,9 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     taken = {node for inner in shown for node in inner.around()}
     nodes = [] if root is None else [node for node in root.nodes if node not in taken]
     others = [body for node in nodes if (body := _node_body(library, geometry, node)) is not None]
-    return Content(bodies, others, physics.gravity, sensors)
+    subject = child(document.root, "asset", "subject")
+    description = "" if subject is None else subject.text or ""
+    return Content(bodies, others, physics.gravity, sensors, description)
 
 
 def _bodies(scene: SceneContext, element: Element, wanted: str) -> list[BodyBuilder]:

@@ -42,6 +42,7 @@ def read_supplement(
     """
     for technique in own_techniques(system):
         body.name = _text(child(technique, "name")) or body.name
+        body.description = _text(child(technique, "description")) or body.description
         if words(child(technique, "joined_links_adjacent"))[:1] == ["false"]:
             body.joined_links_adjacent = False
         order, names = _listed(references, technique, "joint", joints)

@@ -200,6 +200,8 @@ class SystemWriter:
         """
         out, body = self._sections.systems, self._body
         out.element("name", body.name)
+        if body.description:
+            out.element("description", body.description)
         if not body.joined_links_adjacent:
             out.element("joined_links_adjacent", False)
         for index, link in enumerate(body.links):

@@ -8,12 +8,12 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.formats.collada.library import Library
-from ravemj.formats.meshes.collada.document import Element, children, local_name
-from ravemj.formats.meshes.collada.node_transforms import local_transform
+from ravemj.formats.meshes.collada.document import Element, children, local_name, words
+from ravemj.formats.meshes.collada.node_transforms import LENGTHS, local_transform
 
 _MAX_DEPTH = 150
 _MAX_NODES = 100_000
-_TRANSFORMS = ("translate", "rotate", "matrix", "scale", "lookat", "skew")
+_TRANSFORMS = (*LENGTHS, "skew")
 
 
 @dataclass(eq=False, slots=True)
@@ -85,6 +85,11 @@ def transform_of(library: Library, element: Element) -> Floats:
             if metres != 1.0:
                 step[:3, 3] *= metres
             product = product @ step
+        elif local_name(item) == "skew":
+            library.warn("ignored-tag", "OpenRAVE leaves it out", item)
+        elif local_name(item) in LENGTHS:
+            message = f"it does not count: it needs {LENGTHS[local_name(item)]} numbers, and has {len(words(item))}"
+            library.warn("bad-number", message, item)
     return product
 
 

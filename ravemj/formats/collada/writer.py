@@ -44,7 +44,7 @@ def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, Externa
     write_loose(sections.kinematics_scene, sections.sensors, scene.sensors)
     out = XmlText()
     with out.inside("COLLADA", xmlns=NAMESPACE, version="1.5.0"):
-        _write_asset(out)
+        _write_asset(out, scene.description)
         _write_library(out, "visual_scene", sections.nodes, {"id": "vscene"})
         for kind, content in (
             ("geometries", geometry.geometries),
@@ -73,12 +73,14 @@ def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, Externa
     return out.document()
 
 
-def _write_asset(out: XmlText) -> None:
+def _write_asset(out: XmlText, description: str) -> None:
     with out.inside("asset"):
         with out.inside("contributor"):
             out.element("authoring_tool", "ravemj")
         out.element("created", _NO_TIME)
         out.element("modified", _NO_TIME)
+        if description:
+            out.element("subject", description)
         out.element("unit", name="meter", meter=1)
         out.element("up_axis", "Z_UP")
 

@@ -66,11 +66,13 @@ class _References(Mapping[str, bytes]):
 
 def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | None]]:
     """Return corners and, where there is a material, its red, green, blue and opacity."""
+    data = file.data
+    if kind == "ply":  # trimesh takes headers for UTF-8, and comments of older programs are Latin-1
+        header, end, rest = data.partition(b"end_header")
+        data = header.decode("ascii", "replace").encode("ascii", "replace") + end + rest
     trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
     try:
-        scene: Any = trimesh.load_scene(
-            io.BytesIO(file.data), file_type=kind, resolver=_References(file), process=False
-        )
+        scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=_References(file), process=False)
         order = {name: number for number, name in enumerate(scene.geometry)}
         nodes: list[Any] = sorted(map(scene.graph.get, scene.graph.nodes_geometry), key=lambda node: order[node[1]])
         placed = [(scene.geometry[name], matrix) for matrix, name in nodes]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from ravemj.core.transforms import UNSCALED, Vec3
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
+from ravemj.formats.data_folders import data_folders
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.tags import Tag, Target_contra
 from ravemj.formats.openrave_xml.tree import Document, Element, parse_file
@@ -180,8 +181,7 @@ class Context:
         found = self._found.get(question)
         if found is not None:
             return found
-        data_folders = list(filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep)))
-        places = [*folders, os.path.dirname(source.file), *data_folders]
+        places = [*folders, os.path.dirname(source.file), *data_folders()]
         looked_at: list[str] = []
         for folder in places:
             candidate = os.path.join(folder, name)
@@ -195,7 +195,7 @@ class Context:
             self.diagnostics.warn("found-above", message, source, "OpenRAVE needs its folder in OPENRAVE_DATA")
             self._found[question] = above
             return above
-        hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
+        hint = "" if data_folders() else "put it there, or set OPENRAVE_DATA to the folder that it is in"
         message = f"there is no file '{name}'; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
@@ -229,7 +229,10 @@ class Context:
         from ravemj.formats.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
 
         try:
-            return read_mesh(path, scale)
+            parts = read_mesh(path, scale)
+            if not parts:
+                self.diagnostics.warn("broken-mesh", f"{path}: there are no triangles in it", source)
+            return parts
         except SourceError as error:
             self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
             return ()

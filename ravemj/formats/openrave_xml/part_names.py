@@ -17,17 +17,14 @@ class PartNames:
     """
 
     def __init__(self, body: KinBody, diagnostics: Diagnostics) -> None:
-        referred = {link for joint in body.all_joints for link in (joint.parent, joint.child)}
-        referred |= {link for pair in body.adjacent for link in pair}
-        referred |= {link for one in body.manipulators for link in (one.base, one.effector) if link is not None}
-        referred |= {sensor.link for sensor in body.sensors if sensor.link is not None}
+        referenced = body.referenced_links
         self.links: list[str] = []
         known = {link.name.lower() for link in body.links}
         for index, link in enumerate(body.links):
             name = link.name
             in_any_case = any(name.lower() == other.lower() for other in self.links)
             is_word = words(name) == [name] or not name
-            is_taken = (name and name in self.links) or (index in referred and (in_any_case or not is_word))
+            is_taken = (name and name in self.links) or (index in referenced and (in_any_case or not is_word))
             self.links.append(_renamed("link", link, body, known, diagnostics) if is_taken else name)
         joints = [joint.name for joint in body.all_joints]
         active = set(joints[: len(body.joints)])

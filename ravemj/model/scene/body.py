@@ -110,6 +110,7 @@ class KinBody(Record):
         has_active_manipulator: Whether the first one is active; of a robot that OpenRAVE refuses none is.
         sensors: Sensors on links.
         grabs: The bodies that it holds after loading.
+        description: A text for people.
         source: The element that it comes from.
     """
 
@@ -124,12 +125,22 @@ class KinBody(Record):
     has_active_manipulator: bool = True
     sensors: tuple[AttachedSensor, ...] = ()
     grabs: tuple[Grab, ...] = ()
+    description: str = ""
     source: Source
 
     @property
     def all_joints(self) -> tuple[Joint, ...]:
         """The active joints in DOF order, then the passive ones; joints are counted in this order."""
         return (*self.joints, *self.passive_joints)
+
+    @property
+    def referenced_links(self) -> set[int]:
+        """The indices of the links that joints, pairs of adjacent links, manipulators, sensors or grabs refer to."""
+        links = {link for joint in self.all_joints for link in (joint.parent, joint.child)}
+        links |= {link for pair in self.adjacent for link in pair}
+        links |= {link for one in self.manipulators for link in (one.base, one.effector) if link is not None}
+        links |= {sensor.link for sensor in self.sensors if sensor.link is not None}
+        return links | {link for grab in self.grabs for link in (grab.link, *grab.ignored)}
 
     @property
     def dof_axes(self) -> tuple[Axis, ...]:

@@ -30,9 +30,11 @@ class Scene(Record):
         view: Background and camera, or None where the file has no ``<Environment>``.
         gravity: Acceleration of free fall [m/s^2], or None where the file has no physics engine.
         sensors: Sensors that no robot carries; they are on no link, and ``T_link_sensor`` is their pose in the world.
+        description: A text for people.
     """
 
     bodies: tuple[KinBody, ...] = ()
     view: View | None = None
     gravity: Vec3 | None = None
     sensors: tuple[AttachedSensor, ...] = ()
+    description: str = ""

@@ -4,6 +4,7 @@
 # pyright: reportPrivateUsage=false
 
 import json
+from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from typing import Any, cast
@@ -12,6 +13,7 @@ import numpy as np
 
 from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
+from ravemj.formats.data_folders import existing
 from ravemj.model import scene
 from ravemj.model.scene import View
 from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
@@ -85,11 +87,7 @@ def read_json(path: str) -> tuple[str, dict[str, Any]]:
     Raises:
         SourceError: The file is missing or broken.
     """
-    from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
-
-    found = find(path)
-    if found is None:
-        raise SourceError("there is no such file", Source(path), "check the path, or set OPENRAVE_DATA")
+    found = existing(path)
     return found, _parsed(found)
 
 
@@ -100,7 +98,7 @@ def _parsed(path: str) -> dict[str, Any]:
         SourceError: The file cannot be read, or does not contain an object with a list of bodies.
     """
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             content = json.load(file, parse_constant=_refuse)
     except json.JSONDecodeError as error:
         raise SourceError(f"not well-formed JSON: {error.msg}", Source(path, error.lineno)) from error
@@ -118,9 +116,16 @@ def _parsed(path: str) -> dict[str, Any]:
 def _warn_of_losses(diagnostics: Diagnostics, path: str, bodies: Iterable[scene.KinBody]) -> None:
     """Warn about properties of bodies that OpenRAVE's JSON cannot store."""
     for body in bodies:
+        count = Counter(link.name for link in body.links)
+        if any(count[body.links[index].name] > 1 for index in body.referenced_links):
+            message = f"several links of '{body.name}' have no name, and JSON refers to links by names"
+            raise OutputError(f"cannot write {path}: {message}; give each link a name of its own")
         if not body.joined_links_adjacent:
             message = f"JSON cannot store that joined links of '{body.name}' can collide; they are adjacent in the file"
             diagnostics.warn("not-written", message, Source(path))
+        if body.description:
+            message = f"JSON cannot store the description of '{body.name}'; it is left out"
+            diagnostics.warn("not-written", message, Source(path), "COLLADA keeps it")
         drawn = [part for link in body.links for part in link.geometries if part.display is not None]
         if drawn:
             message = f"JSON cannot store the meshes that '{body.name}' draws in place of its shapes; they are left out"

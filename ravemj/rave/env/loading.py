@@ -26,6 +26,7 @@ from ravemj.errors import (
     UnnamedError,
     send_warnings,
 )
+from ravemj.formats.data_folders import existing
 from ravemj.model.scene import Grab, Mesh, Scene
 from ravemj.rave.env.description import Description
 from ravemj.rave.env.json_files import is_json, placed_errors, read_json
@@ -152,9 +153,8 @@ class Loading(Description):
             SourceError: The file is missing or broken; what was read before is there.
         """
         self._check_alive()
-        content = self._json_content(path)
         with placed_errors(path):
-            self.LoadJSON(content)
+            self.LoadJSON(self._json_content(path))
 
     def _json_content(self, path: str) -> dict[str, Any]:
         found, content = read_json(path)
@@ -216,6 +216,7 @@ class Loading(Description):
                 self._simulation.view = reading.scene.view
             if reading.scene.gravity is not None:
                 self._simulation.set_gravity(reading.scene.gravity)
+            self.annotations.description = reading.scene.description or self.annotations.description
             for sensor in reading.scene.sensors:
                 self.AddSensor(Sensor(self._environment, sensor), reading.renames)
         for viewer in self._viewers:
@@ -295,12 +296,7 @@ class Loading(Description):
             return None
 
     def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file, which is not added.
-
-        Args:
-            path: The file.
-            into: A body to make anew, or None.
-            is_robot: Whether it becomes a robot, whatever the file calls it.
+        """Return the first body of a file, which is not added; ``into`` is a body to make anew, or None.
 
         Raises:
             SourceError: The file is missing or broken, or has no body.
@@ -331,29 +327,25 @@ class Loading(Description):
             return self.wrap(self._simulation.create(scene))
         with self._simulation.lock:
             into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
+            into.annotations.description = scene.description
         return into
 
     def ReadTrimeshURI(self, filename: str, atts: Attributes | None = None) -> TriMesh | None:
         """Return all triangles of a mesh file, in metres and in the frame of the file.
 
         Args:
-            filename: The file. It is searched in the working folder, then in the folders of the environment variable
-                ``OPENRAVE_DATA``.
+            filename: The file; see ``Load``.
             atts: ``scalegeometry`` ("2" or "2 3 4") scales the triangles; other attributes have no effect.
 
         Returns:
             The triangles; None with a logged reason if the file is missing or broken.
         """
         from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
-        from ravemj.formats.readers import find  # noqa: PLC0415
 
-        path = find(filename)
         factors = [float(word) for word in checked_attributes(atts, "ReadTrimesh").get("scalegeometry", "1").split()]
         x, y, z = (factors * 3)[:3]
         try:
-            if path is None:
-                raise SourceError("there is no such file", Source(filename), "check the path, or set OPENRAVE_DATA")
-            parts = read_mesh(path, (x, y, z))
+            parts = read_mesh(existing(filename), (x, y, z))
         except SourceError as error:
             _LOG.error("%s", error)
             return None
@@ -375,17 +367,25 @@ class Loading(Description):
                 file.write(data if isinstance(data, bytes) else data.encode())
             return self.ReadTrimeshURI(path, atts)
 
-    def ReadInterfaceURI(self, filename: Text, atts: Attributes | None = None) -> KinBody | None:
-        """Return a robot or a body from a file without adding it. ravemj reads no other interfaces from files.
+    def ReadInterfaceURI(self, filename: Text, atts: Attributes | None = None) -> KinBody | Sensor | None:
+        """Return a robot, a body or a sensor from a file without adding it. ravemj reads no other interfaces from files.
 
         Args:
             filename: The file; see ``Load``.
             atts: Attributes for the body; see ``Load``.
 
         Returns:
-            The robot or body; None with a logged reason if the file is missing, broken or has no body.
+            The first robot or body, else the first sensor; None with a logged reason if there is none.
         """
-        return self._read_uri(filename, checked_attributes(atts, "ReadInterfaceURI"), None, is_robot=False)
+        given = checked_attributes(atts, "ReadInterfaceURI")
+        if is_json(os.fsdecode(filename)):
+            return self._read_uri(filename, given, None, is_robot=False)
+        reading = self._read_file(filename, given)
+        if reading.failure or reading.scene.bodies or not reading.scene.sensors:
+            return self._read(reading, None, is_robot=False)
+        self._note(reading)
+        send_warnings(reading.diagnostics)
+        return Sensor(self._environment, reading.scene.sensors[0])
 
     ReadInterfaceXMLFile = ReadInterfaceURI
 

@@ -53,14 +53,18 @@ _PARTS: dict[str, Callable[[KinBody], KinBody]] = {
 _NO_EFFECT = {
     "forcewrite": "a body that its file does not give as it is now stands in the file itself, with everything",
     "ignoreexternaluri": "a body stands in the file itself where 'externalref' does not name it",
-    "openravescheme": "references are relative to the file",
     "reusesimilar": "each body is written by itself",
 }
 """Options of OpenRAVE that do not change what ``Load`` reads back, with the reason that a warning gives."""
 
 _FILE_TYPES = {"collada": ".dae", "json": ".json"}
 
-_VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
+_VALUES = {
+    "skipwrite": tuple(_PARTS),
+    "format": ("collada", "openrave", "json"),
+    "meshes": ("stl", "obj"),
+    "openravescheme": ("openrave",),
+}
 
 
 class Saving(Description):
@@ -91,6 +95,8 @@ class Saving(Description):
                 * ``externalref``: names of bodies, or ``*`` for all. In COLLADA they become references to the COLLADA
                   files that they were read from, with their poses, joint values and grabbed bodies. A body with other
                   changes is written to the new file itself, with a warning (``not-referred``);
+                * ``openravescheme``: ``openrave`` makes references to files in the folders of ``OPENRAVE_DATA`` start
+                  with ``openrave:/``, so that they lead there wherever the new file lies;
                 * ``meshes``: the format of the meshes, ``stl`` or ``obj``.
 
         Raises:
@@ -115,7 +121,10 @@ class Saving(Description):
         skipped = [part for name, value in given if name == "skipwrite" for part in value.split()]
         self._check_alive()
         with self._simulation.lock:
-            bodies = [snapshot(body) for body in self._simulation.bodies]
+            bodies = [
+                replace(snapshot(body), description=self.wrap(body).GetDescription())
+                for body in self._simulation.bodies
+            ]
             view, gravity = self._simulation.view, self._simulation.gravity
             sensors = tuple(sensor.description for sensor in self._sensors)
         if options not in _WITH_SENSORS or "sensors" in skipped:
@@ -132,11 +141,12 @@ class Saving(Description):
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
         diagnostics = Diagnostics()
         references = _external_names(given, names) if kind == "collada" else set[str]()
-        external = external_bodies(path, Scene(tuple(bodies)), references, diagnostics)
+        external = external_bodies(path, Scene(tuple(bodies)), references, diagnostics, named.get("openravescheme"))
         for part in skipped:
             bodies = [body if body.name in external else _PARTS[part](body) for body in bodies]
         shown = None if len(bodies) == 1 and view == View() else view
-        scene = Scene(tuple(bodies), shown, None if gravity == DEFAULT_GRAVITY else gravity, sensors)
+        gravity = None if gravity == DEFAULT_GRAVITY else gravity
+        scene = Scene(tuple(bodies), shown, gravity, sensors, self.GetDescription())
         save(path, scene, diagnostics, kind, cast("MeshFormat", named.get("meshes", "stl")), external)
         send_warnings(diagnostics)
 

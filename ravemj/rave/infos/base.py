@@ -93,7 +93,9 @@ class Info(ApiObject):
         for key, name, form, _ in (entry for entry in self._json(obj) if entry.key in obj):
             try:
                 setattr(self, name, form.read(obj[key], unitScale, getattr(self, name)))
-            except (ValueError, TypeError, KeyError, AttributeError) as error:
+            except KeyError as error:
+                raise ArgumentError(f"{self._called}.DeserializeJSON: {key}: {error} is missing") from None
+            except (ValueError, TypeError, AttributeError) as error:
                 raise ArgumentError(f"{self._called}.DeserializeJSON: {key}: {error}") from None
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:

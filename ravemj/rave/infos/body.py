@@ -176,17 +176,18 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     for one in _checked(info._vLinkInfos, LinkInfo):
         builder.links.append(one.link())
     names = [link.name for link in builder.links]
-    if len(set(names)) < len(names):
-        raise ArgumentError(f"the links are called {', '.join(names)}; each link needs a name of its own")
+    named = [name for name in names if name]
+    if len(set(named)) < len(named):
+        raise ArgumentError(f"the links are called {', '.join(names)}; each link needs a name of its own, or none")
     for index, one in enumerate(info._vLinkInfos):
         builder.adjacent += [(index, other) for other in one.adjacent(names)]
     builder.joints = [one.joint(builder.links) for one in _checked(info._vJointInfos, JointInfo)]
-    builder.joint_values = _asked(builder, info.values_by_axis())
+    diagnostics = Diagnostics()
+    builder.joint_values = _asked(builder, info.values_by_axis(), diagnostics)
     if isinstance(info, RobotBaseInfo) and like.is_robot:
         builder.manipulators = [one.manipulator() for one in _checked(info._vManipInfos, ManipulatorInfo)]
         sensors = _checked(info._vAttachedSensorInfos, AttachedSensorInfo)
         builder.sensors = [SensorBuilder(one.sensor(names)) for one in sensors]
-    diagnostics = Diagnostics()
     body = builder.freeze(diagnostics)
     if builder.refusal is not None:
         raise builder.refusal
@@ -201,9 +202,15 @@ def _checked(infos: Sequence[T], kind: type[T]) -> Sequence[T]:
     return infos
 
 
-def _asked(builder: "BodyBuilder", values: dict[tuple[str, int], float]) -> list[float] | None:
+def _asked(
+    builder: "BodyBuilder", values: dict[tuple[str, int], float], diagnostics: Diagnostics
+) -> list[float] | None:
     """Return the value of each DOF, or None if the info asks for no values."""
     active = [joint for joint in builder.joints if joint.active]
+    known = {(joint.name, index) for joint in builder.joints for index in range(len(joint.axes))}
+    for name, index in values.keys() - known:
+        message = f"a value is left out: '{builder.name}' has no axis {index} of a joint '{name}'"
+        diagnostics.warn("unknown-joint", message, FROM_SCRIPT)
     if not values:
         return None
     return [

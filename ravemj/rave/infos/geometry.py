@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, Vec3
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.formats.data_folders import existing
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
 from ravemj.model.bounds import geometry_bounds
@@ -236,9 +237,5 @@ def _file(name: str | None, scale: ArrayLike) -> scene.MeshFile | None:
 def _parts(file: scene.MeshFile) -> "tuple[MeshPart, ...]":
     """Read a mesh file."""
     from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
-    from ravemj.formats.readers import find  # noqa: PLC0415
 
-    path = find(file.name)
-    if path is None:
-        raise SourceError("there is no such file", Source(file.name), "check the path, or set OPENRAVE_DATA")
-    return read_mesh(path, file.scale)
+    return read_mesh(existing(file.name), file.scale)

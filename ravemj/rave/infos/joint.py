@@ -206,8 +206,9 @@ class JointInfo(ParameterFields):
             raise RavemjError(message, ErrorCode.NotImplemented)
         names = [link.name for link in links]
         for name in (self._linkname0, self._linkname1):
-            if name not in names:
-                raise ArgumentError(f"joint '{self._name}' names a link '{name}'; there are {', '.join(names)}")
+            if names.count(name or "") != 1:
+                message = f"names a link '{name}'; there are {', '.join(map(repr, names))}"
+                raise ArgumentError(f"joint '{self._name}' {message}, and one of them should have that name")
         first, second = names.index(self._linkname0 or ""), names.index(self._linkname1 or "")
         values = per_axis(self._vcurrentvalues, len(scene.AXES[kind]), 0.0, "JointInfo._vcurrentvalues")
         axes = self._made_axes(kind, values)

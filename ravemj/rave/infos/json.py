@@ -150,13 +150,18 @@ def infos(kind: Callable[[Json], Described]) -> Form:
     """
 
     def read(items: Sequence[Json], scale: float, present: Sequence[Described]) -> list[Described]:
-        found = list(present)
+        found, read_before = list(present), list[Described]()
         for item in items:
+            if not isinstance(item, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] - what files hold
+                raise TypeError(f"is {item!r}, and should be an object")
             known = next((one for one in found if _is_called(one, item)), None)
             if item.get("__deleted__"):
                 found = [one for one in found if one is not known]
                 continue
+            if any(one is known for one in read_before):
+                raise ValueError(f"two are called '{item.get('id') or item['name']}'; give each a name of its own")
             changed = known or kind(item)
+            read_before.append(changed)
             changed.DeserializeJSON(item, scale)
             if known is None:
                 found.append(changed)
@@ -187,6 +192,8 @@ def named(names: Mapping[Any, str]) -> Form:
 def _text(value: Any) -> str | None:  # noqa: ANN401 - whatever JSON holds
     if value is not None and not isinstance(value, str):
         raise TypeError(f"is {value!r}, and should be a text")
+    if value is not None:
+        value.encode()  # raises at halves of surrogate pairs, which no file and no terminal takes
     return value
 
 

@@ -88,10 +88,10 @@ class LinkInfo(ParameterFields):
         """Make the link that the fields describe.
 
         Raises:
-            RavemjError: the link has no name, or a field has wrong numbers.
+            RavemjError: the name is not set, or a field has wrong numbers.
         """
-        if not self._name:
-            raise ArgumentError("LinkInfo._name: is empty, and should name the link")
+        if self._name is None:
+            raise ArgumentError("LinkInfo._name: is None, and should name the link")
         (mass,) = checked_vector([self._mass], 1, "LinkInfo._mass").tolist()
         T_link_mass = pose(self._tMassFrame, "LinkInfo._tMassFrame")
         moments = checked_vector(self._vinertiamoments, 3, "LinkInfo._vinertiamoments")

@@ -6,7 +6,8 @@ from ravemj.core.transforms import Floats
 from ravemj.formats.meshes.collada.document import Element, local_name, numbers
 from ravemj.formats.meshes.matrices import rotation, translation
 
-_LENGTHS = {"translate": 3, "rotate": 4, "scale": 3, "matrix": 16, "lookat": 9}
+LENGTHS = {"translate": 3, "rotate": 4, "scale": 3, "matrix": 16, "lookat": 9}
+"""The number of numbers in each transform that counts."""
 
 
 def local_transform(element: Element) -> Floats | None:
@@ -17,7 +18,7 @@ def local_transform(element: Element) -> Floats | None:
     """
     kind = local_name(element)
     values = numbers(element)
-    if kind not in _LENGTHS or len(values) < _LENGTHS[kind]:
+    if kind not in LENGTHS or len(values) < LENGTHS[kind]:
         return None
     match kind:
         case "translate":

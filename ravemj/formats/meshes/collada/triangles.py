@@ -22,6 +22,7 @@ from ravemj.formats.meshes.parts import MAX_TRIANGLES, MeshPart, check_finite, w
 from ravemj.model.scene import Mesh
 
 _OF_ROBOTS = ("triangles", "trifans", "tristrips", "polylist")
+_NO_PRIMITIVES = {"source", "vertices", "extra", "asset"}
 _KINDS = (*_OF_ROBOTS, "polygons")
 
 
@@ -72,7 +73,7 @@ def primitive_groups(
     return groups
 
 
-def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float) -> list[tuple[str, Mesh]]:
+def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float) -> list[tuple[Element, Mesh]]:
     """Return the triangles of a ``<geometry>`` as OpenRAVE's robots have them, from the cache if they are there.
 
     Args:
@@ -81,7 +82,7 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
         metres: The length of its unit [m].
 
     Returns:
-        The symbol and the triangles [m] of each primitive element that has any; polygons do not count.
+        Each primitive element with its triangles [m], also where it has none; ``unread_primitives`` are left out.
 
     Raises:
         SourceError: There are too many triangles, or a coordinate is not finite.
@@ -95,8 +96,14 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
 
     key = f"{document.digest} {document.place(geometry)} {metres!r}"
     parts = cached(key.encode(), "geometry", read)
-    symbols = [element.get("material", "") for element in _by_kind(_mesh(geometry), _OF_ROBOTS)]
-    return [(symbol, part.mesh) for symbol, part in zip(symbols, parts, strict=True) if len(part.mesh.triangles)]
+    elements = _by_kind(_mesh(geometry), _OF_ROBOTS)
+    return [(element, part.mesh) for element, part in zip(elements, parts, strict=True)]
+
+
+def unread_primitives(geometry: Element) -> list[Element]:
+    """Return the primitive elements of a ``<geometry>`` that OpenRAVE's robots do not have."""
+    known = {*_OF_ROBOTS, *_NO_PRIMITIVES}
+    return [element for element in children(_mesh(geometry)) if local_name(element) not in known]
 
 
 def _by_kind(mesh: Element | None, kinds: tuple[str, ...]) -> list[Element]:
