@@ -1,10 +1,14 @@
-"""How sharp pictures are while things move, and when they get crisp."""
+"""How sharp pictures are while things move, when they get crisp, and how often it is looked whether they changed."""
 
 import itertools
+import json
+import time
 
 import pytest
 
-from ravemj.gui.viewers.sharpness import BUDGET, CRISP, LEVELS, REST, Sharpness
+from ravemj.gui.viewers.sharpness import BUDGET, CRISP, LEVELS, REST, Sharpness, period
+from ravemj.gui.viewers.web.client import Client, PageStyle
+from ravemj.gui.viewers.web.scenes import Scenes
 
 
 def draw_moving(sharpness, crisp_cost, pictures=60):
@@ -67,3 +71,32 @@ def test_a_fast_machine_draws_nothing_twice():
     sharpness = Sharpness()
     draw_moving(sharpness, 0.002)
     assert not sharpness.is_due(1000.0)
+
+
+def test_who_waits_for_changes_looks_less_often_once_nothing_has_changed_for_long():
+    assert period(0.0) == period(0.9) == 1 / 60
+    assert period(1.1) == period(1e9) == 1 / 30
+
+
+def test_a_page_is_looked_after_at_once_again_when_something_changes(env, monkeypatch):
+    viewer, now = env.serve_viewer(), time.monotonic()
+    client = Client(env.simulation, viewer._renderer, viewer.interaction, Scenes())
+    client.take_in([json.dumps({"type": "draws", "itself": True}), '{"type": "ready"}'], pytest.fail)
+    periods = []
+    for seconds, values in ((0, [0, 0]), (0.5, [0, 0]), (5, [0, 0]), (6, [0.1, 0]), (20, [0.1, 0])):
+        monkeypatch.setattr(time, "monotonic", lambda seconds=seconds: now + seconds)
+        env.GetRobots()[0].SetDOFValues(values)
+        client.attend(Deaf(), PageStyle((1.0, 1.0, 1.0), "ravemj"))
+        client.take_in(['{"type": "ready"}'], pytest.fail)
+        periods.append(client.patience)
+    assert periods == [1 / 60, 1 / 60, 1 / 30, 1 / 60, 1 / 30]
+
+
+class Deaf:
+    """A page that takes everything and says nothing."""
+
+    def recv(self, timeout=None):
+        raise TimeoutError
+
+    def send(self, message):
+        pass

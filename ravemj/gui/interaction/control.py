@@ -16,7 +16,7 @@ class Control:
         upper: Where its range ends.
         is_on: For a button that stays down, whether it is.
         group: Where it is: among the ``tools``, in the row of a motion that is ``playing`` or of simulation ``time``,
-            or unfolded in the ``joints``, the ``tree``, the ``help`` or a ``menu``.
+            or unfolded: a ``menu``, the ``joints`` or the ``tree`` with the ``joint tools`` above them, the ``help``.
     """
 
     name: str

@@ -1,8 +1,8 @@
 """Where a window has the controls, and how it draws them: as rectangles and text.
 
 The motion's are in a slim row at the bottom, between the wheels, and those of simulation time in another one; each is
-there only while there is something to control. The others
-are a column of small buttons under those of the modes, and the joints' sliders unfold beside it.
+there only while there is something to control. The others are a column of small buttons under those of the modes, which
+low views have no room for. Sliders, tree and menus unfold beside it, the help over all.
 """
 
 from dataclasses import replace

@@ -54,7 +54,9 @@ def move_joint(body: BodyState, dof: int, handle: JointHandle, point: Floats, ra
     """Let a joint follow the pointer, which holds a point of its handle, as far as its limits go."""
     start = float(body.kinematics.values()[dof])
     joint, axis = joint_and_axis(body, dof)
-    measure = Slide(handle.axis, point).way if joint.slides(axis) else Turn(*_about(handle), point, ray).angle
+    measure = (
+        Slide(handle.axis, point).way if joint.slides(axis) else Turn(handle.center, handle.axis, point, ray).angle
+    )
 
     return lambda ray: set_dof(body, dof, start + measure(ray))
 
@@ -64,10 +66,6 @@ def set_dof(body: BodyState, dof: int, value: float) -> None:
     values = body.kinematics.values()
     values[dof] = clamp(body.scene.dof_axes[dof], value)
     body.set_values(values)
-
-
-def _about(handle: JointHandle) -> tuple[Floats, Floats]:
-    return handle.center, handle.axis
 
 
 class Turn:

@@ -152,7 +152,8 @@ class Reach:
     def ghosts(self) -> Primitives:
         """Return the other configurations that bring the link to where it is: lines from joint to joint.
 
-        They are those of the closed form, with the free joints as they are; none where there is no closed form.
+        They are those of the closed form, with the free joints as they are; none where there is no closed form. Lines,
+        since pages are sent figures whole with every frame: seven arms of solid links would be megabytes a second.
         """
         solver, values = self._solver, self._values
         if solver.closed is None:

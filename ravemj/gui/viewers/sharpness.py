@@ -8,11 +8,26 @@ BUDGET = 0.028
 REST = 0.1
 """After so long without a change [s] the picture is drawn once more, crisp."""
 
+_PERIOD, _QUIET_PERIOD = 1 / 60, 1 / 30
+"""How often it is seen whether something has changed [s]; less often once nothing has for a while."""
+
+_QUIET = 1.0
+"""How long that is [s]."""
+
 _SPARE = 0.7
 """Part of the budget that a sharper picture has to leave free, so that sharpness does not go to and fro."""
 
 _INERTIA = 0.6
 """Weight of earlier pictures when the next one's time is guessed."""
+
+
+def period(unchanged: float) -> float:
+    """Return after how long it is to be seen again whether something has changed [s].
+
+    Args:
+        unchanged: For how long nothing has changed [s].
+    """
+    return _QUIET_PERIOD if unchanged > _QUIET else _PERIOD
 
 
 class Level(NamedTuple):

@@ -20,6 +20,7 @@ from ravemj.gui.viewers.dropping import add_files
 from ravemj.gui.viewers.glfw_window import GlfwWindow
 from ravemj.gui.viewers.player import camera_line
 from ravemj.gui.viewers.recorder import FrameSource
+from ravemj.gui.viewers.sharpness import period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE, Viewer
 from ravemj.gui.viewers.window_renderer import Surface, WindowRenderer
 
@@ -43,7 +44,7 @@ _Request = Callable[[GlfwWindow], object]
 class WindowViewer(Viewer):
     """A viewer in a window; it shows every change at once and stays until it is closed or forgotten."""
 
-    _internal = ("open_window", "turn")
+    _internal = ("open_window", "period", "turn")
 
     def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
         super().__init__(simulation, renderer, name)
@@ -51,7 +52,7 @@ class WindowViewer(Viewer):
         self._requests: SimpleQueue[_Request] = SimpleQueue()
         self._awaited: SimpleQueue[threading.Event] = SimpleQueue()
         self._complaint = ""
-        self._free_at = time.monotonic()
+        self._free_at = self._changed_at = time.monotonic()
         self._closing = threading.Event()
         self._opened = threading.Event()
         self._failure = ""
@@ -187,12 +188,19 @@ class WindowViewer(Viewer):
             for drawn in waiting:
                 self._awaited.put(drawn)
             waiting = []
+        if is_changed:
+            self._changed_at = now
         if is_changed or painter.is_due(now):
             self._draw(window, painter, now)
         self._serve(window)
         for drawn in waiting:
             drawn.set()
         return True
+
+    @property
+    def period(self) -> float:
+        """After how long the next turn should come [s], if people do nothing before."""
+        return period(time.monotonic() - self._changed_at)
 
     def _take_in_view(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
         """Do what changes only the view, while others have the simulation; return whether to draw the window."""
@@ -286,9 +294,9 @@ def _show(reference: "weakref.ref[WindowViewer]") -> None:
     try:
         begin = time.monotonic()
         while viewer is not None and viewer.turn(window, painter):
-            viewer = None
+            pause, viewer = viewer.period, None
             taken = time.monotonic() - begin
-            window.wait(max(_PERIOD - taken, 0.0) if taken < _SLOW else _PERIOD)
+            window.wait(max(pause - taken, 0.0) if taken < _SLOW else pause)
             begin = time.monotonic()
             viewer = reference()
     except Exception as error:  # of OpenGL, say; the script goes on without the window

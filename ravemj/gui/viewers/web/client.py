@@ -15,7 +15,7 @@ from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRendere
 from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay
 from ravemj.gui.viewers.dropping import Upload
 from ravemj.gui.viewers.recorder import free_path
-from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness
+from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness, period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
 from ravemj.gui.viewers.web.feed import Feed, Stage
@@ -63,11 +63,11 @@ class PageStyle(NamedTuple):
     title: str
 
 
-def receive(connection: Connection) -> list[str | bytes]:
-    """Return the messages of a page; where there are none, wait for at most a frame's time."""
+def receive(connection: Connection, seconds: float) -> list[str | bytes]:
+    """Return the messages of a page; where there are none, wait for some at most so long."""
     messages: list[str | bytes] = []
     try:
-        messages.append(connection.recv(timeout=_PERIOD))
+        messages.append(connection.recv(timeout=seconds))
         while len(messages) < _MOST_AT_ONCE:
             messages.append(connection.recv(timeout=0))
     except TimeoutError:
@@ -114,9 +114,9 @@ class Client:
         self._is_crisp = True
 
     @property
-    def is_behind(self) -> bool:
-        """Whether there is enough to do before more messages are received."""
-        return len(self._waiting) > _MOST_AT_ONCE
+    def patience(self) -> float:
+        """How long to wait for messages [s]; 0: there is enough to do before more are received."""
+        return 0.0 if len(self._waiting) > _MOST_AT_ONCE else period(time.monotonic() - self._changed_at)
 
     def take_moved(self) -> bool:
         """Return whether people have moved the camera of the page since this was asked last."""

@@ -162,8 +162,8 @@ class WebViewer(Viewer):
                 del self._views[oldest]
             self._clients[connection] = Client(self._simulation, self._renderer, view, self._scenes)
 
-    def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> bool:
-        """Do what a page says and send it a picture if one is due; return whether it may say more.
+    def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> float:
+        """Do what a page says and send it a picture if one is due; return how long to wait for more that it says [s].
 
         The viewer's camera becomes that of the page where it was moved last.
         """
@@ -180,7 +180,7 @@ class WebViewer(Viewer):
             self._grant(request, client, connection, style)
         while client.complete_uploads:
             client.complete_uploads.pop(0).add_to(self.GetEnv(), client.interaction.controls.notices)
-        return not client.is_behind
+        return client.patience
 
     def _grant(self, request: Request, client: Client, connection: ServerConnection, style: PageStyle) -> None:
         """Do what a button asked for that needs the page, or writes here."""
@@ -221,9 +221,9 @@ def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) ->
     messages: list[str | bytes] = []
     try:
         while viewer is not None and viewer.is_open:
-            is_listened_to = viewer.attend(connection, messages)
+            patience = viewer.attend(connection, messages)
             viewer = None
-            messages = receive(connection) if is_listened_to else []
+            messages = receive(connection, patience) if patience else []
             viewer = reference()
         connection.close(CloseCode.GOING_AWAY)
     except ConnectionClosed as error:
