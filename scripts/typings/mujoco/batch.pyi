@@ -1,7 +1,6 @@
 import numpy as np
-from numpy.typing import NDArray
-
 from mujoco import MjModel
+from numpy.typing import NDArray
 
 class Batch:
     def __init__(self, model: MjModel, nsim: int, nthread: int = 0, persistent: bool = False) -> None: ...
