@@ -180,11 +180,9 @@ class ArmEnd(ArmPart):
         T_world_tool: Floats | None,
     ) -> bool:
         """Test pairs with the tool where it is wanted, or where it is."""
-        with self._state.simulation.lock:
-            world = self._state.simulation.collisions()
-            with self._moved(world, T_world_tool):
-                checker = self._robot.GetEnv().GetCollisionChecker()
-                return checker.answer(world, find(world, self._state, self._scene), report)
+        checker = self._robot.GetEnv().GetCollisionChecker()
+        with self._state.simulation.lock, checker.groups.world() as world, self._moved(world, T_world_tool):
+            return checker.answer(world, find(world, self._state, self._scene), report)
 
     def _moved(self, world: CollisionWorld, T_world_tool: Floats | None) -> AbstractContextManager[None]:
         """Put the links beyond the arm, and what they hold, where the tool is wanted."""
