@@ -90,11 +90,7 @@ class ArmEnd(ArmPart):
     SetClosingDirection = SetChuckingDirection
 
     def IsGrabbing(self, body: "KinBody") -> bool:
-        """Return whether the effector, or a link beyond it, holds a body.
-
-        Args:
-            body: The body.
-        """
+        """Return whether the effector, or a link beyond it, holds a body."""
         return self._robot.IsGrabbing(body) in self.GetChildLinks()
 
     def ReleaseAllGrabbed(self) -> None:
