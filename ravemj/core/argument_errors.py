@@ -85,7 +85,7 @@ def _message(method: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
         given = signature(method).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
         return None
-    for name, value in given.arguments.items():
+    for name, value in tuple(given.arguments.items())[1:]:  # without the object itself
         kinds = _kinds(given.signature.parameters[name].annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             found = "None" if value is None else f"a {type(value).__name__}"
