@@ -61,7 +61,10 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
 
 
 def explained(method: FunctionType) -> Callable[..., Any]:
-    """Make a method raise an ``ArgumentError`` where an argument of a wrong type leads to an error of Python's."""
+    """Make a method raise a ``TypeError`` that names the argument of a wrong type which led to an error of Python's.
+
+    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31).
+    """
 
     @wraps(method)
     def call(*args: Any, **kwargs: Any) -> Any:  # noqa: ANN401 - those of the method
@@ -71,7 +74,7 @@ def explained(method: FunctionType) -> Callable[..., Any]:
             message = None if isinstance(error, RavemjError) else _message(method, args, kwargs)
             if message is None:
                 raise
-            raise ArgumentError(message) from error
+            raise TypeError(message) from error
 
     return call
 
@@ -82,7 +85,7 @@ def _message(method: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
         given = signature(method).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
         return None
-    for name, value in given.arguments.items():
+    for name, value in tuple(given.arguments.items())[1:]:  # without the object itself
         kinds = _kinds(given.signature.parameters[name].annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             found = "None" if value is None else f"a {type(value).__name__}"

@@ -90,11 +90,7 @@ class ArmEnd(ArmPart):
     SetClosingDirection = SetChuckingDirection
 
     def IsGrabbing(self, body: "KinBody") -> bool:
-        """Return whether the effector, or a link beyond it, holds a body.
-
-        Args:
-            body: The body.
-        """
+        """Return whether the effector, or a link beyond it, holds a body."""
         return self._robot.IsGrabbing(body) in self.GetChildLinks()
 
     def ReleaseAllGrabbed(self) -> None:
@@ -180,11 +176,9 @@ class ArmEnd(ArmPart):
         T_world_tool: Floats | None,
     ) -> bool:
         """Test pairs with the tool where it is wanted, or where it is."""
-        with self._state.simulation.lock:
-            world = self._state.simulation.collisions()
-            with self._moved(world, T_world_tool):
-                checker = self._robot.GetEnv().GetCollisionChecker()
-                return checker.answer(world, find(world, self._state, self._scene), report)
+        checker = self._robot.GetEnv().GetCollisionChecker()
+        with self._state.simulation.lock, checker.groups.world() as world, self._moved(world, T_world_tool):
+            return checker.answer(world, find(world, self._state, self._scene), report)
 
     def _moved(self, world: CollisionWorld, T_world_tool: Floats | None) -> AbstractContextManager[None]:
         """Put the links beyond the arm, and what they hold, where the tool is wanted."""

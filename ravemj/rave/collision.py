@@ -21,6 +21,7 @@ from ravemj.geometry_functions import Ray
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.collision_extras import CheckerExtras
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
+from ravemj.rave.geometry_groups import GeometryGroups
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Part
@@ -50,7 +51,7 @@ class CollisionChecker(CheckerExtras):
     """
 
     _interface_type = InterfaceType.collisionchecker
-    _internal = ("answer", "ray_targets")
+    _internal = ("answer", "groups", "ray_targets")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         self._env = env
@@ -60,6 +61,7 @@ class CollisionChecker(CheckerExtras):
         self._options = 0
         self._wanted = Wanted()
         self._tolerance = 0.0
+        self.groups = GeometryGroups(env.simulation)
 
     def GetXMLId(self) -> str:
         """Return the name that the checker was made by."""
@@ -75,6 +77,7 @@ class CollisionChecker(CheckerExtras):
         super().Clone(ref, cloningoptions)
         self._tolerance = ref.GetTolerance()
         self.SetCollisionOptions(ref.GetCollisionOptions())
+        self.groups.choose(ref.GetGeometryGroup())
 
     def InitEnvironment(self) -> bool:
         """Return True; nothing needs to be prepared."""
@@ -136,8 +139,7 @@ class CollisionChecker(CheckerExtras):
             report, arguments = report or arguments[-1], arguments[:-1]
         if report is not None:
             checked_kind(report, CollisionReport, "CheckCollision: report")
-        with self._simulation.lock:
-            world = self._simulation.collisions()
+        with self._simulation.lock, self.groups.world() as world:
             if arguments and isinstance(ray := arguments[0], Ray):
                 return self._check_ray(world, ray, arguments[1:], report)
             return self.answer(world, self._pairs(world, arguments), report)
@@ -151,8 +153,7 @@ class CollisionChecker(CheckerExtras):
         """
         if report is not None:
             checked_kind(report, CollisionReport, "CheckSelfCollision: report")
-        with self._simulation.lock:
-            world = self._simulation.collisions()
+        with self._simulation.lock, self.groups.world() as world:
             if isinstance(linkbody, Link):
                 pairs = queries.link_and_own_body(world, _link(linkbody))
             else:
@@ -239,7 +240,10 @@ class CollisionChecker(CheckerExtras):
 
     def _part(self, geometry: GeometryOf) -> Part:
         link = Link(self._env.wrap(geometry.body), geometry.body, geometry.link)
-        return Part(link, link.GetGeometries()[geometry.geometry])
+        group = self.groups.of(geometry.body)
+        has_group = group and link.GetGroupNumGeometries(group) >= 0
+        geometries = link.GetGeometriesFromGroup(group) if has_group else link.GetGeometries()
+        return Part(link, geometries[geometry.geometry])
 
     def _check_ray(
         self, world: CollisionWorld, ray: Ray, targets: Sequence[object], report: CollisionReport | None

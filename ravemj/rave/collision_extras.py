@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, Pose, pose_of
-from ravemj.errors import UnsupportedError
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
 from ravemj.model.shape_bodies import named_body, shape_geometry
+from ravemj.rave.geometry_groups import GeometryGroups, has_group
 from ravemj.rave.interface import Interface
 from ravemj.rave.trimesh import TriMesh, checked_mesh
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
     from ravemj.rave.report import CollisionReport
 
-GROUPS = "collision checkers that look at groups of geometries"
-
 
 class CheckerExtras(Interface):
     """Boxes and meshes against bodies; each such query takes the shape into the world and out again."""
+
+    groups: GeometryGroups
 
     @abstractmethod
     def CheckCollision(self, *arguments: object, report: "CollisionReport | None" = None, **named: object) -> bool:
@@ -118,56 +118,44 @@ class CheckerExtras(Interface):
         return self._env.CheckCollisionRays(rays, body, front_facing_only)
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; nothing needs to be prepared.
-
-        Args:
-            body: The body.
-        """
+        """Return True; nothing needs to be prepared."""
         del body
         return True
 
     def RemoveKinBody(self, body: "KinBody") -> None:
-        """Do nothing; OpenRAVE's checkers free memory here.
-
-        Args:
-            body: The body.
-        """
+        """Do nothing; OpenRAVE's checkers free memory here."""
 
     def SetGeometryGroup(self, groupname: str) -> None:
-        """Accept the geometries that links have; refuse groups.
+        """Take a group of geometries in place of those that links have, for all bodies.
+
+        Links without the group keep their geometries, and viewers and physics look at those of all links. A query
+        compiles the world anew where shapes have changed since the last one, as it does without groups.
 
         Args:
-            groupname: Empty, or ``self``.
-
-        Raises:
-            UnsupportedError: it is a group; ``body.SetLinkGeometriesFromGroup`` gives links the shapes of one.
+            groupname: The group, of ``link.SetGroupGeometries``; empty: the geometries that links have.
         """
-        if groupname not in {"", scene.OWN_SHAPES}:
-            raise UnsupportedError(f"SetGeometryGroup('{groupname}')", GROUPS)
+        self.groups.choose(checked_kind(groupname, str, "SetGeometryGroup: groupname", "a text"))
 
     def GetGeometryGroup(self) -> str:
-        """Return the group that is looked at: empty, the geometries that links have."""
-        return ""
+        """Return the group of ``SetGeometryGroup``; empty: the geometries that links have."""
+        return self.groups.default
 
     def SetBodyGeometryGroup(self, body: "KinBody", groupname: str) -> bool:
-        """Accept the geometries that the links of a body have, and return True; refuse groups.
+        """Take a group of geometries for one body; see ``SetGeometryGroup``, which sets it for all of them again.
 
         Args:
             body: The body.
-            groupname: Empty, or ``self``.
+            groupname: The group; empty: the geometries that links have.
 
-        Raises:
-            UnsupportedError: it is a group; ``body.SetLinkGeometriesFromGroup`` gives links the shapes of one.
+        Returns:
+            Whether a link of the body has such a group. If not, nothing changes.
         """
-        del body
-        self.SetGeometryGroup(groupname)
-        return True
+        state = body.simulation_state
+        found = has_group(state.scene, checked_kind(groupname, str, "SetBodyGeometryGroup: groupname", "a text"))
+        if found:
+            self.groups.choose(groupname, state)
+        return found
 
     def GetBodyGeometryGroup(self, body: "KinBody") -> str:
-        """Return the group that is looked at: empty, the geometries that links have.
-
-        Args:
-            body: The body.
-        """
-        del body
-        return ""
+        """Return the group that is taken for a body; empty: the geometries that its links have."""
+        return self.groups.of(body.simulation_state)

@@ -242,11 +242,7 @@ def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the
 
 
 def RaveGetEnvironmentId(env: Environment) -> int:
-    """Return the environment's number, as ``RaveGetEnvironment`` takes it.
-
-    Args:
-        env: The environment.
-    """
+    """Return the environment's number, as ``RaveGetEnvironment`` takes it."""
     return checked_environment(env, "RaveGetEnvironmentId").GetId()
 
 

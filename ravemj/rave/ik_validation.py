@@ -184,11 +184,14 @@ class Validator:
 
     def _collides(self, row: Floats) -> bool:
         """Return whether the robot, which is at the solution, collides."""
-        options, state, arm = self._options, self._state, self._query.description
         if not self._tests:
             return False
+        with self._query.robot.GetEnv().GetCollisionChecker().groups.world() as world:
+            return self._collides_in(world, row)
+
+    def _collides_in(self, world: CollisionWorld, row: Floats) -> bool:
+        options, state, arm = self._options, self._state, self._query.description
         check_env, check_self = options & CHECK_ENV, not options & IGNORE_SELF
-        world = state.simulation.collisions()
         without_end = bool(options & _IGNORE_END)
         if check_env and not without_end and self._goal.GetType() == _POSE:
             # All solutions have the end at the same place.

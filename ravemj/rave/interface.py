@@ -58,11 +58,7 @@ class Interface(ReadableInterface):
         return self.annotations.description
 
     def SetDescription(self, description: str) -> None:
-        """Attach a text.
-
-        Args:
-            description: The text.
-        """
+        """Attach a text."""
         self.annotations.description = str(description)
 
     SetUserData = SetUserData
@@ -86,11 +82,7 @@ class Interface(ReadableInterface):
         self._readables = ref.GetReadableInterfaces()
 
     def SupportsJSONCommand(self, cmd: str) -> bool:
-        """Return whether ``SendJSONCommand`` knows a command: none.
-
-        Args:
-            cmd: The name of the command.
-        """
+        """Return whether ``SendJSONCommand`` knows a command: none."""
         del cmd
         return False
 

@@ -57,11 +57,7 @@ class ReadableInterface(ApiObject):
     _readables: dict[str, Readable] | None = None
 
     def GetReadableInterface(self, id: str) -> Readable | None:
-        """Return the value under an id, or None.
-
-        Args:
-            id: The id.
-        """
+        """Return the value under an id, or None."""
         return (self._readables or {}).get(id)
 
     def GetReadableInterfaces(self) -> dict[str, Readable]:
@@ -84,12 +80,7 @@ class stringreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringReadable(id: str, data: str) -> Readable:
-        """Return a text under an id.
-
-        Args:
-            id: The id.
-            data: The text.
-        """
+        """Return a text under an id."""
         return Readable(id, str(data))
 
 
@@ -98,21 +89,12 @@ class xmlreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
-        """Return a text under an id.
-
-        Args:
-            xmlid: The id.
-            data: The text.
-        """
+        """Return a text under an id."""
         return Readable(xmlid, str(data))
 
 
 class SerializableData(ApiObject):
-    """A text that scripts attach and read back.
-
-    Args:
-        data: The text.
-    """
+    """A text that scripts attach and read back."""
 
     def __init__(self, data: str = "") -> None:
         self._data = data
@@ -127,11 +109,7 @@ class SerializableData(ApiObject):
         return self._data
 
     def Deserialize(self, data: str) -> None:
-        """Set the text.
-
-        Args:
-            data: The text.
-        """
+        """Set the text."""
         self._data = data
 
     def Close(self) -> None:

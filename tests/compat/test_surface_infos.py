@@ -304,8 +304,6 @@ def test_boxes_and_meshes_are_checked_like_bodies(env, robot):
     assert checker.CheckCollisionTriMesh(mesh, report)
     assert checker.CheckCollisionTriMesh(mesh, robot, report)
     assert env.GetBodies() == [robot]
-    with pytest.raises(NotImplementedError):
-        checker.SetGeometryGroup("padded")
 
 
 def test_boxes_around_groups_of_geometries(robot):

@@ -69,7 +69,7 @@ def test_errors_say_what_was_expected(scene, name):
     env, robot = scene
     before = robot.GetDOFValues(), robot.GetTransform()
     mistake, message = MISTAKES[name]
-    with pytest.raises(ravemj.openrave_exception, match=message):
+    with pytest.raises((ravemj.openrave_exception, TypeError), match=message):
         mistake(env, robot)
     assert (robot.GetDOFValues() == before[0]).all()
     assert (robot.GetTransform() == before[1]).all()

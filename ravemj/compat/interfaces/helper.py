@@ -23,6 +23,8 @@ class Helper(ApiObject):
         args: With what the module was added.
     """
 
+    _names_wrong_arguments = False  # scripts ask inspect.getfullargspec for the arguments, which wrappers hide
+
     def __init__(
         self,
         robot: Robot,

@@ -1,6 +1,6 @@
 """The bodies of an environment and the MuJoCo model made of them."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from threading import RLock
 from typing import TYPE_CHECKING
@@ -249,6 +249,34 @@ class Simulation:
 
             self._collisions = known = CollisionWorld(self.bodies, model, stamp)
         return known
+
+    @contextmanager
+    def described_as(
+        self, scenes: Mapping[BodyState, KinBody], known: "CollisionWorld | None"
+    ) -> "Generator[CollisionWorld]":
+        """Let bodies have other geometries for a while, and yield what collision checking knows of them then.
+
+        The caller holds ``lock``.
+
+        Args:
+            scenes: The descriptions of bodies, which differ from theirs in geometries alone.
+            known: What was yielded for these geometries before, which is used again; None: nothing.
+        """
+        kept = self._collisions, self.diagnostics, self.version
+        world, changed, own = self._world, self.changed, {body: body.scene for body in scenes}
+        self._world, self._collisions = None if known is None else known.model, known
+        self.changed = set(self.bodies)
+        for body, scene in scenes.items():
+            body.scene = scene
+        try:
+            yield self.collisions()
+        finally:
+            for body, scene in own.items():
+                body.scene = scene
+            self._collisions, self.diagnostics, self.version = kept
+            if self._world is not None:  # callbacks may have changed what the bodies consist of
+                self._world = world
+            self.changed = changed | self.changed
 
     def _compile(self) -> "WorldModel":
         from ravemj.engine.simulation.world_model import WorldModel  # noqa: PLC0415 - slow to import

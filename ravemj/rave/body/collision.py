@@ -81,8 +81,8 @@ class BodyCollision(Structure, Interface):
             itself_too: Whether self-collisions count.
 
         Returns:
-            Whether the body collides, shape (n,). Afterwards the body is back in its configuration. Options and
-            callbacks of collision checkers have no effect.
+            Whether the body collides, shape (n,). Afterwards the body is back in its configuration. Options,
+            groups and callbacks of collision checkers have no effect.
 
         Example:
             >>> lower, upper = robot.GetDOFLimits()

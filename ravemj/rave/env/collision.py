@@ -131,9 +131,9 @@ class Collision(Contents):
         if not np.isfinite(rows).all():
             row = int(np.flatnonzero(~np.isfinite(rows).all(axis=1))[0])
             raise ArgumentError(f"CheckCollisionRays: ray {row} is {rows[row].tolist()}, and should be finite numbers")
-        with self._simulation.lock:
-            world = self._simulation.collisions()
-            targets = self.GetCollisionChecker().ray_targets(world, ... if body is None else body)
+        checker = self.GetCollisionChecker()
+        with self._simulation.lock, checker.groups.world() as world:
+            targets = checker.ray_targets(world, ... if body is None else body)
             return world.rays(rows, targets, front_facing_only=front_facing_only)
 
     @also_named(fncallback="callback")

@@ -229,14 +229,7 @@ class Contents(EnvironmentPart):
     RemoveKinBody = RemoveProblem = Remove
 
     def RemoveKinBodyByName(self, name: str) -> bool:
-        """Remove the body or robot of a name; see ``Remove``.
-
-        Args:
-            name: The name.
-
-        Returns:
-            Whether there was such a body.
-        """
+        """Remove the body or robot of a name, and return whether there was one; see ``Remove``."""
         body = self.GetKinBody(name)
         return body is not None and self.Remove(body)
 
@@ -327,22 +320,14 @@ class Contents(EnvironmentPart):
         return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
-        """Return the body with an index of ``body.GetEnvironmentBodyIndex()``, or None.
-
-        Args:
-            bodyIndex: The index, from 1.
-        """
+        """Return the body with an index, from 1, of ``body.GetEnvironmentBodyIndex()``, or None."""
         state = self._simulation.body_at(bodyIndex)
         return None if state is None else self.wrap(state)
 
     GetBodyFromEnvironmentId = GetBodyFromEnvironmentBodyIndex
 
     def GetBodiesFromEnvironmentBodyIndices(self, bodyIndex: Iterable[int]) -> list[KinBody | None]:
-        """Return the bodies with several indices, with None for an index that no body has.
-
-        Args:
-            bodyIndex: The indices, as in ``GetBodyFromEnvironmentBodyIndex``.
-        """
+        """Return the bodies with several indices, with None for an index that no body has."""
         return [self.GetBodyFromEnvironmentBodyIndex(int(index)) for index in bodyIndex]
 
     def GetMaxEnvironmentBodyIndex(self) -> int:
@@ -405,6 +390,6 @@ def _renames(mode: Any) -> bool:  # noqa: ANN401 - a number or an enumeration
     """Return whether ``addMode`` allows another name: True, or a mode without strict checking of names."""
     if mode is None or isinstance(mode, bool):
         return bool(mode)
-    if mode not in InterfaceAddMode.values:
+    if mode not in tuple(InterfaceAddMode):
         raise ArgumentError(f"addMode is {mode!r}, and should be True, False or an InterfaceAddMode")
     return not InterfaceAddMode(mode) & InterfaceAddMode.StrictNameChecking

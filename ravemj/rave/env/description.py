@@ -62,11 +62,7 @@ class Description(Simulating):
         return self.annotations.description
 
     def SetDescription(self, sceneDescription: str) -> None:
-        """Set a description for people.
-
-        Args:
-            sceneDescription: The text.
-        """
+        """Set a description for people."""
         self.annotations.description = str(sceneDescription)
 
     SetUserData = SetUserData
@@ -108,11 +104,7 @@ class Description(Simulating):
         self._numbers[str(parameterName)] = int(value)
 
     def RemoveUInt64Parameter(self, parameterName: str) -> bool:
-        """Remove the integer of a name, and return whether there was one.
-
-        Args:
-            parameterName: The name.
-        """
+        """Remove the integer of a name, and return whether there was one."""
         return self._numbers.pop(parameterName, None) is not None
 
     def GetHomeDirectory(self) -> str:

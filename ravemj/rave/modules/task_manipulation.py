@@ -187,7 +187,6 @@ class TaskManipulation(Manipulation):
     def _touches(self, dof: int) -> bool:
         """Return whether a link that a joint moves touches another body, or a link that does not move with it."""
         state, simulation = self.robot.simulation_state, self.env.simulation
-        world = simulation.collisions()
-        others = body_and_others(world, state, MovedBy((dof,)))
-        own = itself(world, state, MovedBy((dof,)))
-        return world.collide(others) or world.collide(own)
+        moved = MovedBy((dof,))
+        with simulation.lock, self.env.GetCollisionChecker().groups.world() as world:
+            return world.collide(body_and_others(world, state, moved)) or world.collide(itself(world, state, moved))

@@ -178,7 +178,8 @@ class Bodies:
         Use the test within ``kept``, and change nothing else in the world meanwhile.
         """
         # Checkers and callbacks of the user look at the bodies themselves, so these have to be moved.
-        is_plain = type(self._env.GetCollisionChecker()) is CollisionChecker and not self._env.collision_callbacks
+        checker = self._env.GetCollisionChecker()
+        is_plain = type(checker) is CollisionChecker and not checker.groups and not self._env.collision_callbacks
         if not is_plain or len(self._parts) != 1 or not self._parts[0].dofs:
             return None
         return moving_test(self._parts[0].body.simulation_state, self._parts[0].dofs)
@@ -189,17 +190,18 @@ class Bodies:
         Links that no value moves do not count, as with OpenRAVE's option ``ActiveDOFs``: the base of an arm touches
         the floor in every configuration.
         """
-        checker, world = self._env.GetCollisionChecker(), self._simulation.collisions()
-        for body in self.bodies:
-            state, moved = body.simulation_state, self._moved(body)
-            if checker.answer(world, body_and_others(world, state, moved), report):
-                return ENV_COLLISION
-            if body in self._free:
-                continue
-            if checker.answer(world, itself(world, state, moved), report):
-                return SELF_COLLISION
-            if not any(part.dofs for part in self._parts if part.body is body):
-                self._free.add(body)
+        checker = self._env.GetCollisionChecker()
+        with self._simulation.lock, checker.groups.world() as world:
+            for body in self.bodies:
+                state, moved = body.simulation_state, self._moved(body)
+                if checker.answer(world, body_and_others(world, state, moved), report):
+                    return ENV_COLLISION
+                if body in self._free:
+                    continue
+                if checker.answer(world, itself(world, state, moved), report):
+                    return SELF_COLLISION
+                if not any(part.dofs for part in self._parts if part.body is body):
+                    self._free.add(body)
         return FREE
 
     def _moved(self, body: "KinBody") -> MovedBy | None:
