@@ -7,7 +7,7 @@ import pytest
 
 import ravemj
 from ravemj.graphics.rendering import Camera
-from ravemj.gui.interaction import Button, Interaction, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.gui.interaction import Button, Interaction, Key, Leave, Move, Press, Release, Resize, Type, Wheel
 from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.viewers.glfw_window import GlfwWindow
 
@@ -167,6 +167,20 @@ def test_letters_with_ctrl_or_alt_are_no_keys_of_the_view():
     for mods in (2, 4, 8, 1):
         window._on_key(None, 70, 0, 1, mods)
     assert window.events == [Key("f")]
+
+
+def test_letters_are_typed_and_backspace_repeats_while_it_is_held():
+    window = GlfwWindow.__new__(GlfwWindow)
+    window.events, window._keys = [], {259: "backspace"}
+    names = {"MOD_CONTROL": 2, "MOD_ALT": 4, "MOD_SUPER": 8, "PRESS": 1, "REPEAT": 2}
+    window._glfw = types.SimpleNamespace(**names)
+    for letter in "é?":
+        window._on_letter(None, ord(letter))
+    assert window.events == [Type("é"), Type("?"), Key("?"), Key("?", False)]
+    window.events = []
+    for action in (1, 2, 2, 0):
+        window._on_key(None, 259, 0, action, 0)
+    assert window.events == [Key("backspace")] * 3 + [Key("backspace", False)]
 
 
 def test_a_camera_comes_back_as_it_was_given(env):

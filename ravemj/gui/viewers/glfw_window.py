@@ -147,7 +147,7 @@ class GlfwWindow:
         if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
             name = chr(key)
         if name and (action != glfw.REPEAT or name == "backspace"):
-            self.events.append(Key(name, action != glfw.RELEASE))
+            self.events.append(Key(name, action in (glfw.PRESS, glfw.REPEAT)))
 
     def _on_letter(self, window: object, letter: int) -> None:
         del window
