@@ -287,7 +287,7 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
 def _mesh_file(element: Element, diagnostics: Diagnostics) -> MeshFile:
     """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
     name = next(iter(words(element.text)), "")
-    numbers = element.text.lstrip().removeprefix(name)
+    numbers = element.text[element.text.find(name) + len(name) :]
     if element.tag != "data":
         name = element.attributes.get("file", name)
         numbers = element.attributes.get("scale", numbers)
