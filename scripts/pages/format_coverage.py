@@ -61,7 +61,7 @@ def sections() -> list[Section]:
             "PhysicsEngine",
             "in Environment",
             {"odeproperties": "its `gravity`: x y z [m/s²]"},
-            {"type": "ode, bullet or GenericPhysicsEngine"},
+            environment.PHYSICS_ATTRIBUTES,
             {"(what else is in it, and in odeproperties)": environment.NO_PHYSICS},
         ),
         _section(
@@ -81,7 +81,7 @@ def sections() -> list[Section]:
             "Actuator",
             "in Joint",
             actuator.ACTUATOR_TAGS,
-            {"type": "electric_motor; OpenRAVE refuses others"},
+            actuator.ACTUATOR_ATTRIBUTES,
             actuator.ACTUATOR_IGNORED,
         ),
         _section(

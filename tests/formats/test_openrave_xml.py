@@ -526,6 +526,8 @@ class TestFindings:
             ("<Body name='a'><Translation>1\u00a02 3 4</Translation></Body>", "bad-number", "OpenRAVE reads 1 0 0"),
             ("<Body name='a'><Translation>\uff11 2 3</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
             ("<RotationMat>-1 0 0 0 1 0 0 0 1</RotationMat>", "bad-rotation", "holds no rotation"),
+            ("<Translation unit='mm'>1 2 3</Translation>", "unknown-attribute", "'unit' of <Translation>"),
+            (JOINT.format("", "<actuator kind='x'/>"), "unknown-attribute", "'kind' of <actuator>"),
             ("<RotationAxis>0 0 0 90</RotationAxis>", "bad-rotation", "turns nothing"),
             ("<Body name='a' enable='no'/>", "bad-flag", "counts as true"),
             ("<Body name='a'><Geom render='off'/></Body>", "bad-flag", "counts as true"),
@@ -586,6 +588,10 @@ class TestFindings:
         assert finding.code == code
         assert finding.source.line == 3
         assert words in str(finding)
+
+    def test_geometries_that_are_skipped_have_known_attributes(self, read_text):
+        content = '<Body name="a"><Geom type="box" name="g"/></Body>'
+        assert codes(read_text(f'<KinBody name="b" skipgeometry="true">{content}</KinBody>')) == []
 
     def test_a_second_mesh_file(self, read_text):
         files = "<data>one.stl big</data><data>two.stl</data>"

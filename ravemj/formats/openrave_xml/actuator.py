@@ -31,6 +31,7 @@ ACTUATOR_TAGS: dict[str, Tag[_Data]] = {
     "coloumb_friction": Tag(_Data.read, "[N m] at the joint, in inverse dynamics"),
     "viscous_friction": Tag(_Data.read, "[N m s/rad] at the joint, in inverse dynamics"),
 }
+ACTUATOR_ATTRIBUTES = {"type": "electric_motor; OpenRAVE refuses others"}
 ACTUATOR_IGNORED = reasons(
     "no getter or simulation of ravemj uses it",
     "assigned_power_rating",
@@ -81,6 +82,7 @@ def read_motor(element: Element, context: Context) -> Motor:
     Raises:
         SourceError: it is no electric motor.
     """
+    context.check_attributes(element, ACTUATOR_ATTRIBUTES, {})
     kind = element.attributes.get("type", "electric_motor")
     if kind.lower() != "electric_motor":
         raise SourceError(f"OpenRAVE knows no actuator of type '{kind}'", element.source, "write electric_motor")

@@ -22,6 +22,7 @@ _MOST_ABOVE = 4
 """Folders above a file in which what it names is looked for: robots in repositories lie no deeper."""
 FLAGS = {"enable", "circular", "render", "modifiable", "selfcollision", "skipgeometry"}
 """Attributes that are true or false, of any element."""
+PARAMETER_ATTRIBUTES = {"name": "what scripts ask for", "type": "floats, integers or text"}
 _LONGEST_NAME = 80
 """No known name is anywhere near as long."""
 
@@ -42,6 +43,7 @@ class Context:
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
         self.files: list[str] = []
+        self._checked: dict[int, Element] = {}  # elements whose attributes were looked at, kept so that ids stay theirs
         self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
         self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
@@ -71,6 +73,8 @@ class Context:
                         tag.read(target, child)
                     except ArithmeticError as error:
                         raise uncomputable(child) from error
+                    if child.attributes and not tag.left_out and id(child) not in self._checked:
+                        self.check_attributes(child, {}, {})
             elif child.tag in ignored:
                 self.leave_out(child, ignored[child.tag])
             else:
@@ -95,6 +99,7 @@ class Context:
 
     def check_attributes(self, element: Element, known: Mapping[str, str], ignored: Mapping[str, str]) -> None:
         """Report the attributes of an element that nothing reads; the tables give meanings and reasons."""
+        self._checked[id(element)] = element
         self._check_flags(element)
         if element.attributes.keys() <= known.keys():
             return
@@ -202,6 +207,7 @@ class Context:
 
     def with_parameter(self, before: Parameters, element: Element) -> Parameters:
         """Return some parameters and that of a ``<parameter>``; a broken one is left out, with a warning."""
+        self.check_attributes(element, PARAMETER_ATTRIBUTES, {})
         try:
             return with_parameter(
                 before, element.attributes.get("name", ""), element.attributes.get("type", ""), element.text

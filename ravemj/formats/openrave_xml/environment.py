@@ -298,7 +298,7 @@ ENVIRONMENT_TAGS: dict[str, Tag[_EnvironmentScope]] = {
     **dict.fromkeys(INTERFACES, _INTERFACE),
 }
 ENVIRONMENT_ATTRIBUTES = {"file": "read first, as if its content stood here"}
-PHYSICS_ATTRIBUTES = {"type": "ode, bullet"}
+PHYSICS_ATTRIBUTES = {"type": "ode, bullet or GenericPhysicsEngine"}
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
     "unit": "OpenRAVE keeps it as a label and scales nothing; lengths are in metres here",

@@ -107,6 +107,7 @@ class _Geom(Placed):
 
     def _first(self, before: MeshFile | None, element: Element) -> MeshFile:
         """Return the file that was named before, if any, and else that of an element."""
+        self.context.check_attributes(element, {} if element.tag == "data" else MESH_ATTRIBUTES, {})
         if before is None or not before.name:
             return _mesh_file(element, self.context.diagnostics)
         message = f"<{element.spelled}> is left out: the first file, '{before.name}', counts"
@@ -157,6 +158,9 @@ GEOM_ATTRIBUTES = {
     "modifiable": "false: planners leave it alone",
     "group": "other than `self`: no shape of the link, but one of a set that scripts can swap in",
 }
+
+MESH_ATTRIBUTES = {"file": "the mesh file", "scale": "one to three factors"}
+"""Of ``<Collision>`` and ``<Render>``."""
 
 SIZE_TAGS = {"half_extents": "extents", "cross_section": "crosssection"}
 """Tags of the sizes that are not called like their tag."""
@@ -287,7 +291,7 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
 def _mesh_file(element: Element, diagnostics: Diagnostics) -> MeshFile:
     """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
     name = next(iter(words(element.text)), "")
-    numbers = element.text.lstrip().removeprefix(name)
+    numbers = element.text[element.text.find(name) + len(name) :]
     if element.tag != "data":
         name = element.attributes.get("file", name)
         numbers = element.attributes.get("scale", numbers)

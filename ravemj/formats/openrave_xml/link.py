@@ -5,7 +5,7 @@ from dataclasses import replace
 from ravemj.core.transforms import Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
-from ravemj.formats.openrave_xml.geom import GeometryScope, read_geometries
+from ravemj.formats.openrave_xml.geom import GEOM_ATTRIBUTES, GeometryScope, read_geometries
 from ravemj.formats.openrave_xml.joint import frame_of_link
 from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
 from ravemj.formats.openrave_xml.tags import IGNORED, Tag
@@ -82,6 +82,7 @@ class _LinkScope(Placed):
     def read_geometry(self, element: Element) -> None:
         """Read a ``<Geom>``."""
         if self.skip_geometry:
+            self.context.check_attributes(element, GEOM_ATTRIBUTES, {})
             return
         found = read_geometries(element, self.geometry_scope, self.context)
         group = element.attributes.get("group", OWN_SHAPES)
