@@ -461,3 +461,37 @@ def test_a_command_names_a_goal_that_is_none(robot):
     robot.GetEnv().Add(module, True, robot.GetName())
     with pytest.raises(ravemj.openrave_exception, match="ikparam: '7 1 0' should be a goal"):
         module.SendCommand("MoveToHandPosition ikparam 7 1 0")
+
+
+@pytest.mark.parametrize(
+    ("method", "options", "name"),
+    [
+        ("MoveActiveJoints", {"goal": "abc"}, "goal: 'abc' should be numbers"),
+        ("MoveActiveJoints", {"goal": READY, "maxiter": float("nan")}, "maxiter"),
+        ("MoveActiveJoints", {"goal": READY, "maxtries": "a"}, "maxtries"),
+        ("MoveManipulator", {"goal": READY, "jitter": float("nan")}, "jitter"),
+        ("MoveToHandPosition", {"matrices": 5}, "matrices: is a int, and should be a list"),
+        ("MoveToHandPosition", {"ikparam": 5}, "ikparam: is a int"),
+        ("MoveToHandPosition", {"matrices": [np.eye(4)], "goalsamples": "a"}, "goalsamples"),
+        ("MoveToHandPosition", {"matrices": [np.eye(4)], "goalsampleprob": float("nan")}, "goalsampleprob"),
+        ("MoveHandStraight", {"direction": [0, 0, 1], "maxsteps": float("nan")}, "maxsteps"),
+        ("MoveHandStraight", {"direction": [0, 0, 1], "ignorefirstcollision": float("nan")}, "ignorefirstcollision"),
+        ("MoveUnsyncJoints", {"jointvalues": [0], "jointinds": ["a"]}, "jointinds"),
+        ("JitterActive", {"jitter": "a"}, "jitter"),
+    ],
+)
+def test_a_wrong_argument_is_named(robot, method, options, name):
+    with pytest.raises(ravemj.openrave_exception, match=name):
+        getattr(ravemj.interfaces.BaseManipulation(robot), method)(execute=False, **options)
+
+
+def test_a_goal_in_a_list_of_its_own_is_told_its_shape(robot):
+    with pytest.raises(AssertionError, match=r"goal: has shape \(1, 6\), and should have 6 values"):
+        ravemj.interfaces.BaseManipulation(robot).MoveActiveJoints(goal=[READY], execute=False)
+
+
+@pytest.mark.parametrize("number", ["MaxIterations", "MaxPlanningTime", "StepLength", "RandomGeneratorSeed"])
+@pytest.mark.parametrize("value", [float("nan"), "a", None, [1, 2]])
+def test_parameters_take_finite_numbers_only(number, value):
+    with pytest.raises(ravemj.openrave_exception):
+        getattr(Planner.PlannerParameters(), f"Set{number}")(value)

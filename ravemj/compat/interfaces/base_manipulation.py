@@ -3,13 +3,14 @@
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
 from collections.abc import Sequence
+from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.compat.interfaces.helper import given
+from ravemj.compat.interfaces.helper import given, number, several, whole
 from ravemj.compat.interfaces.trajectory_text import TrajectoryText
-from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
 from ravemj.rave.modules import base_module
@@ -90,9 +91,9 @@ class BaseManipulation(TrajectoryText):
         """
         del steplength, releasegil, usedynamicsconstraints
         dof = self.robot.GetActiveDOF()
-        wanted, starts = _rows(goal, goals, dof), _rows(None, initialconfigs, dof)
+        wanted, starts = _rows("goal", goal, goals, dof), _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
-        search = search_options(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), SearchOptions())
+        search = search_options(_effort(maxiter, maxtries, jitter), SearchOptions())
         traj = self._base.move_active_joints(wanted, search, starts=starts, postprocessing=post)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
@@ -128,8 +129,8 @@ class BaseManipulation(TrajectoryText):
             AssertionError: a goal has not as many values as the arm has joints.
         """
         del steplength, releasegil
-        wanted = _rows(goal, goals, self._base.arm().GetArmDOF())
-        search = search_options(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), SearchOptions())
+        wanted = _rows("goal", goal, goals, self._base.arm().GetArmDOF())
+        search = search_options(_effort(maxiter, maxtries, jitter), SearchOptions())
         return self._done(self._base.move_manipulator(wanted, search), execute, outputtraj, outputtrajobj)
 
     def MoveToHandPosition(
@@ -214,10 +215,7 @@ class BaseManipulation(TrajectoryText):
             >>> basemanip.MoveToHandPosition(matrices=[T_world_tool], constraintfreedoms=[1, 1, 0, 0, 0, 0])
         """
         del affinedofs, steplength, minimumgoalpaths, jittergoal, goalmaxtries, releasegil, freevalues
-        options = given(
-            maxiter=maxiter,
-            maxtries=maxtries,
-            jitter=jitter,
+        options = _effort(maxiter, maxtries, jitter) | given(
             constraintfreedoms=constraintfreedoms,
             constraintmatrix=constraintmatrix,
             constrainttaskmatrix=constrainttaskmatrix,
@@ -225,17 +223,22 @@ class BaseManipulation(TrajectoryText):
             constrainterrorthresh=constrainterrorthresh,
         )
         kind = IkParameterization.Type
-        goals = [IkParameterization(checked_transform(one, "matrices"), kind.Transform6D) for one in matrices or ()]
+        poses = [checked_transform(one, "matrices") for one in several(matrices, "matrices")]
+        goals = [IkParameterization(pose, kind.Transform6D) for pose in poses]
         if translation is not None:
             goals.append(IkParameterization(checked_vector(translation, 3, "translation"), kind.Translation3D))
         if rotation is not None:
             goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
-        goals += [*([ikparam] if ikparam is not None else []), *(ikparams or ())]
+        others = [*([] if ikparam is None else [ikparam]), *several(ikparams, "ikparams")]
+        goals += [checked_kind(one, IkParameterization, "ikparam") for one in others]
+        samples = whole(goalsamples or goalmaxsamples, "goalsamples")
         traj = self._base.move_to_hand_position(
             goals,
             search_options(options, HAND_SEARCH),
-            **given(first=seedik, samples=goalsamples or goalmaxsamples, probability=goalsampleprob),
-            starts=_rows(None, initialconfigs, self._base.arm().GetArmDOF()),
+            **given(
+                first=whole(seedik, "seedik"), samples=samples, probability=number(goalsampleprob, "goalsampleprob")
+            ),
+            starts=_rows("initialconfigs", None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,
         )
         return self._done(traj, execute, outputtraj, outputtrajobj, "1")
@@ -281,8 +284,9 @@ class BaseManipulation(TrajectoryText):
         """
         del greedysearch, maxdeviationangle, steplength, planner
         start = None if starteematrix is None else checked_transform(starteematrix, "starteematrix")
-        options = given(minsteps=minsteps, maxsteps=maxsteps, stepsize=stepsize, starteematrix=start)
-        options |= given(ignorefirstcollision=ignorefirstcollision)
+        options = given(minsteps=whole(minsteps, "minsteps"), maxsteps=whole(maxsteps, "maxsteps"), starteematrix=start)
+        options |= given(stepsize=number(stepsize, "stepsize"))
+        options |= given(ignorefirstcollision=number(ignorefirstcollision, "ignorefirstcollision"))
         options["direction"] = checked_vector(direction, 3, "direction")
         return self._done(straight(self._base, options), execute, outputtraj, outputtrajobj)
 
@@ -315,11 +319,15 @@ class BaseManipulation(TrajectoryText):
             PlanningError: there is no such place.
             AssertionError: there are not as many values as indices, or none.
         """
-        values = np.atleast_1d(np.asarray(jointvalues, dtype=float))
-        indices = [int(index) for index in jointinds]
+        values, indices = (
+            checked_numbers(jointvalues, "jointvalues"),
+            checked_whole_numbers(jointinds, "jointinds").tolist(),
+        )
         if not len(values) == len(indices) > 0:
             raise AssertionError(f"jointvalues: are {len(values)}, and there are {len(indices)} jointinds")
-        options = given(maxtries=maxtries, maxdivision=maxdivision, planner=planner)
+        options = given(
+            maxtries=whole(maxtries, "maxtries"), maxdivision=whole(maxdivision, "maxdivision"), planner=planner
+        )
         return self._done(unsync(self._base, values, indices, options), execute, outputtraj, outputtrajobj)
 
     def JitterActive(
@@ -347,7 +355,7 @@ class BaseManipulation(TrajectoryText):
         Raises:
             PlanningError: there is no such configuration.
         """
-        found = self._base.jitter_active(**given(tries=maxiter, jitter=jitter))
+        found = self._base.jitter_active(**given(tries=whole(maxiter, "maxiter"), jitter=number(jitter, "jitter")))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
     def FindIKWithFilters(
@@ -371,12 +379,16 @@ class BaseManipulation(TrajectoryText):
         raise UnsupportedError("FindIKWithFilters", "inverse kinematics (IK) with filters of its own")
 
 
-def _rows(one: ArrayLike | None, several: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
+def _effort(maxiter: int | None, maxtries: int | None, jitter: float | None) -> dict[str, Any]:
+    """Return the effort of a search, as options."""
+    counts = given(maxiter=whole(maxiter, "maxiter"), maxtries=whole(maxtries, "maxtries"))
+    return counts | given(jitter=number(jitter, "jitter"))
+
+
+def _rows(name: str, one: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
     """Return goals or starts."""
-    rows = [np.atleast_1d(np.asarray(row, dtype=float)) for row in (() if several is None else several)]
-    if one is not None:
-        rows.append(np.atleast_1d(np.asarray(one, dtype=float)))
+    rows = [checked_numbers(row, name) for row in [*several(many, name), *([] if one is None else [one])]]
     for row in rows:
         if row.shape != (dof,) or not dof:
-            raise AssertionError(f"a goal has {row.size} values, and should have {dof}")
+            raise AssertionError(f"{name}: has shape {row.shape}, and should have {dof} values")
     return rows

@@ -1,10 +1,12 @@
 """What the helpers have in common."""
 
 import weakref
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, TypeVar
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
 from ravemj.rave.environment import Environment
 from ravemj.rave.module import Module
@@ -12,6 +14,8 @@ from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT
+
+Thing = TypeVar("Thing")
 
 
 class Helper(ApiObject):
@@ -96,3 +100,33 @@ class Helper(ApiObject):
 def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any kind
     """Return the options that are not None."""
     return {name: value for name, value in options.items() if value is not None}
+
+
+def number(value: float | None, name: str) -> float | None:
+    """Return an option that is a finite number, or None.
+
+    Raises:
+        ArgumentError: it is neither.
+    """
+    return None if value is None else checked_vector([value], 1, name).item()
+
+
+def whole(value: int | None, name: str) -> int | None:
+    """Return an option that is a whole number, or None.
+
+    Raises:
+        ArgumentError: it is neither.
+    """
+    return None if value is None else checked_whole_numbers([value], name).item()
+
+
+def several(values: Iterable[Thing] | None, name: str) -> list[Thing]:
+    """Return an option that is a list; None is an empty one.
+
+    Raises:
+        ArgumentError: it is no list.
+    """
+    if values is None:
+        return []
+    checked_kind(values, Iterable, name, "a list")
+    return list(values)

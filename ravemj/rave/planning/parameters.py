@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.rave.enums import Interval
@@ -187,7 +187,7 @@ class PlannerParameters(ApiObject):
         Args:
             nMaxIterations: The number; 0 selects the planner's own.
         """
-        self.given.numbers["_nmaxiterations"] = int(nMaxIterations)
+        self.given.numbers["_nmaxiterations"] = int(checked_vector([nMaxIterations], 1, "nMaxIterations").item())
 
     def SetMaxPlanningTime(self, nMaxPlanningTime: int) -> None:
         """Set the maximum time of the planner.
@@ -195,7 +195,7 @@ class PlannerParameters(ApiObject):
         Args:
             nMaxPlanningTime: The time [ms]; 0 sets no limit.
         """
-        self.given.numbers["_nmaxplanningtime"] = int(nMaxPlanningTime)
+        self.given.numbers["_nmaxplanningtime"] = int(checked_vector([nMaxPlanningTime], 1, "nMaxPlanningTime").item())
 
     def SetStepLength(self, fStepLength: float) -> None:
         """Set the step length. Retimers round all times up to multiples of it.
@@ -203,7 +203,7 @@ class PlannerParameters(ApiObject):
         Args:
             fStepLength: The step length [s]; 0 leaves the times as they are.
         """
-        self.given.numbers["_fsteplength"] = float(fStepLength)
+        self.given.numbers["_fsteplength"] = checked_vector([fStepLength], 1, "fStepLength").item()
 
     def SetRandomGeneratorSeed(self, seed: int) -> None:
         """Set the seed of random numbers, which makes plans repeatable.
@@ -211,7 +211,7 @@ class PlannerParameters(ApiObject):
         Args:
             seed: The seed.
         """
-        self.given.numbers["_nrandomgeneratorseed"] = int(seed)
+        self.given.numbers["_nrandomgeneratorseed"] = int(checked_vector([seed], 1, "seed").item())
 
     def SetPostProcessing(self, plannername: str, plannerparameters: str) -> None:
         """Choose the planner that processes the path.
