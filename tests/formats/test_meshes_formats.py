@@ -88,7 +88,8 @@ def test_bodies_of_files_without_triangles_are_reported(tmp_path):
 
 
 def test_ply_with_a_comment_in_latin_1(read):
-    text = "ply\nformat ascii 1.0\ncomment caf\xe9\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    text = "ply\nformat ascii 1.0\ncomment caf\xe9\nelement vertex 3\n"
+    text += "property float x\nproperty float y\nproperty float z\n"
     text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
     (part,) = read("mesh.ply", text.encode("latin-1"))
     assert len(part.mesh.triangles) == 1
