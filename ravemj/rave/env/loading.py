@@ -368,7 +368,7 @@ class Loading(Description):
             return self.ReadTrimeshURI(path, atts)
 
     def ReadInterfaceURI(self, filename: Text, atts: Attributes | None = None) -> KinBody | Sensor | None:
-        """Return a robot, a body or a sensor from a file without adding it; files hold no others.
+        """Return a robot, body or sensor from a file without adding it. ravemj reads no other interfaces from files.
 
         Args:
             filename: The file; see ``Load``.
