@@ -161,10 +161,10 @@ def test_what_was_read_is_never_written(folder):
 
 def test_a_target_that_cannot_be_written_is_one_line(folder):
     (folder / "assets").write_text("a file")
-    assert "no folder" in refused(folder, "arm.xml", "-o", "out.xml")
+    assert "not a folder" in refused(folder, "arm.xml", "-o", "out.xml")
     assert "gone" in refused(folder, "arm.xml", "-o", "gone/out.xml")
     assert "gone" in refused(folder, "arm.xml", "-o", "gone/out/")
-    assert "no folder" in refused(folder, "arm.xml", "-o", "assets")
+    assert "not a folder" in refused(folder, "arm.xml", "-o", "assets")
     assert "empty" in refused(folder, "arm.xml", "-o", "", code=2)
     assert "'floating'" in refused(folder, "arm.xml", "--base", "floating", code=2)
 

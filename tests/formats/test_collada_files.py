@@ -1,8 +1,8 @@
 """COLLADA robots of several files, by all the ways to name them, and what the commands make of them."""
 
 import json
+import os
 import runpy
-import sys
 import zipfile
 from pathlib import Path
 
@@ -185,13 +185,15 @@ def peak():
         return next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) * 1024
 
 readers.read_file(sys.argv[1])  # imports
+with open("/proc/self/clear_refs", "w") as counters:
+    counters.write("5")  # the peak is what is held now
 before = peak()
 readers.read_file(sys.argv[2])
 print(peak() - before)
 """
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how much memory a process ever held")
+@pytest.mark.skipif(not os.access("/proc/self/clear_refs", os.W_OK), reason="only Linux says how much memory was held")
 def test_memory_is_bounded_by_the_size_of_the_file(tmp_path):
     script = runpy.run_path(str(MODELS.parent / "scripts" / "models" / "scara.py"))
     script["outline"].__globals__["CORNERS"] = 2000
@@ -200,7 +202,7 @@ def test_memory_is_bounded_by_the_size_of_the_file(tmp_path):
     size = large.stat().st_size
     assert size > 2e6
     taken = int(run(tmp_path, "-c", PEAK, MODELS / "scara.dae", large, variables={"RAVEMJ_CACHE": "off"}).stdout)
-    assert size < taken < 20 * size
+    assert 0 < taken < 20 * size
 
 
 @pytest.fixture
