@@ -31,7 +31,7 @@ _MOST_FRAMES = 1_000_000  # nine hours at 30 frames a second: more is a slip of 
 def play(options: argparse.Namespace) -> int:
     """Play a motion: in a window, or into a video."""
     if options.output is not None:
-        check_file(options.output) if _is_page(options.output) else check_target(options.output)
+        check_file(options.output) if _is_page(options.output) else check_target(options.output, others=[".html"])
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     body = moving_body(env)

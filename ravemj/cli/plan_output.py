@@ -54,7 +54,8 @@ class Plan(NamedTuple):
 def check_output(path: str) -> None:
     """Check that a motion, picture or video can be written to a path, without touching anything."""
     kinds = {**dict.fromkeys(MOTION_SUFFIXES, check_motion_file), **dict.fromkeys(_PICTURES, check_picture)}
-    kinds.get(Path(path).suffix.lower(), check_target)(path)
+    check = kinds.get(Path(path).suffix.lower())
+    check(path) if check else check_target(path, others=kinds)
 
 
 def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> None:

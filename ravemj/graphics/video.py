@@ -54,16 +54,20 @@ _MANY_FRAMES = 300
 _MANY_PIXELS = 100_000_000
 
 
-def check_target(path: AnyPath) -> None:
+def check_target(path: AnyPath, others: Iterable[str] = ()) -> None:
     """Check that a video can be written to a path, without touching anything.
 
     Call it before work that takes long; ``write_frames`` calls it as well.
+
+    Args:
+        path: The target.
+        others: Suffixes of what the caller writes itself, which the error names too.
 
     Raises:
         ArgumentError: The suffix is not one of those in the module's text.
         OutputError: The folder around it is missing or cannot be written, or something is in the way.
     """
-    if _known_suffix(path, VIDEO_FORMATS) == _FOLDER:
+    if _known_suffix(path, VIDEO_FORMATS, others) == _FOLDER:
         check_folder(path, _FILES_OF_FOLDER)
     else:
         check_file(path)
@@ -321,11 +325,11 @@ def _checked(frames: Iterable[Frame]) -> Iterator[Frame]:
         raise ArgumentError("expected one frame or more, found none")
 
 
-def _known_suffix(path: AnyPath, known: Iterable[str]) -> str:
+def _known_suffix(path: AnyPath, known: Iterable[str], others: Iterable[str] = ()) -> str:
     text = os.fspath(path)
     suffix = _FOLDER if text.endswith(("/", os.sep)) else Path(text).suffix.lower()
     if suffix not in known:
-        names = ", ".join(name or "a folder (no suffix or a final /)" for name in known)
+        names = ", ".join(name or "a folder (no suffix or a final /)" for name in (*others, *known))
         found = f"'{suffix}' is none of" if suffix else "its name has no suffix, and should end with one of"
         raise ArgumentError(f"cannot write {text}: {found} {names}")
     return suffix
