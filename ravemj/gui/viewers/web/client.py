@@ -118,6 +118,11 @@ class Client:
         """Whether there is enough to do before more messages are received."""
         return len(self._waiting) > _MOST_AT_ONCE
 
+    @property
+    def is_stalled(self) -> bool:
+        """Whether the page shows nothing of what it is sent, as in a tab that nobody sees."""
+        return self._link.is_stalled
+
     def take_moved(self) -> bool:
         """Return whether people have moved the camera of the page since this was asked last."""
         has_moved, self._has_moved = self._has_moved, False
