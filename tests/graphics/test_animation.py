@@ -201,7 +201,7 @@ class Player:
     def picture(self) -> np.ndarray:
         """Return what is drawn now, crisp."""
         address = self.page.evaluate(
-            "() => { ravemj.sharpness.rest(); ravemj.draw(); return ravemj.canvas.toDataURL(); }"
+            "() => { ravemj.sharpness.isAtRest = true; ravemj.draw(); return ravemj.canvas.toDataURL(); }"
         )
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(address.partition(",")[2]))).convert("RGB"))
 
@@ -246,8 +246,9 @@ def dilated(mask: np.ndarray, pixels: int) -> np.ndarray:
 
 
 def assert_same_silhouette(player: Player, env) -> None:
-    drawn = np.abs(player.picture().astype(int) - BLUE).max(axis=2) > 8
-    expected = silhouette(env, player.camera(), player.size())
+    picture = player.picture()
+    drawn = np.abs(picture.astype(int) - BLUE).max(axis=2) > 8
+    expected = silhouette(env, player.camera(), picture.shape[1::-1])
     assert expected.mean() > 0.005
     assert not (drawn & ~dilated(expected, 2)).any()
     assert not (expected & ~dilated(drawn, 2)).any()
@@ -282,7 +283,8 @@ class TestInABrowser:
             env.drawtrimesh([[-0.4, 0.2, 0], [-0.2, 0.2, 0], [-0.4, 0.3, 0]], [[0, 1, 2]], [0.6, 0.6, 0]),
         ]
         player = opened(env.animation(camera=ABOVE).html)
-        picture, size = player.picture(), player.size()
+        picture = player.picture()
+        size = picture.shape[1::-1]
         for point, colour in (
             ([0.3, 0.1, 0.1], [0, 153, 0]),
             ([-0.3, 0.1, 0.1], [0, 0, 153]),
@@ -302,7 +304,7 @@ class TestInABrowser:
     def test_the_pointer_names_bodies(self, env, robot, opened):
         robot.SetDOFValues([0.5, 0.9])
         player = opened(env.animation(camera=NEAR).html)
-        width, height = player.size()
+        height, width = player.picture().shape[:2]
         compiled = env.simulation.compiled()
         with open_renderer(compiled.model, width, height, backend="ray") as renderer:
             geoms = renderer.segment(compiled.data, player.camera())
