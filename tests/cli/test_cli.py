@@ -642,6 +642,8 @@ BAD_WORDS = [
     ("render env.xml -o a.png --q 1,2,3", 1, "ravemj: error: --q: found 3, expected 2: .*'Pendulum': Joint0, Joint1$"),
     ("convert env.xml -o gone/a.xml", 1, "ravemj: error: .*gone"),
     ("convert env.xml -o a.png", 1, "ravemj: error: cannot write a.png: '.png' is none of .dae, .zae, .json, .xml"),
+    ("plan env.xml --to 1,1 -o a.xyz", 1, "ravemj: error: cannot write .*'.xyz' is none of .csv, .npz, .png, .*.mp4"),
+    ("play env.xml -o a.xyz", 1, "ravemj: error: cannot write a.xyz: '.xyz' is none of .html, .mp4"),
     ("convert env.xml -o .", 1, "ravemj: error: "),
     ("ik puma560 --to 1,2", 1, "ravemj: error: --to: found 2, expected x,y,z,qw,qx,qy,qz"),
     ("ik puma560 --to 0,0,1,0,0,0,0", 1, "ravemj: error: --to: the quaternion"),

@@ -372,6 +372,20 @@ def test_scripts_do_not_wait_for_pages_that_show_nothing(env, viewer):
                 viewer.EnvironmentSync()
 
 
+def test_scripts_do_not_wait_for_tabs_that_nobody_sees(env, viewer, monkeypatch):
+    monkeypatch.setattr(viewers, "_LONGEST_SYNC", math.inf)
+    robot = env.GetRobots()[0]
+    with Page(viewer) as page:
+        page.settled()
+        for angle in (0.5, 1.0):  # two pictures may be under way
+            robot.SetDOFValues([angle, 0])
+            page.receive()
+        Clocks.way += 1
+        robot.SetDOFValues([1.5, 0])
+        with time_limit():
+            viewer.EnvironmentSync()
+
+
 def test_the_title_is_the_viewers(viewer):
     with Page(viewer) as page:
         page.settled()

@@ -295,6 +295,25 @@ def pr2() -> ravemj.Environment:
         return ravemj.load(CORPUS / "models" / "rdiankov+openrave" / "src" / "robots" / "pr2-beta-static.zae")
 
 
+def meshes() -> ravemj.Environment:
+    return ravemj.load(MODELS / "panda.xml")
+
+
+def transparent() -> ravemj.Environment:
+    env = ravemj.load(MODELS / "workshop.env.xml")
+    for link in (link for body in env.GetBodies() for link in body.GetLinks()):
+        for geometry in link.GetGeometries():
+            geometry.SetTransparency(0.5)
+    return env
+
+
+def shift(picture: np.ndarray, expected: np.ndarray) -> np.ndarray:
+    """Return how far a picture has to be moved right and down to fit another best (Lucas and Kanade 1981) [pixels]."""
+    one, other = picture.mean(axis=2), expected.mean(axis=2)
+    down, right = np.gradient((one + other) / 2)
+    return np.linalg.lstsq(np.stack([right.ravel(), down.ravel()], axis=1), (one - other).ravel())[0]
+
+
 def near(mask: np.ndarray) -> np.ndarray:
     """Return which pixels are at most two away from one of a mask."""
     return around(mask[..., None], np.maximum)[..., 0]
@@ -360,6 +379,22 @@ class TestWhatIsSeen:
 
         await_that(lambda: away() <= 0.5, "points are elsewhere")
         del shown
+
+    @pytest.mark.parametrize("desk", [meshes, transparent], indirect=True)
+    def test_pictures_lie_within_half_a_pixel_of_the_servers(self, desk):
+        desk.core.look_from(desk.env.renderer.camera_for_stills(4 / 3))
+        desk.viewer.SetCamera(desk.core.view.camera.T_world_camera)
+        camera = desk.core.view.camera.T_world_camera
+        await_that(lambda: np.allclose(desk.page.evaluate("drawing.answer.position"), camera[:3, 3], atol=1e-5))
+        desk.await_picture()
+        picture, expected = self.seen(desk).astype(float), desk.expected().astype(float)
+        tiles = [(slice(row, row + 240), slice(column, column + 320)) for row in (0, 240) for column in (0, 320)]
+        edges = [np.abs(np.diff(expected[tile], axis=0)).sum() for tile in tiles]
+        for tile, edge in zip(tiles, edges, strict=True):
+            if edge > 0.1 * max(edges):
+                assert np.abs(shift(picture[tile], expected[tile])).max() < 0.5
+        moved = np.roll(picture, (1, -1), axis=(0, 1))
+        assert shift(moved, picture) == pytest.approx([1, -1], abs=0.5)  # it would be noticed
 
     def test_drawings_and_what_shines_through_others_look_as_the_servers(self, desk):
         corners = np.array([[0.3, 0.3, 0.2], [0.2, -0.25, 0.1], [-0.3, 0.1, -0.1], [0.3, -0.3, 0.2], [0.1, 0.2, 0.3]])

@@ -241,7 +241,7 @@ class _RayScene:
         return two_walls[geom_ids]
 
     def _opacity(self, geom_ids: NDArray[np.int32]) -> Floats:
-        """Return how much of what is behind is covered: OpenGL draws the back wall of a shape, then the front."""
+        """Return how much of what is behind is covered: MuJoCo draws the front of a shape twice."""
         walls = 1 + self._has_two_walls(geom_ids)
         return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
 

@@ -15,6 +15,9 @@ Triangles = NDArray[np.uint32]
 _SLICES, _STACKS = 40, 20
 """Facets around and along round shapes."""
 
+_SHARP = 0.8
+"""MuJoCo draws a corner with its own normal if the cosine between that and the face's is at least this much."""
+
 _PLANE = 1000.0
 """Half the side of a plane that has no end [m]."""
 
@@ -130,18 +133,20 @@ def _mesh(model: mujoco.MjModel, kind: int, data: int, size: Floats) -> Mesh:
 def _mesh_of_model(model: mujoco.MjModel, number: int) -> Mesh:
     """Return a mesh as MuJoCo draws it; corners with several normals are there several times."""
     first, count = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
-    faces = model.mesh_face[first : first + count].reshape(-1).astype(np.int64)
-    normals = model.mesh_facenormal[first : first + count].reshape(-1).astype(np.int64)
-    pairs, corners = np.unique(faces * (normals.max(initial=0) + 1) + normals, return_inverse=True)
-    _, representatives = np.unique(corners, return_index=True)
-    del pairs
-    at = int(model.mesh_vertadr[number]) + faces[representatives]
-    towards = int(model.mesh_normaladr[number]) + normals[representatives]
-    return Mesh(
-        model.mesh_vert[at].astype(np.float64),
-        model.mesh_normal[towards].astype(np.float64),
-        corners.reshape(-1, 3).astype(np.uint32),
-    )
+    vertices = model.mesh_face[first : first + count].astype(np.int64)
+    towards = model.mesh_facenormal[first : first + count].astype(np.int64)
+    positions = model.mesh_vert[int(model.mesh_vertadr[number]) :][: int(vertices.max()) + 1].astype(np.float64)
+    smooth = model.mesh_normal[int(model.mesh_normaladr[number]) :][: int(towards.max()) + 1].astype(np.float64)
+    sides = positions[vertices]
+    flat = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+    flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-12)
+    is_flat = (smooth[towards] * flat[:, None]).sum(axis=2) < _SHARP
+    planes, plane = np.unique(flat.round(3), axis=0, return_inverse=True)  # faces in one plane share corners
+    normals = np.concatenate([smooth, planes])
+    towards = np.where(is_flat, len(smooth) + plane.reshape(-1, 1), towards)
+    pairs, corners = np.unique(vertices * len(normals) + towards, return_inverse=True)
+    vertex, normal = np.divmod(pairs, len(normals))
+    return Mesh(positions[vertex], normals[normal], corners.reshape(-1, 3).astype(np.uint32))
 
 
 def _has_hull(model: mujoco.MjModel, geom: int) -> bool:

@@ -21,7 +21,7 @@ function summed(differences) {
   return sums;
 }
 
-/** The opacity of a side of what is clear: its back and its front are drawn. */
+/** The opacity with which something clear is drawn twice. */
 const opacity = (both) => 1 - Math.sqrt(1 - Math.min(both, 1));
 
 /** The columns of a quantized array, each with whole numbers, its least number and its step. */
@@ -344,14 +344,13 @@ class Renderer {
     gl.disable(gl.BLEND);
   }
 
-  /** Draw what is clear as MuJoCo does: first backs from the nearest to the farthest, then fronts the other way round. */
+  /** Draw what is clear as MuJoCo does: fronts twice, from the nearest to the farthest and the other way round. */
   drawClear(shapes, { position }, marked) {
     const { gl } = this;
     const distance = ({ world, center = [world[3], world[7], world[11]], reach }) => (
       Math.hypot(...position.map((part, i) => part - center[i])) - reach);
     const sorted = shapes.map((shape) => [distance(shape), shape]).sort(([a], [b]) => a - b);
-    for (const hidden of [gl.FRONT, gl.BACK]) {
-      gl.cullFace(hidden);
+    for (let pass = 0; pass < 2; pass++) {
       for (const [, shape] of sorted) {
         gl[shape.isFlat ? "disable" : "enable"](gl.CULL_FACE);
         this.drawShape(shape, this.tinted(shape, marked));

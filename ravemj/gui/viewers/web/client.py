@@ -118,6 +118,11 @@ class Client:
         """How long to wait for messages [s]; 0: there is enough to do before more are received."""
         return 0.0 if len(self._waiting) > _MOST_AT_ONCE else period(time.monotonic() - self._changed_at)
 
+    @property
+    def is_stalled(self) -> bool:
+        """Whether the page shows nothing of what it is sent, as in a tab that nobody sees."""
+        return self._link.is_stalled
+
     def take_moved(self) -> bool:
         """Return whether people have moved the camera of the page since this was asked last."""
         has_moved, self._has_moved = self._has_moved, False

@@ -10,6 +10,9 @@ _UNDER_WAY = 2
 _SLOW, _FAST = 0.15, 0.05
 """A picture that takes so much longer than the quickest one lowers the quality, or raises it [s]."""
 
+_STALLED = 0.5
+"""A picture that is under way for longer [s] is in a tab that nobody sees, or on a way that scripts do not wait for."""
+
 _DROP, _RISE = 0.7, 0.05
 _WORST, _BEST = 25, 85
 _GOOD, _HALF = 0.5, 0.4
@@ -31,6 +34,11 @@ class Link:
     def is_free(self) -> bool:
         """Whether the page takes another picture now."""
         return self._is_there and len(self._sent) < _UNDER_WAY
+
+    @property
+    def is_stalled(self) -> bool:
+        """Whether the page has shown nothing for long, although it was sent something."""
+        return len(self._sent) > 0 and self._clock() - self._sent[0][0] > _STALLED
 
     @property
     def is_good(self) -> bool:

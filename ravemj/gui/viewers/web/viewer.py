@@ -101,9 +101,12 @@ class WebViewer(Viewer):
                 interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
 
     def EnvironmentSync(self) -> None:
-        """Wait until all pages were sent the environment as it is now; half a second at most, where one is slow."""
+        """Wait until all pages were sent the environment as it is now; half a second at most, where one is slow.
+
+        Tabs that nobody sees are not waited for.
+        """
         with self._lock:
-            looks = {client: client.looks for client in self._clients.values()}
+            looks = {client: client.looks for client in self._clients.values() if not client.is_stalled}
         end = time.monotonic() + _LONGEST_SYNC
         # the look that is under way may have begun before
         while any(client.looks < before + 2 for client, before in looks.items()) and time.monotonic() < end:

@@ -138,12 +138,10 @@ class Drawing {
   }
 
   pinched(view, { x, y, right, down, spread }, height) {
-    const across = x - 0.5 * height * this.aspect, along = y - 0.5 * height;
+    const across = x - 0.5 * paint.canvas.clientWidth, along = y - 0.5 * height;
     return view.zoomed(-Math.log(spread))
       .shifted(across - spread * (across - right), along - spread * (along - down), height);
   }
-
-  get aspect() { return canvas.width / canvas.height; }
 }
 
 let isNews = false, unanswered = 0, requested = 0;
