@@ -9,7 +9,9 @@ import numpy as np
 
 from ravemj.cli.arms import add_ghost
 from ravemj.cli.pictures import explain_rays, write_video
+from ravemj.cli.shared_options import VIDEOS
 from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.simulation_renderer import Format
 from ravemj.graphics.video import check_picture, check_target, write_picture
@@ -54,7 +56,11 @@ class Plan(NamedTuple):
 def check_output(path: str) -> None:
     """Check that a motion, picture or video can be written to a path, without touching anything."""
     kinds = {**dict.fromkeys(MOTION_SUFFIXES, check_motion_file), **dict.fromkeys(_PICTURES, check_picture)}
-    kinds.get(Path(path).suffix.lower(), check_target)(path)
+    try:
+        kinds.get(Path(path).suffix.lower(), check_target)(path)
+    except ArgumentError:
+        known = f"{', '.join(MOTION_SUFFIXES)} (a motion), {', '.join(_PICTURES)} (a picture), {VIDEOS} (a video)"
+        raise ArgumentError(f"cannot write {path}: its name should end with one of {known}") from None
 
 
 def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> None:
