@@ -25,15 +25,18 @@ class ApiObject(metaclass=_ApiType):
     _internal: ClassVar[tuple[str, ...]] = ()
 
     _names_wrong_arguments: ClassVar[bool] = True
+    _checking: ClassVar[frozenset[str]] = frozenset()
+    """Names of methods of hot loops. They check their arguments themselves, so nothing is laid around them."""
 
     def __init_subclass__(cls, **kwargs: object) -> None:
         """Let the public methods that take arguments name one of a wrong type; see ``argument_errors``."""
         super().__init_subclass__(**kwargs)
         if not cls._names_wrong_arguments:
             return
+        skipped = {*cls._internal, *cls._checking}
         public: dict[FunctionType, Callable[..., Any]] = {}  # a method with two names stays one
         for name, method in tuple(vars(cls).items()):
-            if isinstance(method, FunctionType) and name[0] != "_" and name not in cls._internal and _takes(method):
+            if isinstance(method, FunctionType) and name[0] != "_" and name not in skipped and _takes(method):
                 public[method] = public.get(method) or explained(method)
                 setattr(cls, name, public[method])
 

@@ -88,7 +88,7 @@ def _message(method: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
     for name, value in tuple(given.arguments.items())[1:]:  # without the object itself
         kinds = _kinds(given.signature.parameters[name].annotation)
         if not any(_is_of(value, kind) for kind in kinds):
-            found = "None" if value is None else f"a {type(value).__name__}"
+            found = "None" if value is None else f"of type {type(value).__name__}"
             wanted = " or ".join(dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else f"a {kind}" for kind in kinds))
             return f"{method.__name__}: {name}: is {found}, and should be {wanted}"
     return None

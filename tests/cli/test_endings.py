@@ -13,7 +13,9 @@ import pytest
 from command_line import PACKAGE_ROOT, PATIENCE, environment, heed_interrupts, on_terminal, ravemj_command, run
 
 from ravemj.cli import main
+from ravemj.cli.plan_output import check_output
 from ravemj.core import output, signals
+from ravemj.errors import ArgumentError
 
 MODEL = PACKAGE_ROOT / "models" / "double-pendulum.xml"
 PLAY = ("play", str(MODEL), "--size", "96x72", "--duration", "1000", "-o")
@@ -350,3 +352,9 @@ def test_scripts_have_signals_as_in_python(tmp_path):
     (tmp_path / "script.py").write_text(SCRIPT)
     done = ravemj_command(tmp_path, "run", "script.py")
     assert (done.returncode, done.stdout) == (-15, "caught\ncaught\n-15\n")
+
+
+@pytest.mark.parametrize("name", ["motion.xyz", "motion.html", "motion.txt"])
+def test_plan_names_all_that_it_writes(name):
+    with pytest.raises(ArgumentError, match=r"\.csv, \.npz \(a motion\), \.png.* \(a picture\), \.mp4.* \(a video\)"):
+        check_output(name)

@@ -29,28 +29,28 @@ MISTAKES = {
     "backwards": (lambda env, robot: env.StepSimulation(-1), "timestep is -1, .* 0 s or more"),
     "axis": (
         lambda env, robot: robot.GetJoints()[0].GetMaxVel([]),
-        "GetMaxVel: axis: is a list, and should be a whole",
+        "GetMaxVel: axis: is of type list, and should be a whole",
     ),
     "key": (
         lambda env, robot: robot.GetJoints()[0].SetStringParameters([], "x"),
-        "key: is a list, and should be a text",
+        "key: is of type list, and should be a text",
     ),
     "leader": (
         lambda env, robot: robot.GetJoints()[0].SetMimicEquations(0, 3),
-        "poseq: is a int, and should be a text",
+        "poseq: is of type int, and should be a text",
     ),
     "command": (lambda env, robot: robot.SupportsCommand(None), "SupportsCommand: cmd: is None, and should be a text"),
-    "info": (lambda env, robot: robot.UpdateFromKinBodyInfo(3), "info: is a int, and should be a KinBodyInfo"),
+    "info": (lambda env, robot: robot.UpdateFromKinBodyInfo(3), "info: is of type int, and should be a KinBodyInfo"),
     "name for body": (lambda env, robot: env.Remove("PUMA560"), "Remove: takes a body, .* not a str"),
     "add mode": (lambda env, robot: env.Add(robot, "x"), "addMode is 'x', and should be True, False or an Interface"),
     "callback": (lambda env, robot: env.RegisterBodyCallback(3), "callback is 3, and should be a function"),
     "false checker": (
         lambda env, robot: env.SetCollisionChecker(""),
-        "collisionchecker: is a str, and should be a Coll",
+        "collisionchecker: is of type str, and should be Coll",
     ),
     "new name": (
         lambda env, robot: env.TriangulateScene(options=[]),
-        "TriangulateScene: options: is a list, and should be a whole number",
+        "TriangulateScene: options: is of type list, and should be a whole number",
     ),
     "engine": (lambda env, robot: env.SetPhysicsEngine("newton"), "no physics engine 'newton'; there are ode, bullet"),
 }
