@@ -8,6 +8,26 @@ from typing import Any, ClassVar
 from ravemj.core.argument_errors import explained
 
 
+_HOT = frozenset(
+    {
+        "CheckCollision",
+        "CheckSelfCollision",
+        "ComputeInverseDynamics",
+        "ComputeJacobianAxisAngle",
+        "ComputeJacobianTranslation",
+        "GetDOFLimits",
+        "GetDOFValues",
+        "GetDOFVelocities",
+        "GetJoint",
+        "GetLink",
+        "SetActiveDOFValues",
+        "SetDOFValues",
+        "SetTransform",
+    }
+)
+"""Methods that loops call all the time. They check their arguments themselves; a wrapper would cost 0.1 µs a call."""
+
+
 class _ApiType(type):
     """Gives classes the same ``dir`` as their objects: IPython completes an object by the union of both."""
 
@@ -25,15 +45,13 @@ class ApiObject(metaclass=_ApiType):
     _internal: ClassVar[tuple[str, ...]] = ()
 
     _names_wrong_arguments: ClassVar[bool] = True
-    _checking: ClassVar[frozenset[str]] = frozenset()
-    """Names of methods of hot loops. They check their arguments themselves, so nothing is laid around them."""
 
     def __init_subclass__(cls, **kwargs: object) -> None:
         """Let the public methods that take arguments name one of a wrong type; see ``argument_errors``."""
         super().__init_subclass__(**kwargs)
         if not cls._names_wrong_arguments:
             return
-        skipped = {*cls._internal, *cls._checking}
+        skipped = {*cls._internal, *_HOT}
         public: dict[FunctionType, Callable[..., Any]] = {}  # a method with two names stays one
         for name, method in tuple(vars(cls).items()):
             if isinstance(method, FunctionType) and name[0] != "_" and name not in skipped and _takes(method):
