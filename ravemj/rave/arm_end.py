@@ -90,7 +90,11 @@ class ArmEnd(ArmPart):
     SetClosingDirection = SetChuckingDirection
 
     def IsGrabbing(self, body: "KinBody") -> bool:
-        """Return whether the effector, or a link beyond it, holds a body."""
+        """Return whether the effector, or a link beyond it, holds a body.
+
+        Args:
+            body: The body.
+        """
         return self._robot.IsGrabbing(body) in self.GetChildLinks()
 
     def ReleaseAllGrabbed(self) -> None:

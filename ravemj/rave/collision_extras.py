@@ -118,12 +118,20 @@ class CheckerExtras(Interface):
         return self._env.CheckCollisionRays(rays, body, front_facing_only)
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; nothing needs to be prepared."""
+        """Return True; nothing needs to be prepared.
+
+        Args:
+            body: The body.
+        """
         del body
         return True
 
     def RemoveKinBody(self, body: "KinBody") -> None:
-        """Do nothing; OpenRAVE's checkers free memory here."""
+        """Do nothing; OpenRAVE's checkers free memory here.
+
+        Args:
+            body: The body.
+        """
 
     def SetGeometryGroup(self, groupname: str) -> None:
         """Take a group of geometries in place of those that links have, for all bodies.
@@ -157,5 +165,9 @@ class CheckerExtras(Interface):
         return found
 
     def GetBodyGeometryGroup(self, body: "KinBody") -> str:
-        """Return the group that is taken for a body; empty: the geometries that its links have."""
+        """Return the group that is taken for a body; empty: the geometries that its links have.
+
+        Args:
+            body: The body.
+        """
         return self.groups.of(body.simulation_state)

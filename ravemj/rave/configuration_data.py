@@ -147,7 +147,11 @@ class ConfigurationData(ApiObject):
 
     @also_named(env="body")
     def ExtractUsedIndices(self, body: "KinBody") -> tuple[Ints, Ints]:
-        """Return the DOF indices of a body that there are, and where in the configuration."""
+        """Return the DOF indices of a body that there are, and where in the configuration.
+
+        Args:
+            body: The body.
+        """
         indices, places = extraction.used_indices(self._groups, body.GetName())
         return np.array(indices, dtype=np.int_), np.array(places, dtype=np.int_)
 

@@ -10,7 +10,11 @@ if TYPE_CHECKING:
 
 
 class Devices:
-    """One sensor object for each attached sensor of a robot, made when it is first used."""
+    """One sensor object for each attached sensor of a robot, made when it is first used.
+
+    Args:
+        robot: The robot.
+    """
 
     def __init__(self, robot: "Robot") -> None:
         self._robot = robot

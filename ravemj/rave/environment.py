@@ -242,7 +242,11 @@ def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the
 
 
 def RaveGetEnvironmentId(env: Environment) -> int:
-    """Return the environment's number, as ``RaveGetEnvironment`` takes it."""
+    """Return the environment's number, as ``RaveGetEnvironment`` takes it.
+
+    Args:
+        env: The environment.
+    """
     return checked_environment(env, "RaveGetEnvironmentId").GetId()
 
 

@@ -52,7 +52,11 @@ class IkReturn(ApiObject):
         self._solution = checked_numbers(solution, "SetSolution: solution")
 
     def GetMapData(self, key: str) -> Floats | None:
-        """Return the numbers under a name, shape (k,), or None."""
+        """Return the numbers under a name, shape (k,), or None.
+
+        Args:
+            key: The name.
+        """
         return self._map[key].copy() if key in self._map else None
 
     def GetMapDataDict(self) -> dict[str, Floats]:

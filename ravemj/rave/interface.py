@@ -58,7 +58,11 @@ class Interface(ReadableInterface):
         return self.annotations.description
 
     def SetDescription(self, description: str) -> None:
-        """Attach a text."""
+        """Attach a text.
+
+        Args:
+            description: The text.
+        """
         self.annotations.description = str(description)
 
     SetUserData = SetUserData
@@ -82,7 +86,11 @@ class Interface(ReadableInterface):
         self._readables = ref.GetReadableInterfaces()
 
     def SupportsJSONCommand(self, cmd: str) -> bool:
-        """Return whether ``SendJSONCommand`` knows a command: none."""
+        """Return whether ``SendJSONCommand`` knows a command: none.
+
+        Args:
+            cmd: The name of the command.
+        """
         del cmd
         return False
 

@@ -213,7 +213,11 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
             self._state.grabs = []
 
     def ReleaseAllGrabbedWithLink(self, grablink: Link) -> None:
-        """Let go of all bodies that one link holds."""
+        """Let go of all bodies that one link holds.
+
+        Args:
+            grablink: The link.
+        """
         index = self._own_link(grablink, "ReleaseAllGrabbedWithLink")
         with self._simulation.lock:
             self._state.grabs = [grab for grab in self._state.grabs if grab.link != index]

@@ -100,7 +100,11 @@ class Link(LinkGeometries):
         return [self._other(link) for link in chains.parents(self._state.scene, self._index)]
 
     def IsParentLink(self, link: "Link") -> bool:
-        """Return whether another link is a parent of this one."""
+        """Return whether another link is a parent of this one.
+
+        Args:
+            link: The other link.
+        """
         return link in self.GetParentLinks()
 
     def GetRigidlyAttachedLinks(self) -> "list[Link]":
@@ -108,7 +112,11 @@ class Link(LinkGeometries):
         return [self._other(link) for link in chains.rigidly_attached(self._state.scene, self._index)]
 
     def IsRigidlyAttached(self, link: "Link") -> bool:
-        """Return whether no joint moves another link relative to this one."""
+        """Return whether no joint moves another link relative to this one.
+
+        Args:
+            link: The other link.
+        """
         return link in self.GetRigidlyAttachedLinks()
 
     def _other(self, index: int) -> "Link":

@@ -265,7 +265,11 @@ class LinkGeometries(Member):
         return enclosing_box(link_bounds(self.scene_with_group(geomgroupname), T_a_link), T_a_link)
 
     def ComputeLocalAABBForGeometryGroup(self, geomgroupname: str) -> AABB:
-        """Return the bounding box of a group of geometries in the link frame."""
+        """Return the bounding box of a group of geometries in the link frame.
+
+        Args:
+            geomgroupname: The name of the group.
+        """
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4))
 
     def ComputeLocalAABB(self) -> AABB:

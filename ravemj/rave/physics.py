@@ -110,7 +110,11 @@ class PhysicsEngine(Interface):
         """Do nothing. OpenRAVE's engines free their memory here."""
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; the engine needs no preparation."""
+        """Return True; the engine needs no preparation.
+
+        Args:
+            body: The body.
+        """
         del body
         return True
 
@@ -141,7 +145,11 @@ class PhysicsEngine(Interface):
         return True
 
     def GetLinkVelocities(self, body: "KinBody") -> Floats:
-        """Return the velocities of all links of a body, shape (links, 6); see ``body.GetLinkVelocities``."""
+        """Return the velocities of all links of a body, shape (links, 6); see ``body.GetLinkVelocities``.
+
+        Args:
+            body: The body.
+        """
         return body.GetLinkVelocities()
 
     def SetLinkVelocities(self, body: "KinBody", velocities: ArrayLike) -> bool:

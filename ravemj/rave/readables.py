@@ -57,7 +57,11 @@ class ReadableInterface(ApiObject):
     _readables: dict[str, Readable] | None = None
 
     def GetReadableInterface(self, id: str) -> Readable | None:
-        """Return the value under an id, or None."""
+        """Return the value under an id, or None.
+
+        Args:
+            id: The id.
+        """
         return (self._readables or {}).get(id)
 
     def GetReadableInterfaces(self) -> dict[str, Readable]:
@@ -80,7 +84,12 @@ class stringreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringReadable(id: str, data: str) -> Readable:
-        """Return a text under an id."""
+        """Return a text under an id.
+
+        Args:
+            id: The id.
+            data: The text.
+        """
         return Readable(id, str(data))
 
 
@@ -89,12 +98,21 @@ class xmlreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
-        """Return a text under an id."""
+        """Return a text under an id.
+
+        Args:
+            xmlid: The id.
+            data: The text.
+        """
         return Readable(xmlid, str(data))
 
 
 class SerializableData(ApiObject):
-    """A text that scripts attach and read back."""
+    """A text that scripts attach and read back.
+
+    Args:
+        data: The text.
+    """
 
     def __init__(self, data: str = "") -> None:
         self._data = data
@@ -109,7 +127,11 @@ class SerializableData(ApiObject):
         return self._data
 
     def Deserialize(self, data: str) -> None:
-        """Set the text."""
+        """Set the text.
+
+        Args:
+            data: The text.
+        """
         self._data = data
 
     def Close(self) -> None:

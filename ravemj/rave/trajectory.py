@@ -297,7 +297,11 @@ class Trajectory(Interface):
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
 
     def Swap(self, traj: "Trajectory") -> None:
-        """Exchange layout and waypoints with another trajectory."""
+        """Exchange layout and waypoints with another trajectory.
+
+        Args:
+            traj: The other trajectory.
+        """
         self._waypoints, traj._waypoints = traj._waypoints, self._waypoints
 
     def serialize(self, options: int | None = 0) -> bytes:

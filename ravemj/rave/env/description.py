@@ -62,7 +62,11 @@ class Description(Simulating):
         return self.annotations.description
 
     def SetDescription(self, sceneDescription: str) -> None:
-        """Set a description for people."""
+        """Set a description for people.
+
+        Args:
+            sceneDescription: The text.
+        """
         self.annotations.description = str(sceneDescription)
 
     SetUserData = SetUserData
@@ -104,7 +108,11 @@ class Description(Simulating):
         self._numbers[str(parameterName)] = int(value)
 
     def RemoveUInt64Parameter(self, parameterName: str) -> bool:
-        """Remove the integer of a name, and return whether there was one."""
+        """Remove the integer of a name, and return whether there was one.
+
+        Args:
+            parameterName: The name.
+        """
         return self._numbers.pop(parameterName, None) is not None
 
     def GetHomeDirectory(self) -> str:
