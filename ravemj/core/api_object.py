@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 
 from ravemj.core.argument_errors import explained
 
-
 _HOT = frozenset(
     {
         "CheckCollision",
@@ -18,8 +17,6 @@ _HOT = frozenset(
         "GetDOFLimits",
         "GetDOFValues",
         "GetDOFVelocities",
-        "GetJoint",
-        "GetLink",
         "SetActiveDOFValues",
         "SetDOFValues",
         "SetTransform",

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
 from functools import wraps
-from inspect import formatannotation, signature
+from inspect import Parameter, formatannotation, signature
 from types import EllipsisType, FunctionType, MappingProxyType, NoneType
 from typing import Any, cast
 
@@ -86,7 +86,10 @@ def _message(method: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
     except TypeError:  # its message names the argument that is missing or unknown
         return None
     for name, value in tuple(given.arguments.items())[1:]:  # without the object itself
-        kinds = _kinds(given.signature.parameters[name].annotation)
+        parameter = given.signature.parameters[name]
+        if parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
+            continue
+        kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             found = "None" if value is None else f"of type {type(value).__name__}"
             wanted = " or ".join(dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else f"a {kind}" for kind in kinds))

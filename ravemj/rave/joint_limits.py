@@ -47,7 +47,7 @@ class JointLimits(Member):
         return -limits, limits
 
     def SetVelocityLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the velocity limits, the same in both directions [rad/s or m/s], shape (axes,)."""
+        """Set ``maxlimits``, the velocity limits, the same in both directions [rad/s or m/s], shape (axes,)."""
         self._set_axes("SetVelocityLimits", max_velocity=maxlimits)
 
     def GetAccelerationLimits(self) -> Floats:
@@ -55,7 +55,7 @@ class JointLimits(Member):
         return self._of_axes("max_acceleration")
 
     def SetAccelerationLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (axes,)."""
+        """Set ``maxlimits``, the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (axes,)."""
         self._set_axes("SetAccelerationLimits", max_acceleration=maxlimits)
 
     def GetJerkLimits(self) -> Floats:
@@ -63,7 +63,7 @@ class JointLimits(Member):
         return self._of_axes("max_jerk")
 
     def SetJerkLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the jerk limits, the same in both directions [rad/s^3 or m/s^3], shape (axes,)."""
+        """Set ``maxlimits``, the jerk limits, the same in both directions [rad/s^3 or m/s^3], shape (axes,)."""
         self._set_axes("SetJerkLimits", max_jerk=maxlimits)
 
     def GetHardVelocityLimits(self) -> Floats:
@@ -71,7 +71,7 @@ class JointLimits(Member):
         return self._of_axes("hard_max_velocity")
 
     def SetHardVelocityLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the velocities that planners never exceed [rad/s or m/s], shape (axes,); 0: none."""
+        """Set ``maxlimits``, the velocities that planners never exceed [rad/s or m/s], shape (axes,); 0: none."""
         self._set_axes("SetHardVelocityLimits", hard_max_velocity=maxlimits)
 
     def GetHardAccelerationLimits(self) -> Floats:
@@ -79,7 +79,7 @@ class JointLimits(Member):
         return self._of_axes("hard_max_acceleration")
 
     def SetHardAccelerationLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (axes,); 0: none."""
+        """Set ``maxlimits``, accelerations that planners never exceed [rad/s^2 or m/s^2], shape (axes,); 0: none."""
         self._set_axes("SetHardAccelerationLimits", hard_max_acceleration=maxlimits)
 
     def GetHardJerkLimits(self) -> Floats:
@@ -87,7 +87,7 @@ class JointLimits(Member):
         return self._of_axes("hard_max_jerk")
 
     def SetHardJerkLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the jerks that planners never exceed [rad/s^3 or m/s^3], shape (axes,); 0: none."""
+        """Set ``maxlimits``, the jerks that planners never exceed [rad/s^3 or m/s^3], shape (axes,); 0: none."""
         self._set_axes("SetHardJerkLimits", hard_max_jerk=maxlimits)
 
     def GetTorqueLimits(self) -> Floats:
@@ -95,35 +95,35 @@ class JointLimits(Member):
         return self._of_axes("max_torque")
 
     def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:
-        """Set the torque or force limits [N m or N], shape (axes,)."""
+        """Set ``maxlimits``, the torque or force limits [N m or N], shape (axes,)."""
         self._set_axes("SetTorqueLimits", max_torque=maxlimits)
 
     def GetMaxVel(self, axis: int = 0) -> float:
-        """Return the velocity limit [rad/s or m/s]."""
+        """Return the velocity limit of ``axis`` [rad/s or m/s]."""
         return self._axis(axis).max_velocity
 
     def GetMaxAccel(self, axis: int = 0) -> float:
-        """Return the acceleration limit [rad/s^2 or m/s^2]."""
+        """Return the acceleration limit of ``axis`` [rad/s^2 or m/s^2]."""
         return self._axis(axis).max_acceleration
 
     def GetMaxJerk(self, axis: int = 0) -> float:
-        """Return the jerk limit [rad/s^3 or m/s^3]."""
+        """Return the jerk limit of ``axis`` [rad/s^3 or m/s^3]."""
         return self._axis(axis).max_jerk
 
     def GetHardMaxVel(self, axis: int = 0) -> float:
-        """Return the velocity that planners never exceed [rad/s or m/s]; 0 if none is set."""
+        """Return the velocity of ``axis`` that planners never exceed [rad/s or m/s]; 0 if none is set."""
         return self._axis(axis).hard_max_velocity
 
     def GetHardMaxAccel(self, axis: int = 0) -> float:
-        """Return the acceleration that planners never exceed [rad/s^2 or m/s^2]; 0 if none is set."""
+        """Return the acceleration of ``axis`` that planners never exceed [rad/s^2 or m/s^2]; 0 if none is set."""
         return self._axis(axis).hard_max_acceleration
 
     def GetHardMaxJerk(self, axis: int = 0) -> float:
-        """Return the jerk that planners never exceed [rad/s^3 or m/s^3]; 0 if none is set."""
+        """Return the jerk of ``axis`` that planners never exceed [rad/s^3 or m/s^3]; 0 if none is set."""
         return self._axis(axis).hard_max_jerk
 
     def GetMaxTorque(self, axis: int = 0) -> float:
-        """Return the torque or force limit [N m or N]; 0 where the file says nothing."""
+        """Return the torque or force limit of ``axis`` [N m or N]; 0 where the file says nothing."""
         return self._axis(axis).max_torque
 
     def GetWeights(self) -> Floats:
@@ -131,7 +131,7 @@ class JointLimits(Member):
         return self._of_axes("weight")
 
     def GetWeight(self, axis: int = 0) -> float:
-        """Return the weight in distances between configurations."""
+        """Return the weight of ``axis`` in distances between configurations."""
         return self._axis(axis).weight
 
     def SetWeights(self, weights: ArrayLike) -> None:
@@ -145,7 +145,7 @@ class JointLimits(Member):
         return self._of_axes("resolution")
 
     def GetResolution(self, axis: int) -> float:
-        """Return the step of planners [rad or m]."""
+        """Return the step of planners along ``axis`` [rad or m]."""
         return self._axis(axis).resolution
 
     def SetResolution(self, resolution: float) -> None:

@@ -199,7 +199,9 @@ def test_modules_are_refused_and_none_is_there(env):
         with pytest.raises(ravemj.openrave_exception, match="module: is of type str"):
             add("urdf", args="")
     assert env.GetModules() == env.GetLoadedProblems() == []
-    assert env.RemoveProblem(object()) is env.Remove(object()) is False
+    for wrong in (object(), "urdf"):
+        with pytest.raises(ravemj.openrave_exception, match="takes a body, a sensor, a module or a viewer"):
+            env.RemoveProblem(wrong)
     with pytest.raises(ravemj.openrave_exception, match="None"):
         env.RemoveProblem(None)
 

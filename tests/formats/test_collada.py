@@ -367,7 +367,7 @@ class TestFiles:
 
     def test_no_archive(self, tmp_path):
         (tmp_path / "arm.zae").write_bytes(b"PK nothing")
-        assert "no zip archive" in str(read_file(tmp_path / "arm.zae").failure)
+        assert "not a zip archive" in str(read_file(tmp_path / "arm.zae").failure)
 
     def test_references_to_other_files(self, tmp_path, monkeypatch):
         monkeypatch.setenv("OPENRAVE_DATA", str(tmp_path / "data"))

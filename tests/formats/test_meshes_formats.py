@@ -105,7 +105,7 @@ def test_stl_without_triangles(read):
         (binary_stl(FACE)[:-1], "cut short"),
         (b"garbage", "neither text nor binary"),
         (b"solid\nfacet normal 0 0 1\nvertex 0 0 0\nvertex 1 0 0\n", "without three vertices"),
-        (b"solid\nfacet vertex 0 0 0 vertex 1 0 0 vertex 1 x 0\n", "no number"),
+        (b"solid\nfacet vertex 0 0 0 vertex 1 0 0 vertex 1 x 0\n", "not a number"),
         (binary_stl([[0, 0, 0], [1, 0, 0], [0, np.nan, 0]]), "not a finite number"),
         (b"", "empty"),
     ],

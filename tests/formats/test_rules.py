@@ -86,7 +86,7 @@ def test_arguments_that_openrave_does_not_take():
     box = ravemj.RaveCreateKinBody(env, "")
     with pytest.raises(TypeError):
         robot.SetDOFWeights([1], [0])  # random-api-103
-    with pytest.raises(ravemj.openrave_exception, match="no robot") as caught:
+    with pytest.raises(ravemj.openrave_exception, match="not a robot") as caught:
         box.GetNonAdjacentLinks(ravemj.KinBody.AdjacentOptions.ActiveDOFs)  # random-api-90
     assert caught.value.GetCode() == "InvalidArguments"
     with pytest.raises(ValueError, match="position"):

@@ -66,9 +66,9 @@ def changed(row, column, value):
     [
         (np.eye(3), r"expected a 4x4 .* found an array of shape \(3, 3\)"),
         (3.0, "found an array of shape"),
-        ([[1, 2], [3]], "no array of numbers"),
-        ("front", "no array of numbers"),
-        (changed(0, 2, -1.1), r"no rotation: R\^T R is off by 0.21"),
+        ([[1, 2], [3]], "not an array of numbers"),
+        ("front", "not an array of numbers"),
+        (changed(0, 2, -1.1), r"not a rotation: R\^T R is off by 0.21"),
         (changed(0, 3, math.nan), "expected finite numbers, found nan"),
         (changed(1, 3, math.inf), "expected finite numbers, found inf"),
         (changed(3, 0, 1), "expected 0 0 0 1 as the last row, found 1 0 0 1"),
@@ -209,11 +209,11 @@ def test_numbers_are_read_to_the_last_digit(tmp_path):
         ("", "view.json"),
         ("1 0 0\nfront view\n", "view.json:2: error: the camera holds 'front'"),
         ('{"T": []}', 'without the entry "camera"'),
-        ('{"camera": [[1, 2], [3]]}', "no array of numbers"),
+        ('{"camera": [[1, 2], [3]]}', "not an array of numbers"),
         (json.dumps({"camera": SAVED, "fovy": "wide"}), '"fovy" is "wide"'),
         ("[" * 2000, "found an array of shape"),
         ("1 2 3 4 5", r"found an array of shape \(5,\)"),
-        (json.dumps([[2 * x for x in row[:3]] + row[3:] for row in SAVED[:3]]), "no rotation"),
+        (json.dumps([[2 * x for x in row[:3]] + row[3:] for row in SAVED[:3]]), "not a rotation"),
     ],
 )
 def test_bad_camera_files(tmp_path, text, words):

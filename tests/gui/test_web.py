@@ -437,7 +437,7 @@ def test_broken_pages_harm_nobody(viewer, caplog):
         page.send(type="key", name="Escape", pressed=True)
         page.settled()
         assert page.overlay["mode"] == "interaction"
-        assert caplog.text.count("no message of a viewer's page") == 1
+        assert caplog.text.count("not a message of a viewer's page") == 1
         assert caplog.text.count("further cases") == 3
         page.socket.send("x" * 2000)
         with pytest.raises(ConnectionClosed):
@@ -571,7 +571,7 @@ def test_a_page_that_stands_still_does_not_keep_a_viewer_open(env, viewer):
 )
 def test_a_port_that_cannot_be_had_is_an_error(env, viewer, port, reason):
     where = {"port": viewer.server.port} if port == "taken" else {"host": "no.such.host.invalid"}
-    with pytest.raises(RenderingError, match=f"no page can be served at port .*({reason})"):
+    with pytest.raises(RenderingError, match=f"no page can be served at .*({reason})"):
         WebViewer(env.simulation, env.renderer, "web", **where)
 
 

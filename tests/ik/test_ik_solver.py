@@ -390,7 +390,7 @@ class TestBadInput:
     @pytest.mark.parametrize(
         ("more", "what"),
         [
-            ({"axes": [[0, 0, 0]]}, "no direction"),
+            ({"axes": [[0, 0, 0]]}, "not a direction"),
             ({"points": [[0, 0]]}, "reshape"),
             ({"points": [[0, 0, 0], [0, 0, 0]]}, "points of shape"),
             ({"lower": [1.0], "upper": [0.0]}, "limit"),

@@ -41,7 +41,7 @@ MISTAKES = {
     ),
     "command": (lambda env, robot: robot.SupportsCommand(None), "SupportsCommand: cmd: is None, and should be a text"),
     "info": (lambda env, robot: robot.UpdateFromKinBodyInfo(3), "info: is of type int, and should be a KinBodyInfo"),
-    "name for body": (lambda env, robot: env.Remove("PUMA560"), "Remove: takes a body, .* not a str"),
+    "name for body": (lambda env, robot: env.Remove("PUMA560"), "Remove: takes a body, .* not something of type str"),
     "add mode": (lambda env, robot: env.Add(robot, "x"), "addMode is 'x', and should be True, False or an Interface"),
     "callback": (lambda env, robot: env.RegisterBodyCallback(3), "callback is 3, and should be a function"),
     "false checker": (

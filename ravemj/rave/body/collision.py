@@ -54,6 +54,8 @@ class BodyCollision(Structure, Interface):
             >>> robot.CheckSelfCollision()
             True
         """
+        if collisionchecker is not None and not hasattr(collisionchecker, "CheckSelfCollision"):
+            raise ArgumentError(f"CheckSelfCollision: collisionchecker: is of type {type(collisionchecker).__name__}")
         checker = collisionchecker or self._self_checker or self._env.GetCollisionChecker()
         return checker.CheckSelfCollision(self, report)
 

@@ -235,8 +235,8 @@ class Contents(EnvironmentPart):
 
     def _remove_other(self, interface: object) -> bool:
         """Remove a module, a sensor or a viewer, and return whether it was in the environment."""
-        if not isinstance(interface, Interface) and all(interface is not viewer for viewer in self._viewers):
-            kind = "None" if interface is None else f"a {type(interface).__name__}"
+        if not isinstance(interface, Interface) and not hasattr(interface, "GetCameraTransform"):  # a viewer
+            kind = "None" if interface is None else f"something of type {type(interface).__name__}"
             code = ErrorCode.Failed if interface is None else ErrorCode.InvalidArguments
             raise ArgumentError(f"Remove: takes a body, a sensor, a module or a viewer, not {kind}", code)
         if isinstance(interface, Module) and interface in self._modules:
@@ -320,14 +320,14 @@ class Contents(EnvironmentPart):
         return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
-        """Return the body with an index, from 1, of ``body.GetEnvironmentBodyIndex()``, or None."""
+        """Return the body with ``body.GetEnvironmentBodyIndex() == bodyIndex``, from 1 on, or None."""
         state = self._simulation.body_at(bodyIndex)
         return None if state is None else self.wrap(state)
 
     GetBodyFromEnvironmentId = GetBodyFromEnvironmentBodyIndex
 
     def GetBodiesFromEnvironmentBodyIndices(self, bodyIndex: Iterable[int]) -> list[KinBody | None]:
-        """Return the bodies with several indices, with None for an index that no body has."""
+        """Return the bodies with the indices ``bodyIndex``, with None for an index that no body has."""
         return [self.GetBodyFromEnvironmentBodyIndex(int(index)) for index in bodyIndex]
 
     def GetMaxEnvironmentBodyIndex(self) -> int:

@@ -38,7 +38,9 @@ def with_connected(robot: RobotBaseInfo, bodies: Iterable[ConnectedBodyInfo]) ->
 def only_parts_of(robot: RobotBaseInfo, own: RobotBaseInfo) -> RobotBaseInfo:
     """Return a robot reduced to the parts whose names another description contains."""
     kept = {name: {one._name for one in getattr(own, name)} for name in _LISTS}
-    return replace(robot, **{name: [one for one in getattr(robot, name) if one._name in kept[name]] for name in _LISTS})
+    parts = {name: [one for one in getattr(robot, name) if one._name in kept[name]] for name in _LISTS}
+    joints = kept["_vJointInfos"]
+    return replace(robot, **parts, _dofValues=[value for value in robot._dofValues if value[0][0] in joints])
 
 
 def _with_one(robot: RobotBaseInfo, body: ConnectedBodyInfo) -> RobotBaseInfo:
