@@ -17,7 +17,7 @@ from ravemj.compat import python2
 from ravemj.core import signals
 from ravemj.errors import Source, SourceError
 
-_MODELS = (".xml", ".dae", ".zae", ".json")
+_MODELS = (".xml", ".dae", ".zae", ".json", ".urdf", ".mjcf")
 _OUR_FILES = {__file__, *python2.FILES, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
 
 
