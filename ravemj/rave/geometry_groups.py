@@ -1,7 +1,7 @@
 """The groups of geometries that a collision checker looks at."""
 
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
 from weakref import WeakKeyDictionary
 
@@ -21,10 +21,8 @@ class GeometryGroups:
         self._simulation = simulation
         self._of_bodies: WeakKeyDictionary[BodyState, str] = WeakKeyDictionary()
         self._last: tuple[tuple[object, ...], CollisionWorld] | None = None
+        self._is_used = False
         self.default = ""
-
-    def __bool__(self) -> bool:
-        return bool(self.default or any(self._of_bodies.values()))
 
     def of(self, body: BodyState) -> str:
         """Return the group that is taken for a body."""
@@ -37,16 +35,17 @@ class GeometryGroups:
         else:
             self.default = name
             self._of_bodies.clear()
+        self._is_used = bool(self.default) or any(self._of_bodies.values())
 
-    @contextmanager
-    def world(self) -> Generator[CollisionWorld]:
-        """Let bodies have the geometries of their groups, and yield what collision checking knows of them then.
+    def world(self) -> AbstractContextManager[CollisionWorld]:
+        """Let bodies have the geometries of their groups, and give what collision checking knows of them then.
 
         The caller holds the lock.
         """
-        if not self:
-            yield self._simulation.collisions()
-            return
+        return self._exchanged() if self._is_used else nullcontext(self._simulation.collisions())
+
+    @contextmanager
+    def _exchanged(self) -> Generator[CollisionWorld]:
         scenes = {body: with_group(body.scene, self.of(body)) for body in self._simulation.bodies}
         # A world is made again only for other shapes: that takes long.
         key = (self._simulation.compiled(), *(link.geometries for body in scenes.values() for link in body.links))

@@ -1,6 +1,6 @@
 """What loops call most, one call at a time, against the least that MuJoCo and numpy can do for it.
 
-    PYTHONPATH=scripts:. python -m benchmarks.calls
+    PYTHONPATH=scripts:. python -c "from benchmarks.calls import table; print(table())"
 
 prints the table of docs/api.md.
 """
@@ -288,7 +288,7 @@ def table() -> str:
     cells: dict[tuple[str, str], dict[str, str]] = {}
     for robot, call, ours, bare in _measured():
         ratio = "" if bare is None else f" ({ours / bare:.1f}x)"
-        cells.setdefault((call.name, call.floor), {})[robot] = f"{ours:.3g}{ratio}"
+        cells.setdefault((call.name, call.floor), {})[robot] = f"{ours:.{3 if ours < 1000 else 4}g}{ratio}"
     lines = [f"| call | compared with | {' | '.join(NAMES.values())} |", "|---|---|" + "---:|" * len(NAMES)]
     lines += [
         f"| {name} | {floor} | {' | '.join(found.get(robot, '') for robot in NAMES)} |"
@@ -296,6 +296,3 @@ def table() -> str:
     ]
     return "\n".join(lines)
 
-
-if __name__ == "__main__":
-    print(table())
