@@ -54,8 +54,8 @@ class BodyCollision(Structure, Interface):
             >>> robot.CheckSelfCollision()
             True
         """
-        if collisionchecker is not None and not hasattr(collisionchecker, "CheckSelfCollision"):
-            raise ArgumentError(f"CheckSelfCollision: collisionchecker: is of type {type(collisionchecker).__name__}")
+        if collisionchecker is not None:
+            _check_checker(collisionchecker, "CheckSelfCollision")
         checker = collisionchecker or self._self_checker or self._env.GetCollisionChecker()
         return checker.CheckSelfCollision(self, report)
 
@@ -65,10 +65,8 @@ class BodyCollision(Structure, Interface):
         Args:
             collisionchecker: The checker; None selects that of the environment.
         """
-        kind = getattr(collisionchecker, "GetInterfaceType", lambda: None)()
-        if collisionchecker is not None and kind is not InterfaceType.collisionchecker:
-            found = f"is of type {type(collisionchecker).__name__}, and should be CollisionChecker"
-            raise ArgumentError(f"SetSelfCollisionChecker: collisionchecker: {found}")
+        if collisionchecker is not None:
+            _check_checker(collisionchecker, "SetSelfCollisionChecker")
         self._self_checker = collisionchecker
 
     def GetSelfCollisionChecker(self) -> "CollisionChecker | None":
@@ -348,3 +346,9 @@ class BodyCollision(Structure, Interface):
         enabled = self._state.link_enabled
         bounds = self._state.bounds.at(poses, enabled if enabled_only else (True,) * len(enabled))
         return enclosing_box(bounds, poses[0] if len(poses) else np.eye(4))
+
+
+def _check_checker(checker: object, caller: str) -> None:
+    if getattr(checker, "GetInterfaceType", lambda: None)() is not InterfaceType.collisionchecker:
+        found = f"is of type {type(checker).__name__}, and should be CollisionChecker"
+        raise ArgumentError(f"{caller}: collisionchecker: {found}")
