@@ -9,6 +9,7 @@ from browsers import browser, chromium, webgl_browser  # noqa: F401 - fixtures
 from hypothesis import HealthCheck, settings
 from newcomers import pytest_report_header, pytest_terminal_summary  # noqa: F401 - hooks
 from screens import display, folder  # noqa: F401 - fixtures
+from strategies import DEV
 
 import ravemj
 
@@ -17,8 +18,8 @@ DATA = TESTS / "data"
 REPOSITORY = TESTS.parent
 MODELS = REPOSITORY / "models"
 
-# Examples may take as long as a busy machine needs for them.
-settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# Examples may take as long as a busy machine needs, and are the same each time but with HYPOTHESIS_PROFILE=dev.
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=not DEV)
 settings.load_profile("patient")
 
 
