@@ -295,4 +295,3 @@ def table() -> str:
         for (name, floor), found in cells.items()
     ]
     return "\n".join(lines)
-
