@@ -15,13 +15,14 @@ class GeometryGroups:
 
     Attributes:
         default: The group of all bodies that have no other; empty for the geometries that links have.
+        is_used: Whether any body has a group.
     """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._of_bodies: WeakKeyDictionary[BodyState, str] = WeakKeyDictionary()
         self._last: tuple[tuple[object, ...], CollisionWorld] | None = None
-        self._is_used = False
+        self.is_used = False
         self.default = ""
 
     def of(self, body: BodyState) -> str:
@@ -35,14 +36,14 @@ class GeometryGroups:
         else:
             self.default = name
             self._of_bodies.clear()
-        self._is_used = bool(self.default) or any(self._of_bodies.values())
+        self.is_used = bool(self.default) or any(self._of_bodies.values())
 
     def world(self) -> AbstractContextManager[CollisionWorld]:
         """Let bodies have the geometries of their groups, and give what collision checking knows of them then.
 
         The caller holds the lock.
         """
-        return self._exchanged() if self._is_used else nullcontext(self._simulation.collisions())
+        return self._exchanged() if self.is_used else nullcontext(self._simulation.collisions())
 
     @contextmanager
     def _exchanged(self) -> Generator[CollisionWorld]:

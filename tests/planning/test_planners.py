@@ -333,6 +333,16 @@ def test_the_fast_test_of_planners_is_the_general_one(env, robot, held):
     assert 30 < sum(fast) < 270
 
 
+def test_planners_take_the_fast_test_but_with_groups_of_geometries(env, robot):
+    bodies = parameters(robot).resolved().bodies
+    checker = env.GetCollisionChecker()
+    assert bodies.fast_test() is not None
+    checker.SetGeometryGroup("padded")
+    assert bodies.fast_test() is None
+    checker.SetGeometryGroup("")
+    assert bodies.fast_test() is not None
+
+
 def test_parameters_as_text_and_back(robot):
     params = parameters(robot)
     params.SetExtraParameters("<foo>3</foo>")

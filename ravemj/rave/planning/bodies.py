@@ -179,7 +179,9 @@ class Bodies:
         """
         # Checkers and callbacks of the user look at the bodies themselves, so these have to be moved.
         checker = self._env.GetCollisionChecker()
-        is_plain = type(checker) is CollisionChecker and not checker.groups and not self._env.collision_callbacks
+        is_plain = (
+            type(checker) is CollisionChecker and not checker.groups.is_used and not self._env.collision_callbacks
+        )
         if not is_plain or len(self._parts) != 1 or not self._parts[0].dofs:
             return None
         return moving_test(self._parts[0].body.simulation_state, self._parts[0].dofs)
