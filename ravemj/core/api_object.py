@@ -9,6 +9,7 @@ from ravemj.core.argument_errors import explained
 
 _HOT = frozenset(
     {
+        "CalculateActiveJacobian",
         "CheckCollision",
         "CheckSelfCollision",
         "ComputeInverseDynamics",

@@ -135,7 +135,10 @@ def checked_point(values: ArrayLike, name: str) -> Floats:
     given = values if type(values) is np.ndarray else checked_numbers(values, name)
     if given.shape != (3,):
         raise ValueError(f"{name}: has shape {given.shape}, and should have shape (3,)")
-    return finite_vector(given, 3, name)
+    x, y, z = given.tolist()
+    if given.dtype is FLOAT and math.isfinite(x + y + z):
+        return given
+    return checked_vector(given, 3, name)
 
 
 def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:

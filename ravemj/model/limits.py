@@ -11,7 +11,7 @@ from ravemj.model.scene import Axis
 
 LARGEST = float(np.finfo(np.float64).max)
 
-_FEW = 20  # up to so many values a loop over plain floats is faster than numpy
+_FEW = 12  # up to so many values a loop over plain floats is faster than numpy
 
 
 class Limits:
@@ -25,14 +25,20 @@ class Limits:
     def __init__(self, axes: Sequence[Axis]) -> None:
         self.lower = np.array([-LARGEST if axis.circular else axis.lower for axis in axes])
         self.upper = np.array([LARGEST if axis.circular else axis.upper for axis in axes])
-        self._plain_limits = (self.lower.tolist(), self.upper.tolist()) if len(axes) <= _FEW else None
+        self._plain_limits = self.lower.tolist(), self.upper.tolist()
+        self._few = range(len(axes)) if len(axes) <= _FEW else None
+        self._contained = np.ones(len(axes), dtype=bool)  # written anew by each comparison
+        self._all = self._contained.tobytes()
 
     def contain(self, values: Floats) -> bool:
         """Return whether all values, shape (axes,), are finite numbers within the limits."""
-        if self._plain_limits is None:
-            return np.count_nonzero((self.lower <= values) & (values <= self.upper)) == len(values)  # faster than all
-        for value, lower, upper in zip(values.tolist(), *self._plain_limits):  # noqa: B905, SIM110 - strict, all: slower
-            if not lower <= value <= upper:
+        if self._few is None:  # comparing bytes is faster than ``all``
+            contained, every = self._contained, self._all
+            above = np.greater_equal(values, self.lower, contained).tobytes() == every
+            return above and np.less_equal(values, self.upper, contained).tobytes() == every
+        plain, (lower, upper) = values.tolist(), self._plain_limits
+        for axis in self._few:  # noqa: SIM110 - faster than ``all`` and ``zip``
+            if not lower[axis] <= plain[axis] <= upper[axis]:
                 return False
         return True
 

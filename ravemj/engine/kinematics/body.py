@@ -11,6 +11,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, wxyz_from_rows
 from ravemj.engine.compiled import Compiled, write_inertial
 from ravemj.engine.kinematics.axes import fix_to_parents
+from ravemj.engine.kinematics.link_poses import LinkPoses
 from ravemj.engine.kinematics.shown_values import ShownValues
 from ravemj.engine.kinematics.spherical import SphericalJoint
 from ravemj.model.joints import measured_values
@@ -98,12 +99,10 @@ class BodyKinematics:
         self._rest = (model.body_pos.copy(), model.body_quat.copy())
         self.displaced = False
         self._find_joints(names.joints)
-        self._one, self._all = np.eye(4), np.tile(np.eye(4), (len(self.body_ids), 1, 1))
         # Views are made once, since making one takes as long as writing a pose.
+        self._one = np.eye(4)
         self._position, self._rotation = self._one[:3, 3], self._one[:3, :3]
-        self._positions, self._rotations = self._all[:, :3, 3], self._all[:, :3, :3]
-        self._link_xpos, self._of_links = fixed_view(self._xpos, self.body_ids)
-        self._link_xmat, _ = fixed_view(self._xmat, self.body_ids)
+        self._link_poses = LinkPoses(data, self.body_ids)
         self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
         self.describe(body)
         self.set_values(np.array([axis.value for axis in body.dof_axes]))
@@ -353,9 +352,7 @@ class BodyKinematics:
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
         self.place()
-        self._positions[...] = self._link_xpos[self._of_links]
-        self._rotations[...] = self._link_xmat[self._of_links]
-        return self._all.copy()
+        return self._link_poses.matrices()
 
     def link_transform(self, link: int) -> Floats:
         """Return ``T_world_link`` of one link, shape (4, 4); a copy."""
