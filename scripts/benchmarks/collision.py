@@ -63,6 +63,7 @@ def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
         tested, floor = free.measure(collides=collides)
     yield Row(f"{what}: the same as planners ask : mj_kinematics + mj_collision", "µs", tested, floor, 1.5)
     values, qpos = zip(*(free.one() for _ in range(_BATCH)), strict=True)
+    samples = np.array(values)
     for processors, limit in ((1, 1.0), (2, 1.5)):
         with _processors(processors) as present:
             if present < processors:
@@ -70,7 +71,7 @@ def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
             env.simulation.collision_stamp += 1  # so that MuJoCo's threads are started anew
             batch, loop = take_turns(
                 [
-                    microseconds(lambda: panda.batch_collides(values), clock=time.perf_counter),
+                    microseconds(lambda: panda.batch_collides(samples), clock=time.perf_counter),
                     microseconds(lambda: [free.bare(one) for one in qpos], clock=time.perf_counter),
                 ],
                 10,

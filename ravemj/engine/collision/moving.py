@@ -198,7 +198,7 @@ class _MovingTest:
         """
         if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
             return np.array([self(one) for one in values], dtype=bool)
-        parts = np.array_split(values, -(-len(values) // MOST_AT_ONCE))
+        parts = (values[first : first + MOST_AT_ONCE] for first in range(0, len(values), MOST_AT_ONCE))
         touching = np.concatenate([self._world.have_contacts(self._place.qpos_of_many(part)) for part in parts])
         if not self._world.finds_only(len(self._meant) // 2):  # which has each pair in both orders
             for index in np.flatnonzero(touching).tolist():

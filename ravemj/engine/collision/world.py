@@ -182,13 +182,13 @@ class CollisionWorld:
         """Do the same where there is one processor, on which a ``Batch`` takes longer, since it computes more."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
-        touching = np.empty(len(qpos), dtype=bool)
-        for index, row in enumerate(qpos):
+        counts: list[int] = []
+        for row in qpos:
             target[...] = row
             place(model, data)
             detect(model, data)
-            touching[index] = data.ncon
-        return touching
+            counts.append(data.ncon)
+        return np.array(counts) > 0
 
     @cached_property
     def _batch(self) -> "Batch":
