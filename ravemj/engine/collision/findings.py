@@ -13,13 +13,7 @@ Listed = Literal["first pair", "links", "geometries"]
 
 
 class GeometryOf(NamedTuple):
-    """A geometry, by its place.
-
-    Attributes:
-        body: The body.
-        link: Index of the link in the body.
-        geometry: Index of the geometry in the link.
-    """
+    """A geometry: its body, the index of its link in the body, and its own index in the link."""
 
     body: BodyState
     link: int
@@ -32,12 +26,9 @@ class GeometryOf(NamedTuple):
 
 
 class Collision(NamedTuple):
-    """Two links or geometries that touch or overlap.
+    """Two geometries that touch or overlap, or the first two of two links.
 
-    Attributes:
-        first: A geometry of the first one.
-        second: The geometry of the second one that it touches.
-        contacts: The contact points of all pairs of their geometries, where wanted.
+    ``contacts`` are the contact points of all pairs of their geometries, where wanted.
     """
 
     first: GeometryOf
@@ -84,12 +75,7 @@ class Findings(NamedTuple):
 def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, counts: Counts | None) -> Findings:
     """Return what a report should tell of pairs of geoms.
 
-    Args:
-        world: Where the geoms are.
-        pairs: The pairs.
-        wanted: What the report should tell.
-        distance: Greater distances are of no interest [m].
-        counts: Decides whether a collision counts; None: all do.
+    Distances greater than ``distance`` [m] are of no interest; without ``counts`` all collisions count.
     """
     collisions, nearest = _collisions(world, pairs, wanted, counts), None
     if wanted.distance:

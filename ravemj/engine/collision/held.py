@@ -59,20 +59,11 @@ class HeldRoots:
 
 
 class _Root(NamedTuple):
-    """A root link that is held.
-
-    Attributes:
-        body_id: MuJoCo's index of it.
-        carrier: MuJoCo's index of the link that holds it.
-        position: Its position in its parent in the model [m], shape (3,); a view.
-        wxyz: Its orientation there; a view.
-        offset: Its position in the carrier [m], shape (3,).
-        turn: Its orientation there, wxyz.
-    """
+    """A root link that is held, and the link that holds it, by MuJoCo's indices."""
 
     body_id: int
     carrier: int
-    position: Floats
-    wxyz: Floats
-    offset: Floats
-    turn: Floats
+    position: Floats  # in its parent in the model [m]; a view
+    wxyz: Floats  # its orientation there; a view
+    offset: Floats  # its position in the carrier [m]
+    turn: Floats  # its orientation there, wxyz

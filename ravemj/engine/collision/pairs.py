@@ -111,14 +111,7 @@ class Pairs:
     """
 
     def __init__(self, first: Ints, second: Ints, detection: Detection, *, once: bool = False) -> None:
-        """Take pairs.
-
-        Args:
-            first: The first geom of each pair, shape (n,).
-            second: The second one, shape (n,).
-            detection: Finds those whose hulls touch.
-            once: Whether they are looked at once, so that preparing them is not worth its time.
-        """
+        """Take pairs; with ``once`` they are looked at only once, so that preparing them is not worth its time."""
         self.first, self.second = first, second
         self._detection = detection
         found = np.zeros(len(first), dtype=bool) if once or len(first) <= FEW else detection.finds(first, second)

@@ -116,8 +116,7 @@ class TriangleTests:
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
         """Put a shape that is no mesh into the scratch model.
 
-        Returns:
-            Centre and half the edges of a box around it along the axes of the mesh, in the mesh's frame.
+        Returned are centre and half the edges of a box around it along the axes of the mesh, in the mesh's frame.
         """
         rotation, position = self._pose_in(mesh, solid)
         self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]
@@ -135,15 +134,9 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return the least distance of some candidates in the frame of a mesh, as ``distance``.
+        """Return ``distance`` of the nearest candidate; those whose bound is least come first.
 
-        Args:
-            mesh: The geom.
-            place: What triangles are measured against in the scratch model.
-            candidates: Those whose bound is least come first.
-            limit: See ``distance``.
-            segment: See ``distance``.
-            enough: The search ends at this distance or less [m].
+        Triangles are measured against the geom ``place`` of the scratch model, until one is as near as ``enough`` [m].
         """
         best, found = limit, np.zeros(6)
         for bound, triangle, other in candidates:
@@ -200,12 +193,7 @@ class TriangleTests:
 
 
 class _Triangles:
-    """The triangles of a mesh, with a box around each.
-
-    Attributes:
-        corners: Their corners, shape (n, 3, 3).
-        tree: FCL's tree of boxes.
-    """
+    """The triangles of a mesh: their corners, shape (n, 3, 3), and FCL's tree of boxes around them."""
 
     def __init__(self, vertices: Floats, triangles: Ints) -> None:
         self.corners = vertices[triangles]
@@ -218,10 +206,7 @@ class _Triangles:
     def near(self, centre: Floats, half: Floats, limit: float) -> Iterable[_Candidate]:
         """Yield the triangles whose boxes are no farther than ``limit`` from a box, the nearest first.
 
-        Args:
-            centre: Centre of the box, in the frame of the mesh [m], shape (3,).
-            half: Half its edges [m], shape (3,).
-            limit: The limit [m].
+        ``centre`` and ``half`` are its centre and half its edges, in the frame of the mesh [m], shape (3,).
         """
         apart = np.maximum(np.maximum(self._low - centre - half, centre - half - self._high), 0.0)
         bounds = np.sqrt((apart * apart).sum(axis=1))

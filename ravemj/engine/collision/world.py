@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Detection, Pairs
-from ravemj.engine.collision.rays import Hits, RayCaster, RayHit
+from ravemj.engine.collision.rays import RayCaster
 from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
@@ -228,26 +228,10 @@ class CollisionWorld:
         measured = (self.shapes.distance(*pairs.geoms(number), beyond) for number in near)
         return sum(distance <= tolerance for distance in measured)
 
-    def ray(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
-        """Return where a ray first meets one of the geoms; None: any that collides. See ``RayCaster.first_hit``."""
-        return self._ray_caster.first_hit(self._among(geoms), start, direction)
-
-    def rays(
-        self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
-    ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return where many rays first meet one of the geoms; None: any that collides. See ``RayCaster.first_hits``."""
-        return self._ray_caster.first_hits(self._among(geoms), rays, front_facing_only=front_facing_only)
-
-    def fan(self, start: Floats, directions: Floats, reach: float) -> Hits:
-        """Return what rays from one point first meet of all that collides. See ``RayCaster.cast``."""
-        return self._ray_caster.cast(self._among(None), start, directions, reach)
-
     @cached_property
-    def _ray_caster(self) -> RayCaster:
-        return RayCaster(self._model, self._data)
-
-    def _among(self, geoms: Ints | None) -> Ints:
-        return self._colliding if geoms is None else geoms
+    def rays(self) -> RayCaster:
+        """Casts rays at what collides, or at other geoms."""
+        return RayCaster(self._model, self._data, self._colliding)
 
     @cached_property
     def _colliding(self) -> Ints:
