@@ -162,12 +162,7 @@ class Camera:
 
 
 def view_from_above(center: ArrayLike, radius: float) -> Camera:
-    """Return the view with which OpenRAVE's window opens: straight down, world +y up in the picture.
-
-    Args:
-        center: Centre of the bounding sphere of what should be seen, world coordinates (3,) [m].
-        radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height.
-    """
+    """Return the view with which OpenRAVE's window opens: straight down, world +y up; see ``three_quarter_view``."""
     return _looking_at(center, radius, forward=(0.0, 0.0, -1.0), up=(0.0, 1.0, 0.0))
 
 
@@ -179,20 +174,15 @@ def three_quarter_view(center: ArrayLike, radius: float) -> Camera:
         radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height.
     """
     azimuth, elevation = math.radians(40), math.radians(25)
-    forward = (
-        -math.cos(elevation) * math.cos(azimuth),
-        -math.cos(elevation) * math.sin(azimuth),
-        -math.sin(elevation),
-    )
+    level = -math.cos(elevation)
+    forward = (level * math.cos(azimuth), level * math.sin(azimuth), -math.sin(elevation))
     return _looking_at(center, radius, forward, up=(0.0, 0.0, 1.0))
 
 
 def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:
     """Return a sphere around everything that the renderers draw, planes apart.
 
-    Args:
-        model: The compiled model.
-        data: Its state, with the poses of the geoms computed (``mj_kinematics`` or ``mj_forward``).
+    The poses of the geoms are computed (``mj_kinematics`` or ``mj_forward``).
 
     Returns:
         Centre in the world (3,) [m] and radius [m]; the unit sphere at the origin where there is nothing to see.

@@ -128,11 +128,7 @@ def requested_backend() -> str | None:
 
 
 def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
-    """Make something in a new context of one backend.
-
-    Args:
-        backend: One of ``GL_BACKENDS``.
-        make: Called with the context; takes over the duty to close it.
+    """Make something in a new context of one of ``GL_BACKENDS``; ``make`` takes over the duty to close the context.
 
     Raises:
         RenderingError: the backend does not work; the message says why and how to install it.
@@ -149,10 +145,7 @@ def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -
 def make_with_any_backend(make: Callable[[OffscreenContext], _Made]) -> _Made | None:
     """Make something in a context of the first backend that works; None where none does.
 
-    The one that worked is remembered, and tried first from then on.
-
-    Args:
-        make: Called with the context; takes over the duty to close it.
+    The one that worked is remembered, and tried first from then on. ``make`` takes over the duty to close the context.
     """
     for backend in _order():
         try:

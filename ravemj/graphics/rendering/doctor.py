@@ -63,7 +63,7 @@ def driver_name(backend: str) -> str:
 
 def _driver_name(context: OffscreenContext) -> str:
     model = mujoco.MjModel.from_xml_string("<mujoco/>")
-    with GlRenderer(model, context, Quality(16, 16, samples=0)), context.current():
+    with GlRenderer(model, Quality(16, 16, samples=0), context), context.current():
         gl = importlib.import_module("OpenGL.GL")
         name: bytes | None = gl.glGetString(gl.GL_RENDERER)
     return name.decode(errors="replace") if name else "an unnamed OpenGL driver"

@@ -161,8 +161,7 @@ class Raster:
         """Return the rectangles on the screen; where the plane of the eye cuts a sphere, the whole of it."""
         x_or_y, depth, r = center[:, :2], center[:, 2:], radius[:, None]
         in_front = (depth > r)[:, 0]
-        low, high = np.full((2, len(radius), 2), np.inf)
-        low[:] = -np.inf
+        low, high = _whole_screen(len(radius))
         x_or_y, depth, r = x_or_y[in_front], depth[in_front], r[in_front]
         aside = r * np.sqrt(x_or_y**2 + depth**2 - r**2)
         focal, principal = np.array(self._pinhole).reshape(2, 2)
@@ -190,8 +189,7 @@ class Raster:
     def _around_triangles(self, corners: Floats) -> tuple[Floats, Floats]:
         """Return the rectangles on the screen; where the plane of the eye cuts a triangle, the whole of it."""
         in_front = (corners[:, :, 2] > _NEAREST).all(axis=1)
-        low, high = np.full((2, len(corners), 2), np.inf)
-        low[:] = -np.inf
+        low, high = _whole_screen(len(corners))
         on_screen = self._project(corners[in_front])
         low[in_front], high[in_front] = on_screen.min(axis=1), on_screen.max(axis=1)
         return low, high
@@ -238,6 +236,11 @@ class Raster:
                 wanted = ray >= 0
                 owner, ray, row, column = owner[wanted], ray[wanted], row[wanted], column[wanted]
             yield owner, ray, np.stack([column, row], axis=1) + center
+
+
+def _whole_screen(count: int) -> tuple[Floats, Floats]:
+    """Return the least and the largest coordinates of rectangles without bounds, each (count, 2)."""
+    return np.full((count, 2), -np.inf), np.full((count, 2), np.inf)
 
 
 def _select(batch: PrimitiveBatch, chosen: NDArray[np.bool_]) -> PrimitiveBatch:

@@ -115,13 +115,8 @@ class GlScene:
     ) -> None:
         """Take over the poses of the geoms, the drawings and the point of view.
 
-        Args:
-            data: State of the model with the poses computed.
-            camera: Where the picture is taken from.
-            size: Columns and rows of the viewport.
-            primitives: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw
-                these once more for each light that casts some, and add the colours up.
-            style: How the geoms are drawn.
+        With points or lines there are no shadows: MuJoCo would draw these once more for each light that casts some, and
+        add the colours up. ``size`` is columns and rows of the viewport.
         """
         self._make_room(len(primitives))
         has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
@@ -141,11 +136,7 @@ class GlScene:
         self._widths = [(array, array.copy()) for array in add_drawing_geoms(self.scene, primitives, camera, *size)]
 
     def aim(self, camera: Camera, size: tuple[int, int]) -> tuple[float, float]:
-        """Look at what was filled in from elsewhere; arguments as for ``fill``.
-
-        Returns:
-            Nearest and farthest depth that is drawn [m].
-        """
+        """Look at what was filled in from elsewhere; return the nearest and the farthest depth that is drawn [m]."""
         depths = self._contents.depths(camera)
         aim(self.scene, camera, size, depths)
         self._columns = size[0]
@@ -242,11 +233,7 @@ def drawing_option() -> mujoco.MjvOption:
 def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
     """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
 
-    Args:
-        scene: The scene.
-        camera: Where the picture is taken from.
-        size: Width and height of the picture [pixels].
-        depths: Nearest and farthest depth that is drawn [m].
+    ``size`` is width and height of the picture [pixels], ``depths`` the nearest and farthest that are drawn [m].
     """
     near, far = depths
     right_down_forward = camera.rotation

@@ -16,13 +16,7 @@ class Lights:
         self._scene = mujoco.MjvScene(model, 1)
 
     def update(self, data: mujoco.MjData, camera: Camera, depths: tuple[float, float]) -> None:
-        """Take over where the lights are now.
-
-        Args:
-            data: State of the model.
-            camera: Where the picture is taken from; the headlight shines from there.
-            depths: Nearest and farthest depth in view [m].
-        """
+        """Take over where the lights are now; the headlight shines from the camera, which sees these depths [m]."""
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         aim(self._scene, camera, (1, 1), depths)

@@ -46,13 +46,7 @@ class Recording(NamedTuple):
 
 
 class Appearance(NamedTuple):
-    """How the page begins.
-
-    Attributes:
-        camera: Where it looks from.
-        background: Red, green and blue from 0 to 1.
-        title: What it is called.
-    """
+    """How the page begins: where it looks from, on what background (0 to 1), and what it is called."""
 
     camera: Camera
     background: tuple[float, float, float]
@@ -96,14 +90,9 @@ def animation_page(
     appearance: Appearance,
     drawings: Primitives = NOTHING,
 ) -> str:
-    """Return a page that plays a recording; it holds all that it needs.
+    """Return a page that plays a recording; it holds all that it needs. What scripts have drawn does not move.
 
-    Args:
-        model: The compiled model.
-        data: Its state; bodies that do not move in the recording stay where they are in it.
-        recording: The poses.
-        appearance: How the page begins.
-        drawings: What scripts have drawn; it does not move.
+    Bodies that do not move in the recording stay where they are in the state ``data`` of the model.
     """
     package = Package()
     pack_scene(package, model, surfaces(model))
