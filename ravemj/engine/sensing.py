@@ -32,21 +32,13 @@ _EDGES = (0, 1, 0, 2, 0, 3, 0, 4, 1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 5, 7)
 
 
 class Scan(NamedTuple):
-    """What a laser measures.
+    """What the n rays of a laser measure, in the world."""
 
-    Attributes:
-        origin: Where the rays begin, in the world [m], shape (3,).
-        directions: Their unit directions in the world, shape (n, 3).
-        distances: How far each goes [m], shape (n,): the greatest range where it meets nothing.
-        is_hit: Which meet something, shape (n,).
-        geoms: What they meet, shape (n,); -1: nothing.
-    """
-
-    origin: Floats
-    directions: Floats
-    distances: Floats
-    is_hit: NDArray[np.bool_]
-    geoms: NDArray[np.int32]
+    origin: Floats  # where the rays begin [m], shape (3,)
+    directions: Floats  # of unit length, shape (n, 3)
+    distances: Floats  # how far each goes [m], shape (n,): the greatest range where it meets nothing
+    is_hit: NDArray[np.bool_]  # which meet something, shape (n,)
+    geoms: NDArray[np.int32]  # what they meet, shape (n,); -1: nothing
 
 
 @lru_cache(maxsize=64)
@@ -120,14 +112,9 @@ def acceleration_at(physics: Physics, state: BodyState, link: int, point: Floats
 
 
 def encoder_values(state: BodyState, resolution: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
-    """Return what the encoders of a robot's joints read.
+    """Return what the encoders of a robot's joints read: values, velocities and steps, each of shape (dof,).
 
-    Args:
-        state: The body.
-        resolution: Steps of the encoders [rad or m]: one for each DOF, one for all, or none.
-
-    Returns:
-        Values [rad or m], rounded to the steps, velocities [rad/s or m/s], and steps, each of shape (dof,).
+    The values [rad or m] are rounded to the steps, of which there is one for each DOF, one for all, or none.
     """
     values = state.kinematics.values()
     velocities = state.dynamics.dof_velocities(state.link_velocities())

@@ -115,14 +115,9 @@ def check_picture(path: AnyPath) -> None:
 
 
 def write_picture(path: AnyPath, frame: Frame) -> Path:
-    """Write a single picture as ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
+    """Write a picture, uint8 of shape (height, width, 3), as ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
 
-    Args:
-        path: The target; its suffix selects the format.
-        frame: uint8 array (height, width, 3).
-
-    Returns:
-        The path, as it was given.
+    The suffix of the path selects the format; the path is returned as it was given.
 
     Raises:
         ArgumentError: Unknown suffix, or the frame has a wrong type or shape.

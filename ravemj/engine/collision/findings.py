@@ -41,35 +41,21 @@ Counts = Callable[[Collision], bool]
 
 
 class Wanted(NamedTuple):
-    """What a report should tell.
+    """What a report should tell."""
 
-    Attributes:
-        listed: Which collisions.
-        contacts: Whether it has their contact points; without them, the search for the first pair ends sooner.
-        distance: Whether it has the least distance.
-        tolerance: It has the number of pairs that are no farther apart than this [m]; None: it has not.
-    """
-
-    listed: Listed = "first pair"
-    contacts: bool = False
-    distance: bool = False
-    tolerance: float | None = None
+    listed: Listed = "first pair"  # which collisions
+    contacts: bool = False  # their contact points; without them, the search for the first pair ends sooner
+    distance: bool = False  # the least one
+    tolerance: float | None = None  # the number of pairs that are no farther apart than this [m]
 
 
 class Findings(NamedTuple):
-    """What was found of what is wanted.
+    """What was found of what is wanted."""
 
-    Attributes:
-        collisions: Those that count.
-        distance: The least distance [m], not negative, or the one that was given where none is less.
-        nearest: The geometries that are so near, where there are any.
-        within: Number of pairs within the tolerance.
-    """
-
-    collisions: list[Collision]
-    distance: float
-    nearest: Collision | None = None
-    within: int = 0
+    collisions: list[Collision]  # those that count
+    distance: float  # the least one [m], not negative, or the one that was given where none is less
+    nearest: Collision | None  # the geometries that are so near, where there are any
+    within: int  # number of pairs within the tolerance
 
 
 def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, counts: Counts | None) -> Findings:

@@ -15,14 +15,10 @@ class HeldRoots:
     """The root links of what a body holds: children of the world in the model.
 
     Inside a ``with`` they hang on their carriers: ``mj_kinematics`` places them, and ``mj_collision`` looks at them and
-    what is fixed to the world.
-
-    Attributes:
-        are_late: Whether one comes before its carrier, so that ``mj_kinematics`` has to run twice.
+    what is fixed to the world. Where one comes before its carrier (``are_late``), ``mj_kinematics`` has to run twice.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState) -> None:
-        """Find them, where they are now."""
         model, data = world.model.model, world.model.data
         self._parents, self._weld_ids, self._dof_counts = model.body_parentid, model.body_weldid, model.body_dofnum
         self._roots: list[_Root] = []

@@ -87,7 +87,7 @@ class _Chosen(NamedTuple):
         resting = tuple(_apart_from(world, kind(world, body, None), one) for kind, one in zip(kinds, sets, strict=True))
         pairs = np.concatenate([_as_array(one) for one in sets])
         with HeldRoots(world, body):  # last, since it does not put the poses back
-            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
+            tested = world.detection.finds(pairs[:, 0], pairs[:, 1])
         meant, rest = pairs[tested], pairs[~tested]
         return cls(
             frozenset([*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()]),

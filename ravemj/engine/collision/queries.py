@@ -173,17 +173,15 @@ def body_of(thing: BodyState | LinkOf) -> BodyState:
 
 
 def _geoms(world: CollisionWorld, thing: BodyState | LinkOf, links: Links = None) -> Ints:
-    return _part(world, thing, links) if isinstance(thing, BodyState) else world.geoms_of_link(*thing)
-
-
-def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:
-    """Return the geoms of some links and what they hold, or of a body and all that is connected to it."""
+    """Return the geoms of a link, of some links and what they hold, or of a body and all that is connected to it."""
+    if not isinstance(thing, BodyState):
+        return world.geoms_of_link(*thing)
     if links is None:
-        return world.geoms_of_group(body)
+        return world.geoms_of_group(thing)
     if isinstance(links, MovedBy):
-        links = moved_links(body.scene, links.dofs)
-    own = [world.geoms_of_link(body, link) for link in sorted(links)]
-    held = [_held(world, grab.body) for grab in body.grabs if grab.link in links]
+        links = moved_links(thing.scene, links.dofs)
+    own = [world.geoms_of_link(thing, link) for link in sorted(links)]
+    held = [_held(world, grab.body) for grab in thing.grabs if grab.link in links]
     return np.concatenate([_nothing(), *own, *held])
 
 

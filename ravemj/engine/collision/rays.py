@@ -19,19 +19,12 @@ _SHORTEST = 1e-14
 
 
 class RayHit(NamedTuple):
-    """Where a ray meets a geom.
-
-    Attributes:
-        geom: The geom.
-        fraction: How far along the ray, from 0 to 1.
-        position: The point, in the world [m], shape (3,).
-        normal: Unit normal of the surface, outwards, shape (3,).
-    """
+    """Where a ray meets a geom."""
 
     geom: int
-    fraction: float
-    position: Floats
-    normal: Floats
+    fraction: float  # how far along the ray, from 0 to 1
+    position: Floats  # in the world [m], shape (3,)
+    normal: Floats  # of the surface, outwards, of length 1, shape (3,)
 
 
 class RayCaster:
@@ -58,10 +51,7 @@ class RayCaster:
     def first_hit(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
         """Return where a ray first meets a surface; one that starts inside a solid meets it where it comes out.
 
-        Args:
-            start: Where it begins, in the world [m], shape (3,).
-            direction: Its direction and length [m], shape (3,).
-            geoms: The geoms that it can meet.
+        It begins at ``start`` in the world [m], shape (3,), and is as long as its direction [m], shape (3,).
         """
         if math.hypot(*direction.tolist()) <= _SHORTEST:
             return None
@@ -82,12 +72,7 @@ class RayCaster:
     ) -> tuple[Floats, NDArray[np.int32]]:
         """Return what rays from one point meet first; inside of a solid, it is where they come out.
 
-        Args:
-            start: Where they begin, in the world [m], shape (3,).
-            directions: Their directions, none of them zero, shape (n, 3).
-            reach: Distance beyond which geoms may be left out [m].
-            geoms: The geoms that they can meet.
-            normals: Filled with the outward unit normals of the surfaces, shape (n, 3).
+        Geoms beyond ``reach`` [m] may be left out. ``normals`` is filled with the outward unit normals there, (n, 3).
 
         Returns:
             How far along each ray, in lengths of its direction, and the geom, each (n,); -1 where it meets nothing.

@@ -63,13 +63,7 @@ class TriangleTests:
         return not self._is_convex[mesh]
 
     def touch(self, mesh: int, other: int, touching: float) -> bool:
-        """Return whether a mesh and another geom overlap.
-
-        Args:
-            mesh: A geom that is a mesh.
-            other: Another geom.
-            touching: The distance up to which a solid touches a mesh [m]. Two meshes have to overlap.
-        """
+        """Return whether a mesh and another geom overlap, or a solid is no farther away than ``touching`` [m]."""
         overlaps = fcl.CollisionResult()
         if not fcl.collide(self._placed(mesh), self._placed(other), _ANY, overlaps):
             return False
@@ -81,16 +75,9 @@ class TriangleTests:
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
 
     def distance(self, mesh: int, other: int, limit: float, segment: Floats) -> float:
-        """Return the signed distance [m] of a mesh and another geom.
+        """Return the signed distance [m] of a mesh and another geom, or ``limit`` if it is not less.
 
-        Args:
-            mesh: A geom that is a mesh.
-            other: Another geom.
-            limit: Greater distances are of no interest [m].
-            segment: Takes the nearest or deepest points of mesh and other, in the world, shape (6,).
-
-        Returns:
-            The distance, or ``limit`` if it is not less.
+        ``segment`` takes the nearest or deepest points of mesh and other, in the world, shape (6,).
         """
         if not self._is_mesh(other):
             candidates = self._triangles_of(mesh).near(*self._place_solid(mesh, other), limit)

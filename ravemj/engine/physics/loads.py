@@ -23,18 +23,13 @@ class Motor:
 
 
 class Loads:
-    """What pushes one body: torques and forces during the next step only, and a motor until it is let go.
-
-    Attributes:
-        torques: On the DOFs [N m or N], shape (dof,).
-        motor: What drives joints, or None.
-    """
+    """What pushes one body: torques and forces during the next step only, and a motor until it is let go."""
 
     def __init__(self, state: BodyState, motor: Motor | None = None) -> None:
         self._state = state
         self.motor = motor
         links = len(state.scene.links)
-        self.torques = np.zeros(len(state.scene.dof_axes))
+        self.torques = np.zeros(len(state.scene.dof_axes))  # on the DOFs [N m or N]
         self._forces, self._levers, self._moments = np.zeros((links, 3)), np.zeros((links, 3)), np.zeros((links, 3))
 
     def next(self) -> "Loads":
@@ -92,19 +87,15 @@ def _motor_rows(body: PhysicalBody, motor: Motor) -> tuple[Ints, Floats, Floats]
 
 @dataclass(eq=False)
 class Spring:
-    """A spring, and a damper that keeps it from swinging; it is as stiff as suits the mass that it feels.
+    """A spring between a point of a link and a place in the world, and a damper that keeps it from swinging.
 
-    Attributes:
-        state: The body.
-        link: Index of its link.
-        point: The point, in the link [m], shape (3,).
-        goal: The place, in the world [m], shape (3,).
+    It is as stiff as suits the mass that it feels.
     """
 
     state: BodyState
     link: int
-    point: Floats
-    goal: Floats
+    point: Floats  # in the link [m], shape (3,)
+    goal: Floats  # in the world [m], shape (3,)
 
     @property
     def place(self) -> Floats:

@@ -30,27 +30,17 @@ LONGEST_STEP = 0.002
 
 
 class Physics:
-    """Moves the bodies of a simulation as their masses, forces, joints and contacts say.
-
-    Attributes:
-        self_collisions: Whether links of one body collide with one another.
-        spring: What someone pulls with, or None.
-    """
+    """Moves the bodies of a simulation as their masses, forces, joints and contacts say."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self.self_collisions = True
-        self.spring: Spring | None = None
+        self.self_collisions = True  # of links of one body with one another
+        self.spring: Spring | None = None  # what someone pulls with
         self._loads: dict[BodyState, Loads] = {}
         self._bodies: dict[BodyState, PhysicalBody] = {}
         self._made_of: list[object] = []
         self._model = mujoco.MjModel.from_xml_string("<mujoco/>")
         self._data = mujoco.MjData(self._model)
-
-    def set_self_collisions(self, value: bool) -> None:
-        """Say whether links of one body collide with one another."""
-        self.self_collisions = value
-        self._made_of.clear()
 
     def loads(self, state: BodyState) -> Loads:
         """Return what pushes a body during the next step, to be changed."""
@@ -98,9 +88,8 @@ class Physics:
     def prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over gravity and what users moved."""
         states = self._simulation.bodies
-        made_of: list[object] = [
-            part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs)
-        ]
+        parts = (part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs))
+        made_of: list[object] = [self.self_collisions, *parts]
         if len(made_of) != len(self._made_of) or any(a is not b for a, b in zip(made_of, self._made_of, strict=True)):
             self._make(states)
             self._made_of = made_of
@@ -226,11 +215,11 @@ class Physics:
         held = {grab.body for state in self._bodies for grab in state.grabs}
         own = [body for body in moving if body.state not in held]
         for body in own:
-            body.give_configuration()
+            body.part.give(body.state.kinematics)
         for body in own:
             body.state.moved()
         for body in own:
-            body.settle()
+            body.part.stamp = body.state.kinematics.stamp  # it is where the simulation has it
         for body in moving:
             body.give_velocities()
 

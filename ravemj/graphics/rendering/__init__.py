@@ -28,8 +28,7 @@ from ravemj.graphics.rendering.camera import (
     view_from_above,
 )
 from ravemj.graphics.rendering.checks import WHITE
-from ravemj.graphics.rendering.style import AS_IT_IS, Style
-from ravemj.graphics.rendering.visibility import drawn_geoms
+from ravemj.graphics.rendering.style import AS_IT_IS, Style, drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
 
 __all__ = [

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats, Ints, normalize, rows_from_wxyz
 from ravemj.errors import ArgumentError
-from ravemj.graphics.rendering.visibility import drawn_geoms
+from ravemj.graphics.rendering.style import drawn_geoms
 
 DEFAULT_FOVY = math.radians(45)
 """Vertical field of view of OpenRAVE's viewers [rad]."""
@@ -29,19 +29,12 @@ _SHAPES = "a 4x4 matrix, a 3x4 matrix or a pose [w, x, y, z, tx, ty, tz]"
 
 
 class Pinhole(NamedTuple):
-    """How a camera maps directions to pixels; continuous coordinates, (0, 0) is the top left corner of the image.
+    """How a camera maps directions to pixels; continuous coordinates, (0, 0) is the top left corner of the image."""
 
-    Attributes:
-        fx: Focal length along the columns [pixels].
-        fy: Focal length along the rows [pixels].
-        cx: Column of the principal point [pixels].
-        cy: Row of the principal point [pixels].
-    """
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
+    fx: float  # focal length along the columns [pixels]
+    fy: float  # focal length along the rows [pixels]
+    cx: float  # column of the principal point [pixels]
+    cy: float  # row of the principal point [pixels]
 
 
 @dataclass(eq=False)
@@ -125,12 +118,7 @@ class Camera:
         return replace(self, calibration=Pinhole(*(factor * part for part in self.calibration)))
 
     def project(self, points: ArrayLike, width: int, height: int) -> tuple[Floats, Floats]:
-        """Project points of the world into an image.
-
-        Args:
-            points: World coordinates, (N, 3) [m].
-            width: Columns of the image.
-            height: Rows of the image.
+        """Project points of the world (N, 3) [m] into an image of that many columns and rows.
 
         Returns:
             Pixel coordinates (N, 2), columns first, continuous: (0, 0) is the top left corner of the image and

@@ -22,7 +22,7 @@ from collections.abc import Callable, Generator
 from typing import Protocol, TypeVar
 
 from ravemj.errors import RenderingError
-from ravemj.graphics.rendering.egl_check import check_egl
+from ravemj.graphics.rendering.egl_check import check_egl, variable_restored
 
 RAY = "ray"
 GL_BACKENDS = ("egl", "osmesa", "glfw")
@@ -69,7 +69,7 @@ class OffscreenContext:
             raise RenderingError(f"{backend} cannot draw in a process that {' and '.join(_used)} draws in already")
         if backend not in _used:
             _CHECKS[backend]()
-        with _pyopengl_platform_restored():
+        with variable_restored("PYOPENGL_PLATFORM"):  # mujoco.egl sets it; children would inherit it and fail
             context_class: type[_GLContext] = importlib.import_module(f"mujoco.{backend}").GLContext
             self._context = _make_glfw(context_class) if backend == "glfw" else context_class(64, 64)
         _used.add(backend)
@@ -186,18 +186,6 @@ def _order() -> tuple[str, ...]:
 def _close_all() -> None:
     for resource in list(_open):
         resource.close()
-
-
-@contextlib.contextmanager
-def _pyopengl_platform_restored() -> Generator[None]:
-    """Undo what mujoco.egl and mujoco.osmesa write into the environment: children inherit it and then fail."""
-    name = "PYOPENGL_PLATFORM"
-    before = os.environ.get(name)
-    try:
-        yield
-    finally:
-        if before is None:
-            os.environ.pop(name, None)
 
 
 def _check_osmesa() -> None:

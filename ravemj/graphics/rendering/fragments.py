@@ -30,17 +30,11 @@ _SLACK = 1e-9
 
 
 class Fragments(NamedTuple):
-    """What drawings contribute to rays, in any order.
+    """What drawings contribute to rays, in any order."""
 
-    Attributes:
-        ray: Index of the ray, (N,).
-        depth: Depth along the viewing direction, (N,) [m].
-        color: Colour and opacity, (N, 4): 0..255 and 0..1.
-    """
-
-    ray: Ints
-    depth: Floats
-    color: Floats
+    ray: Ints  # index of the ray, (N,)
+    depth: Floats  # along the viewing direction, (N,) [m]
+    color: Floats  # colour and opacity, (N, 4): 0..255 and 0..1
 
     def select(self, chosen: NDArray[np.bool_]) -> "Fragments":
         """Return some of the fragments, by a mask (N,)."""
@@ -79,21 +73,13 @@ NO_FRAGMENTS = Fragments(np.empty(0, dtype=np.int_), np.empty(0), np.empty((0, 4
 
 @dataclass
 class Raster:
-    """Finds the fragments of drawings in one picture.
-
-    Attributes:
-        camera: Where the picture is taken from.
-        size: Columns and rows.
-        lights: What falls on triangles and spheres.
-        offset: Where rays go through the pixels, from their centres to the right and down [pixels].
-        ray_of_pixel: Index of the ray of each pixel, (H * W,), -1 where none is wanted; None: its own number.
-    """
+    """Finds the fragments of drawings in one picture."""
 
     camera: Camera
-    size: tuple[int, int]
-    lights: Lights
-    offset: tuple[float, float] = (0.0, 0.0)
-    ray_of_pixel: Ints | None = None
+    size: tuple[int, int]  # columns and rows
+    lights: Lights  # what falls on triangles and spheres
+    offset: tuple[float, float] = (0.0, 0.0)  # of rays from the centres of the pixels, right and down [pixels]
+    ray_of_pixel: Ints | None = None  # index of the ray of each pixel, (H * W,), -1: none; None: its own number
 
     def fragments(self, primitives: Primitives) -> Fragments:
         """Return what drawings, given in the world, cover."""

@@ -25,10 +25,8 @@ class Lights:
     def on(self, points: Floats, rays: Floats, normals: Floats) -> Floats:
         """Return the light of three colours that surfaces reflect, (N, 3); 1 shows their own colour.
 
-        Args:
-            points: Where the surfaces are, world coordinates (N, 3) [m].
-            rays: Directions in which they are seen, (N, 3).
-            normals: Unit normals, (N, 3); turned towards the eye where they look away.
+        They are at points in the world (N, 3) [m] and seen along rays (N, 3); their unit normals (N, 3) are turned
+        towards the eye where they look away.
         """
         away = np.einsum("ij,ij->i", normals, rays) > 0
         facing = np.where(away[:, None], -normals, normals)

@@ -21,8 +21,7 @@ from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.fragments import Fragments, Raster
 from ravemj.graphics.rendering.gl_scene import Contents
 from ravemj.graphics.rendering.lights import Lights
-from ravemj.graphics.rendering.style import AS_IT_IS, Style
-from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms, geom_rgba
+from ravemj.graphics.rendering.style import AS_IT_IS, DRAWN_GROUPS, Style, drawn_geoms, geom_rgba
 from ravemj.model.drawing import NOTHING, Primitives
 
 _BAND = 1 << 16

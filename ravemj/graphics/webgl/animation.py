@@ -26,23 +26,14 @@ _STILL = 1e-9
 
 
 class Recording(NamedTuple):
-    """What moved.
-
-    Attributes:
-        fps: Frames in a second.
-        positions: Of all bodies of the model in the world, shape (frames, bodies, 3) [m].
-        rotations: Their quaternions wxyz, shape (frames, bodies, 4).
-        values: Of the joints, shape (frames, joints) [rad or m].
-        names: Of the joints.
-        units: Of their values: ``rad`` or ``m``.
-    """
+    """What moved."""
 
     fps: float
-    positions: Floats
-    rotations: Floats
-    values: Floats
-    names: list[str]
-    units: list[str]
+    positions: Floats  # of all bodies of the model in the world, shape (frames, bodies, 3) [m]
+    rotations: Floats  # their quaternions wxyz, shape (frames, bodies, 4)
+    values: Floats  # of the joints, shape (frames, joints) [rad or m]
+    names: list[str]  # of the joints
+    units: list[str]  # of their values: ``rad`` or ``m``
 
 
 class Appearance(NamedTuple):

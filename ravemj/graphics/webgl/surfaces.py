@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
-from ravemj.graphics.rendering.visibility import drawn_geoms, geom_rgba
+from ravemj.graphics.rendering.style import drawn_geoms, geom_rgba
 
 Triangles = NDArray[np.uint32]
 
@@ -29,37 +29,22 @@ _TWO_TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
 
 
 class Mesh(NamedTuple):
-    """Triangles whose corners have normals.
+    """Triangles whose corners have normals."""
 
-    Attributes:
-        positions: Corners, shape (N, 3).
-        normals: Unit normals there, shape (N, 3).
-        triangles: Three corners each, shape (M, 3), counterclockwise seen from outside.
-    """
-
-    positions: Floats
-    normals: Floats
-    triangles: Triangles
+    positions: Floats  # of the corners, shape (N, 3)
+    normals: Floats  # unit normals there, shape (N, 3)
+    triangles: Triangles  # three corners each, shape (M, 3), counterclockwise seen from outside
 
 
 class Shape(NamedTuple):
-    """A mesh that moves with a body of the model.
-
-    Attributes:
-        mesh: Number of the mesh.
-        body: Number of the body in the model.
-        geom: Number of the geom in the model.
-        T_body_shape: Pose with the scale in its columns, shape (3, 4) [m].
-        rgba: Colour and opacity, 0 to 1.
-        reach: Radius of a sphere about the shape's origin that holds it [m].
-    """
+    """A mesh that moves with a body, for a geom; all by their numbers."""
 
     mesh: int
     body: int
     geom: int
-    T_body_shape: Floats
-    rgba: Floats
-    reach: float
+    T_body_shape: Floats  # with the scale in its columns, shape (3, 4) [m]
+    rgba: Floats  # colour and opacity, 0 to 1
+    reach: float  # radius of a sphere about the shape's origin that holds it [m]
 
 
 class Surfaces(NamedTuple):
