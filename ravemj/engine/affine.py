@@ -16,10 +16,8 @@ def translation_columns(affinedofs: int) -> list[int]:
 class AffineMotion:
     """The motion of a base by its affine DOFs, at one pose.
 
-    Attributes:
-        translations: Which of X, Y and Z, counted from 0, are among the DOFs.
-        angular: The base's angular velocity in the world per unit of the rates of the rotation's values, shape
-            (3, 0, 1, 3 or 4).
+    ``translations`` are those of X, Y and Z among them, counted from 0. ``angular`` is the base's angular velocity in
+    the world per unit of the rates of the rotation's values, shape (3, 0, 1, 3 or 4).
     """
 
     def __init__(self, pose: Pose, affinedofs: int, axis: Vec3) -> None:
@@ -30,8 +28,7 @@ class AffineMotion:
     def rates(self, velocity: Floats) -> Floats:
         """Return the rates of the affine values, shape (n,), that a velocity of the base shows.
 
-        Args:
-            velocity: That of the base's origin [m/s] and the angular one [rad/s], in world axes, shape (6,).
+        It is that of the base's origin [m/s] and the angular one [rad/s], in world axes, shape (6,).
         """
         return np.concatenate([velocity[:3][self.translations], np.linalg.pinv(self.angular) @ velocity[3:]])
 

@@ -36,12 +36,7 @@ class Clock:
     """
 
     def __init__(self, lock: RLock, step: Callable[[float], None]) -> None:
-        """Make a clock that stands at 0.
-
-        Args:
-            lock: Held during each step.
-            step: What happens during a time step [s].
-        """
+        """Make a clock that stands at 0; with the lock held, it calls ``step`` for each time step [s]."""
         self.now = 0
         self.is_allowed = True
         self._lock = lock
@@ -66,12 +61,7 @@ class Clock:
                 self._thread.start()
 
     def start(self, timestep: float, *, realtime: bool) -> None:
-        """Let time pass by itself from now on.
-
-        Args:
-            timestep: Length of the steps [s].
-            realtime: Whether a second of simulation takes a second; else steps follow one another at once.
-        """
+        """Let time pass by itself from now on, in steps of so many seconds, in real time or as fast as it can."""
         self.stop()
         self._rhythm = replace(self._rhythm, timestep=timestep, pace=1.0 if realtime else math.inf)
         self.resume()
@@ -101,11 +91,7 @@ class Clock:
         self._rhythm.pace = pace
 
     def stop(self, *, wait: bool = True) -> None:
-        """Let time stand still.
-
-        Args:
-            wait: Whether to return only when the thread has ended.
-        """
+        """Let time stand still; with ``wait``, return only when the thread has ended."""
         with self._starting:
             self.is_allowed = False
             self._rhythm.ending.set()
@@ -125,19 +111,12 @@ class Clock:
 
 @dataclass
 class _Rhythm:
-    """What the thread knows without the clock.
+    """What the thread knows without the clock."""
 
-    Attributes:
-        lock: Held during each step.
-        ending: Set when the thread should end.
-        timestep: Length of the steps [s].
-        pace: Seconds of simulation in a second; inf: no step waits.
-    """
-
-    lock: RLock
-    ending: Event
-    timestep: float
-    pace: float
+    lock: RLock  # held during each step
+    ending: Event  # set when the thread should end
+    timestep: float  # [s]
+    pace: float  # seconds of simulation in a second; inf: no step waits
 
 
 def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:

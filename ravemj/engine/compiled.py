@@ -38,13 +38,7 @@ class Compiled:
         options: "mjcf.Options | None" = None,
         edit: "Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None" = None,
     ) -> None:
-        """Compile a scene.
-
-        Args:
-            scene: What to compile.
-            diagnostics: Takes what the translation finds.
-            options: What to add to the model.
-            edit: Changes the model before it is compiled.
+        """Compile a scene; ``edit`` changes the model before, and ``diagnostics`` takes what the translation finds.
 
         Raises:
             CompileError: MuJoCo refuses the model.

@@ -33,11 +33,6 @@ def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options
 
     Where joints are not at their zero, the keyframe ``loaded`` has their values.
 
-    Args:
-        simulation: What to translate.
-        diagnostics: Takes what the translation finds.
-        options: What to add to the model.
-
     Raises:
         CompileError: MuJoCo refuses the model.
         RavemjError: meshes are to be cut, and CoACD is not installed.
@@ -77,16 +72,13 @@ def is_folder(path: AnyPath) -> bool:
 
 
 def write_folder(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str]) -> Path:
-    """Write a folder with the MJCF file and its meshes, whole or not at all.
+    """Write a folder with the MJCF file and its meshes, whole or not at all; return the path of the MJCF file.
 
     Args:
         path: The folder; one that is there already is empty or holds an older translation of the same file.
         model: The file that the model was read from; its name becomes that of the MJCF file.
         mjcf: The translated model.
         read: Files that must stay as they are.
-
-    Returns:
-        The MJCF file.
 
     Raises:
         OutputError: it cannot be written, or something else is there.
@@ -103,18 +95,9 @@ def write_folder(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str
 
 
 def write_file(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str]) -> Path:
-    """Write an MJCF file, and its meshes into ``assets`` beside it, whole or not at all.
+    """Write an MJCF file, and its meshes into ``assets`` beside it, whole or not at all; return its path.
 
-    Meshes that only an older translation in its place had are removed.
-
-    Args:
-        path: The file.
-        model: The file that the model was read from.
-        mjcf: The translated model.
-        read: Files that must stay as they are.
-
-    Returns:
-        The MJCF file.
+    Meshes that only an older translation in its place had are removed. Arguments as for ``write_folder``.
 
     Raises:
         OutputError: it cannot be written, or it is a file that was read.

@@ -8,14 +8,9 @@ from ravemj.engine.simulation.body import BodyState, GrabbedBody
 
 
 def grab_as_it_stands(holder: BodyState, body: BodyState, link: int, ignored: Iterable[int]) -> GrabbedBody:
-    """Return how a link holds a body in the pose that both have now.
+    """Return how a link of a holder holds a body in the pose that both have now.
 
-    Args:
-        holder: What holds.
-        body: What is held.
-        link: Index of the holder's link.
-        ignored: Indices of further links of the holder that the body does not collide with, besides ``link`` and those
-            that it touches now.
+    The body does not collide with the link, the links that it touches now, and those to be ignored.
     """
     touched = touching_links(holder.simulation.collisions(), holder, body)
     T_link_body = inverse(holder.link_transform(link)) @ body.link_transform(0)

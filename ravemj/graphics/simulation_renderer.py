@@ -35,11 +35,11 @@ _MOST_PIXELS = 8_300_000
 
 
 class Format(NamedTuple):
-    """The size and the quality of a picture.
+    """The size [pixels] and the quality of a picture.
 
     Attributes:
-        width: The width [pixels].
-        height: The height [pixels].
+        width: Its columns.
+        height: Its rows.
         shadows: Whether lights cast shadows; too slow for videos without a graphics card.
         samples: Samples per pixel against jagged edges: 4, or 0 for speed.
         scale: Its columns as a part of those that it is shown with: points and lines are so much narrower.
@@ -114,27 +114,11 @@ class SimulationRenderer:
         return _averaged(picture, finer)
 
     def depth(self, camera: Camera, form: Format) -> NDArray[np.float32]:
-        """Return how far away the bodies are: along the viewing direction [m], shape (height, width); else infinite.
-
-        Args:
-            camera: Where they are seen from.
-            form: Size of the picture.
-
-        Raises:
-            RenderingError: as for ``render``.
-        """
+        """Return how far away the bodies are: along the viewing direction [m], shape (height, width); else infinite."""
         return self._measured(form, lambda renderer, data: renderer.depth(data, camera))
 
     def segment(self, camera: Camera, form: Format) -> NDArray[np.int32]:
-        """Return which geom of the present model each pixel shows, shape (height, width); -1 for none.
-
-        Args:
-            camera: Where they are seen from.
-            form: Size of the picture.
-
-        Raises:
-            RenderingError: as for ``render``.
-        """
+        """Return which geom of the present model each pixel shows, shape (height, width); -1 for none."""
         return self._measured(form, lambda renderer, data: renderer.segment(data, camera))
 
     def _measured(self, form: Format, measure: Callable[[Renderer, mujoco.MjData], Drawn]) -> Drawn:
@@ -148,15 +132,8 @@ class SimulationRenderer:
     def render_again(self, camera: Camera, background: ArrayLike, form: Format) -> Frame | None:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
 
-        Bodies are where they were then, or where they were published since.
-
-        Args:
-            camera: Where the picture is taken from.
-            background: Colour where nothing is: red, green, blue from 0 to 1.
-            form: Size and quality; with or without shadows as before.
-
-        Returns:
-            Shape (height, width, 3), top row first; None where this thread has drawn nothing yet.
+        Bodies are where they were then, or where they were published since; there are shadows if there were some.
+        Returned is a picture as by ``render``, or None where this thread has drawn nothing yet.
         """
         if getattr(self._kept, "key", None) is None:
             return None
@@ -181,7 +158,7 @@ class SimulationRenderer:
             self._kept.model, self._kept.data = model, mujoco.MjData(model)
             size = form.width, form.height
             self._kept.renderer = open_renderer(model, *size, shadows=form.shadows, samples=form.samples)
-            self._kept.key = (self._simulation.version, form.shadows)
+            self._kept.key = (self._simulation.version, form.shadows)  # compiling makes another version
         finer = self._finer(form)
         self._kept.renderer.resize(finer * form.width, finer * form.height, form.samples)
         return self._kept.renderer
@@ -207,11 +184,7 @@ class SimulationRenderer:
         return view_from_above(*self.bounding_sphere())
 
     def camera_for_stills(self, aspect: float) -> Camera:
-        """Return the file's camera, else a view of the whole scene from the front left and above.
-
-        Args:
-            aspect: Width of the picture divided by its height.
-        """
+        """Return the file's camera, else a view of the whole scene that fits: width divided by height is ``aspect``."""
         return self.file_camera() or fitting_view(*self.bounding_sphere(), aspect)
 
     def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
@@ -229,26 +202,8 @@ def _averaged(picture: Frame, finer: int) -> Frame:
 
 
 def fitting_view(center: NDArray[np.float64], radius: float, aspect: float) -> Camera:
-    """Return a view from the front left and above in which a sphere fits.
+    """Return a view from the front left and above in which a sphere fits; arguments as for ``three_quarter_view``.
 
-    Args:
-        center: Centre of the sphere, shape (3,) [m].
-        radius: Its radius [m].
-        aspect: Width of the picture divided by its height.
+    ``aspect`` is the width of the picture divided by its height.
     """
     return three_quarter_view(center, radius / min(1.0, aspect))
-
-
-def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:
-    """Return a colour as three floats.
-
-    Raises:
-        ArgumentError: it is not three numbers from 0 to 1.
-    """
-    try:
-        red, green, blue = (float(part) for part in np.asarray(colour, dtype=np.float64).reshape(-1)[:4])
-    except (TypeError, ValueError):
-        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}") from None
-    if not all(0 <= part <= 1 for part in (red, green, blue)):
-        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}")
-    return (red, green, blue)

@@ -26,12 +26,12 @@ import logging
 import math
 import os
 import threading
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
+from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -115,14 +115,9 @@ def check_picture(path: AnyPath) -> None:
 
 
 def write_picture(path: AnyPath, frame: Frame) -> Path:
-    """Write a single picture as ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
+    """Write a picture, uint8 of shape (height, width, 3), as ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
 
-    Args:
-        path: The target; its suffix selects the format.
-        frame: uint8 array (height, width, 3).
-
-    Returns:
-        The path, as it was given.
+    The suffix of the path selects the format; the path is returned as it was given.
 
     Raises:
         ArgumentError: Unknown suffix, or the frame has a wrong type or shape.
@@ -250,60 +245,30 @@ class _Stopped(Exception):  # noqa: N818 - no error of its own: it ends an encod
     pass
 
 
-class _Handover:
-    """Frames on their way from the thread that draws to the thread that encodes; few at a time."""
-
-    def __init__(self) -> None:
-        self._frames: deque[Frame] = deque()
-        self._changed = threading.Condition()
-        self._complete = False
-        self._stopped = False
-
-    def put(self, frame: Frame) -> bool:
-        """Hand a frame over as soon as there is room; False if the other side has gone."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._stopped or len(self._frames) < _FRAMES_BETWEEN_THREADS)
-            self._frames.append(frame)
-            self._changed.notify_all()
-            return not self._stopped
-
-    def complete(self) -> None:
-        """Say that no frame follows."""
-        with self._changed:
-            self._complete = True
-            self._changed.notify_all()
-
-    def stop(self) -> None:
-        """Release both sides at once."""
-        with self._changed:
-            self._stopped = True
-            self._changed.notify_all()
-
-    def __iter__(self) -> Iterator[Frame]:
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._stopped or self._complete or self._frames)
-                if self._stopped:
-                    raise _Stopped
-                if not self._frames:
-                    return
-                frame = self._frames.popleft()
-                self._changed.notify_all()
-            yield frame
+def _arriving(
+    handed_over: "SimpleQueue[Frame | None]", room: threading.Semaphore, stopped: threading.Event
+) -> Iterator[Frame]:
+    """Yield what the thread that draws hands over, until None comes."""
+    while (frame := handed_over.get()) is not None and not stopped.is_set():
+        room.release()
+        yield frame
+    if stopped.is_set():
+        raise _Stopped
 
 
 def _overlap(
     frames: Iterable[Frame], encode: Callable[[Iterator[Frame]], None], on_frame: Callable[[int], None] | None
 ) -> None:
     """Encode in a second thread what this thread draws; an exception of either ends both."""
-    handover, encoding = _Handover(), Future[None]()
+    handed_over, room = SimpleQueue[Frame | None](), threading.Semaphore(_FRAMES_BETWEEN_THREADS)
+    encoding, stopped = Future[None](), threading.Event()
 
     def work() -> None:
         try:
-            encoding.set_result(encode(iter(handover)))
+            encoding.set_result(encode(_arriving(handed_over, room, stopped)))
         except BaseException as error:
             encoding.set_exception(error)
-        handover.stop()
+        room.release()  # else the thread that draws may wait for ever
 
     # No executor: a process waits for the threads of these before its main thread counts as ended, which tells those
     # who hand in frames that there will be no more.
@@ -311,14 +276,17 @@ def _overlap(
     thread.start()
     try:
         for number, frame in enumerate(frames, 1):
-            if not handover.put(frame):
+            room.acquire()
+            if encoding.done():
                 break  # the encoder has failed, and result() tells why
+            handed_over.put(frame)
             if on_frame is not None:
                 on_frame(number)
-        handover.complete()
+        handed_over.put(None)
         encoding.result()
     except BaseException:
-        handover.stop()
+        stopped.set()
+        handed_over.put(None)
         raise
     finally:
         thread.join()

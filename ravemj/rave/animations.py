@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
-from ravemj.graphics.simulation_renderer import checked_colour
+from ravemj.graphics.rendering.checks import checked_colour
 from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.recording import camera_for_motion, moving_body, within_limits

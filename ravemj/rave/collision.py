@@ -250,7 +250,7 @@ class CollisionChecker(CheckerExtras):
     ) -> bool:
         if len(targets) > 1:
             raise _not_understood((ray, *targets))
-        hit = world.ray(ray.pos(), ray.dir(), self.ray_targets(world, *targets))
+        hit = world.rays.first_hit(ray.pos(), ray.dir(), self.ray_targets(world, *targets))
         if report is not None:
             report.Reset(self._options)
         if hit is not None and report is not None:

@@ -92,7 +92,7 @@ class Instrument:
         elif isinstance(device, scene.Imu) and timestep > 0:
             from ravemj.engine.sensing import motion_at  # noqa: PLC0415 - slow to import
 
-            velocity = motion_at(*place.link, place.T_world_sensor[:3, 3]).linear
+            velocity, _ = motion_at(*place.link, place.T_world_sensor[:3, 3])
             if self._velocity is not None:
                 self._acceleration = (velocity - self._velocity) / timestep
             self._velocity = velocity
@@ -175,7 +175,7 @@ class Instrument:
         return IMUSensorData(
             stamp,
             pose_of(place.T_world_sensor).numbers()[:4],
-            self._noisy(motion_at(*place.link, origin).angular @ axes),
+            self._noisy(motion_at(*place.link, origin)[1] @ axes),
             self._noisy(acceleration @ axes),
             np.reshape(device.rotation_covariance, (3, 3)),
             np.reshape(device.angular_velocity_covariance, (3, 3)),
@@ -192,11 +192,11 @@ class Instrument:
             if followed is None:
                 raise RavemjError(f"odometry: there is no body '{device.target}' in the environment")
             state, link, pose = followed, 0, followed.link_transform(0)
-        motion = motion_at(state, link, pose[:3, 3])
+        linear, angular = motion_at(state, link, pose[:3, 3])
         pose = pose.copy()
         pose[:3, 3] = self._noisy(pose[:3, 3])
         covariances = np.zeros((6, 6)), np.zeros((6, 6))
-        return OdometrySensorData(stamp, pose, motion.linear, motion.angular, *covariances, device.target)
+        return OdometrySensorData(stamp, pose, linear, angular, *covariances, device.target)
 
     def encoders(self, device: scene.JointEncoder, place: Place, stamp: int) -> JointEncoderSensorData:
         """Return the values of joints."""

@@ -298,7 +298,7 @@ class SimulatedEngine(PhysicsEngine):
             True.
         """
         with self._env.simulation.lock:
-            self._physics.set_self_collisions(bool(physicsoptions & PhysicsEngineOptions.SelfCollisions))
+            self._physics.self_collisions = bool(physicsoptions & PhysicsEngineOptions.SelfCollisions)
         return True
 
     def GetPhysicsOptions(self) -> PhysicsEngineOptions:

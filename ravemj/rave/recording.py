@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera
-from ravemj.graphics.simulation_renderer import Format, Frame, checked_colour, fitting_view
+from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.simulation_renderer import Format, Frame, fitting_view
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.trajectories.motion import Motion
 

@@ -11,7 +11,7 @@ import pytest
 from ravemj.errors import ArgumentError, RenderingError
 from ravemj.graphics.rendering import Camera, bounding_sphere, open_renderer, three_quarter_view
 from ravemj.graphics.rendering.contexts import make_with_any_backend
-from ravemj.graphics.rendering.visibility import drawn_geoms, geom_rgba
+from ravemj.graphics.rendering.style import drawn_geoms, geom_rgba
 
 LIGHT = '<visual><headlight ambient=".4 .4 .4" diffuse=".6 .6 .6" specular=".1 .1 .1"/></visual>'
 SKYBOX = '<asset><texture name="background" type="skybox" builtin="flat" rgb1="1 1 1" width="8" height="48"/></asset>'
@@ -434,7 +434,7 @@ def test_data_of_another_model(how):
 @pytest.mark.parametrize("color", [(1, 1), "white", (0, 0, 1.5), (0, 0, math.nan), None])
 def test_bad_backgrounds(how, color):
     model, data = state_of(PENDULUM)
-    with open_as(how, model) as renderer, pytest.raises(ArgumentError, match="three numbers between 0 and 1"):
+    with open_as(how, model) as renderer, pytest.raises(ArgumentError, match="three numbers from 0 to 1"):
         renderer.render(data, TUTORIAL, color)
 
 

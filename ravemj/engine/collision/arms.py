@@ -1,9 +1,7 @@
 """Pairs to test for the end of an arm and for what the arm does not move, also with the tool elsewhere."""
 
-from collections.abc import Iterable
-
 from ravemj.core.graphs import ordered_pair
-from ravemj.core.transforms import Floats, Ints
+from ravemj.core.transforms import Floats
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import LinkOf, body_and_others, held_with, itself, moved_apart, moved_links
 from ravemj.engine.collision.world import CollisionWorld
@@ -25,11 +23,7 @@ def independent_and_others(world: CollisionWorld, body: BodyState, arm: Manipula
 def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_arm: bool) -> Pairs:
     """Return the pairs of the links beyond an arm, with what they hold, and the other links of its robot.
 
-    Args:
-        world: Where the robot is.
-        body: The robot.
-        arm: One of its manipulators.
-        without_arm: Whether the links of the arm itself, which joints of the arm move, are left out.
+    ``without_arm`` leaves out the links of the arm itself, which its joints move.
     """
     end = set(links_beyond(body.scene, arm))
     others = independent_links(body.scene, arm) if without_arm else range(len(body.scene.links))
@@ -39,45 +33,35 @@ def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 def arm_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
     """Return the pairs of the links that an arm moves, with what they hold, and all other bodies.
 
-    Args:
-        world: Where the robot is.
-        body: The robot.
-        arm: One of its manipulators.
-        without_end: Whether the links beyond the arm, and what they hold, are left out.
+    ``without_end`` leaves out the links beyond the arm, and what they hold.
     """
 
-    def find() -> tuple[Ints, Ints]:
+    def make() -> Pairs:
         left_out = set(links_beyond(body.scene, arm)) if without_end else set[int]()
-        pairs = body_and_others(world, body, frozenset(moved_links(body.scene, arm.arm_dofs) - left_out))
-        return pairs.first, pairs.second
+        return body_and_others(world, body, moved_links(body.scene, arm.arm_dofs) - left_out)
 
-    return world.pairs(("arm and others", body, arm, without_end), find)
+    return world.kept(("arm and others", body, arm, without_end), make)
 
 
 def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
     """Return the pairs of links of a robot, with what they hold, that an arm moves against each other.
 
-    Args:
-        world: Where the robot is.
-        body: The robot.
-        arm: One of its manipulators.
-        without_end: Whether the pairs of links beyond the arm and links that the arm does not move are left out.
+    ``without_end`` leaves out the pairs of links beyond the arm and links that the arm does not move.
     """
 
-    def find() -> tuple[Ints, Ints]:
+    def make() -> Pairs:
         end, moved = set(links_beyond(body.scene, arm)), moved_links(body.scene, arm.arm_dofs)
         apart = moved_apart(body.scene, arm.arm_dofs)
         if without_end:
             apart = frozenset((a, b) for a, b in apart if not ({a, b} & end and {a, b} - moved))
-        pairs = itself(world, body, apart)
-        return pairs.first, pairs.second
+        return itself(world, body, apart)
 
-    return world.pairs(("arm and rest", body, arm, without_end), find)
+    return world.kept(("arm and rest", body, arm, without_end), make)
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
     """Return one motion, shape (4, 4), for the links beyond an arm and all that they hold, for ``world.moved``."""
     end = set(links_beyond(body.scene, arm))
     held = [one for grab in body.grabs if grab.link in end for one in held_with(grab.body)]
-    links: Iterable[LinkOf] = [(one, link) for one in held for link in range(len(one.scene.links))]
+    links = [(one, link) for one in held for link in range(len(one.scene.links))]
     return dict.fromkeys([*((body, link) for link in end), *links], motion)

@@ -13,13 +13,7 @@ Listed = Literal["first pair", "links", "geometries"]
 
 
 class GeometryOf(NamedTuple):
-    """A geometry, by its place.
-
-    Attributes:
-        body: The body.
-        link: Index of the link in the body.
-        geometry: Index of the geometry in the link.
-    """
+    """A geometry: its body, the index of its link in the body, and its own index in the link."""
 
     body: BodyState
     link: int
@@ -32,12 +26,9 @@ class GeometryOf(NamedTuple):
 
 
 class Collision(NamedTuple):
-    """Two links or geometries that touch or overlap.
+    """Two geometries that touch or overlap, or the first two of two links.
 
-    Attributes:
-        first: A geometry of the first one.
-        second: The geometry of the second one that it touches.
-        contacts: The contact points of all pairs of their geometries, where wanted.
+    ``contacts`` are the contact points of all pairs of their geometries, where wanted.
     """
 
     first: GeometryOf
@@ -50,46 +41,27 @@ Counts = Callable[[Collision], bool]
 
 
 class Wanted(NamedTuple):
-    """What a report should tell.
+    """What a report should tell."""
 
-    Attributes:
-        listed: Which collisions.
-        contacts: Whether it has their contact points; without them, the search for the first pair ends sooner.
-        distance: Whether it has the least distance.
-        tolerance: It has the number of pairs that are no farther apart than this [m]; None: it has not.
-    """
-
-    listed: Listed = "first pair"
-    contacts: bool = False
-    distance: bool = False
-    tolerance: float | None = None
+    listed: Listed = "first pair"  # which collisions
+    contacts: bool = False  # their contact points; without them, the search for the first pair ends sooner
+    distance: bool = False  # the least one
+    tolerance: float | None = None  # the number of pairs that are no farther apart than this [m]
 
 
 class Findings(NamedTuple):
-    """What was found of what is wanted.
+    """What was found of what is wanted."""
 
-    Attributes:
-        collisions: Those that count.
-        distance: The least distance [m], not negative, or the one that was given where none is less.
-        nearest: The geometries that are so near, where there are any.
-        within: Number of pairs within the tolerance.
-    """
-
-    collisions: list[Collision]
-    distance: float
-    nearest: Collision | None = None
-    within: int = 0
+    collisions: list[Collision]  # those that count
+    distance: float  # the least one [m], not negative, or the one that was given where none is less
+    nearest: Collision | None  # the geometries that are so near, where there are any
+    within: int  # number of pairs within the tolerance
 
 
 def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, counts: Counts | None) -> Findings:
     """Return what a report should tell of pairs of geoms.
 
-    Args:
-        world: Where the geoms are.
-        pairs: The pairs.
-        wanted: What the report should tell.
-        distance: Greater distances are of no interest [m].
-        counts: Decides whether a collision counts; None: all do.
+    Distances greater than ``distance`` [m] are of no interest; without ``counts`` all collisions count.
     """
     collisions, nearest = _collisions(world, pairs, wanted, counts), None
     if wanted.distance:

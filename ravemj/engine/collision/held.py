@@ -15,14 +15,10 @@ class HeldRoots:
     """The root links of what a body holds: children of the world in the model.
 
     Inside a ``with`` they hang on their carriers: ``mj_kinematics`` places them, and ``mj_collision`` looks at them and
-    what is fixed to the world.
-
-    Attributes:
-        are_late: Whether one comes before its carrier, so that ``mj_kinematics`` has to run twice.
+    what is fixed to the world. Where one comes before its carrier (``are_late``), ``mj_kinematics`` has to run twice.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState) -> None:
-        """Find them, where they are now."""
         model, data = world.model.model, world.model.data
         self._parents, self._weld_ids, self._dof_counts = model.body_parentid, model.body_weldid, model.body_dofnum
         self._roots: list[_Root] = []
@@ -59,20 +55,11 @@ class HeldRoots:
 
 
 class _Root(NamedTuple):
-    """A root link that is held.
-
-    Attributes:
-        body_id: MuJoCo's index of it.
-        carrier: MuJoCo's index of the link that holds it.
-        position: Its position in its parent in the model [m], shape (3,); a view.
-        wxyz: Its orientation there; a view.
-        offset: Its position in the carrier [m], shape (3,).
-        turn: Its orientation there, wxyz.
-    """
+    """A root link that is held, and the link that holds it, by MuJoCo's indices."""
 
     body_id: int
     carrier: int
-    position: Floats
-    wxyz: Floats
-    offset: Floats
-    turn: Floats
+    position: Floats  # in its parent in the model [m]; a view
+    wxyz: Floats  # its orientation there; a view
+    offset: Floats  # its position in the carrier [m]
+    turn: Floats  # its orientation there, wxyz

@@ -29,12 +29,8 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     """Return a fast test of values of some joints, or None where links are displaced from their joints.
 
     It looks at what the joints move, and answers for a body that stays as it is otherwise, in a world that stays as it
-    is; the caller holds the lock all the time. The model of the world is moved, the body at most by its joints:
-    ``body.restore`` brings both back.
-
-    Args:
-        body: The body; what it holds moves along.
-        dofs: The joints.
+    is; the caller holds the lock all the time. What the body holds moves along. The model of the world is moved, the
+    body at most by its joints: ``body.restore`` brings both back.
     """
     world = body.simulation.collisions()
     if body.kinematics.displaced:
@@ -73,17 +69,11 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
 
 
 class _Chosen(NamedTuple):
-    """The pairs of geoms that a test of a body is about.
+    """The pairs of geoms that a test of a body is about."""
 
-    Attributes:
-        meant: ``_keys`` of those that MuJoCo looks at, in both orders.
-        left_out: Those that it leaves out.
-        resting: Those that joints do not move against each other, of each kind.
-    """
-
-    meant: frozenset[int]
-    left_out: Pairs | None
-    resting: tuple[Pairs, ...]
+    meant: frozenset[int]  # ``_keys`` of those that MuJoCo looks at, in both orders
+    left_out: Pairs | None  # those that it leaves out
+    resting: tuple[Pairs, ...]  # those that joints do not move against each other, of each kind
 
     @classmethod
     def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
@@ -97,7 +87,7 @@ class _Chosen(NamedTuple):
         resting = tuple(_apart_from(world, kind(world, body, None), one) for kind, one in zip(kinds, sets, strict=True))
         pairs = np.concatenate([_as_array(one) for one in sets])
         with HeldRoots(world, body):  # last, since it does not put the poses back
-            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
+            tested = world.detection.finds(pairs[:, 0], pairs[:, 1])
         meant, rest = pairs[tested], pairs[~tested]
         return cls(
             frozenset([*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()]),

@@ -35,12 +35,8 @@ class Detection:
     It leaves out the geoms of one weld group, between which the model has no joint, those of a group and the one that
     it hangs on, unless that is the world's, and what the model excludes.
 
-    Attributes:
-        model: The model.
-        shapes: Exact tests of its geoms.
-        positions: Positions of all geoms, shape (geoms, 3).
-        radii: Radii of the spheres around them, shape (geoms,).
-        is_overruled: Whether geoms are where their links are not, so that only spheres find what is near.
+    ``positions`` and ``radii`` are those of spheres around all geoms. ``is_overruled`` says that geoms are where their
+    links are not, so that only spheres find what is near.
     """
 
     def __init__(self, model: WorldModel, shapes: ShapeTests) -> None:
@@ -103,22 +99,10 @@ class Detection:
 
 
 class Pairs:
-    """Pairs of geoms that a query is about.
-
-    Attributes:
-        first: The first geom of each pair, shape (n,).
-        second: The second one, shape (n,).
-    """
+    """Pairs of geoms that a query is about: the first geoms, shape (n,), and the second ones."""
 
     def __init__(self, first: Ints, second: Ints, detection: Detection, *, once: bool = False) -> None:
-        """Take pairs.
-
-        Args:
-            first: The first geom of each pair, shape (n,).
-            second: The second one, shape (n,).
-            detection: Finds those whose hulls touch.
-            once: Whether they are looked at once, so that preparing them is not worth its time.
-        """
+        """Take pairs; with ``once`` they are looked at only once, so that preparing them is not worth its time."""
         self.first, self.second = first, second
         self._detection = detection
         found = np.zeros(len(first), dtype=bool) if once or len(first) <= FEW else detection.finds(first, second)

@@ -6,15 +6,16 @@ A body that holds others, or is held, takes part with all of them, and is not te
 from collections.abc import Iterable
 from itertools import combinations
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ravemj.core.graphs import Pair
-from ravemj.core.transforms import Ints
+from ravemj.core.graphs import Pair, ordered_pair
+from ravemj.core.transforms import Floats, Ints, inverse
 from ravemj.engine.collision.pairs import Pairs
-from ravemj.engine.collision.resting import tested_pairs
 from ravemj.engine.collision.world import CollisionWorld, cross, joined
 from ravemj.engine.simulation import BodyState
+from ravemj.model.adjacency import adjacent_pairs
 from ravemj.model.chains import dofs_moving
 from ravemj.model.scene import KinBody
 
@@ -33,6 +34,9 @@ LinkPairs = frozenset[Pair] | MovedBy | None
 
 LinkOf = tuple[BodyState, int]
 """A body and the index of one of its links."""
+
+_touching_at_rest: "WeakKeyDictionary[BodyState, tuple[Floats | None, frozenset[Pair]]]" = WeakKeyDictionary()
+"""For each body its rest pose, and the pairs of links that touch in it."""
 
 
 def body_and_others(
@@ -65,13 +69,7 @@ def each_other(
     """Return the pairs of two bodies, of a link and a body, or of two links.
 
     There are none if one body holds the other, nor of a link and its own body; two links of one body are tested,
-    adjacent or not.
-
-    Args:
-        world: Where they are.
-        first: A body, or a link.
-        second: Another one.
-        links: Only these links of the first of two bodies, and what they hold.
+    adjacent or not. ``links``: only these links of the first of two bodies, and what they hold.
     """
 
     def find() -> tuple[Ints, Ints]:
@@ -90,13 +88,7 @@ def each_other(
 
 
 def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> Pairs:
-    """Return the pairs within a body and what it holds.
-
-    Args:
-        world: Where the body is.
-        body: The body.
-        asked: Only pairs of these links, or what they hold; those that DOFs move against each other; None: all.
-    """
+    """Return the pairs within a body and what it holds; where asked, only those of these links or what they hold."""
 
     def find() -> tuple[Ints, Ints]:
         wanted = moved_apart(body.scene, asked.dofs) if isinstance(asked, MovedBy) else asked
@@ -109,7 +101,7 @@ def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
     """Return the pairs of a link, or what it holds, and the rest of its body, as far as ``itself`` has them."""
     body, index = link
     others = range(len(body.scene.links))
-    return itself(world, body, frozenset((min(index, other), max(index, other)) for other in others))
+    return itself(world, body, frozenset(ordered_pair(index, other) for other in others))
 
 
 def _within(
@@ -122,11 +114,39 @@ def _within(
     found += [(a, grab.link, (geoms[a], other)) for grab, other in held for a in tested if a not in grab.ignored]
     found += [(a.link, b.link, (one, other)) for (a, one), (b, other) in combinations(held, 2) if a.link != b.link]
     for first, second, sets in found:
-        if asked is None or (min(first, second), max(first, second)) in asked:
+        if asked is None or ordered_pair(first, second) in asked:
             yield cross(*sets)
     if asked is None:
         for grab in body.grabs:
             yield from _within(world, grab.body)
+
+
+def tested_pairs(world: CollisionWorld, body: BodyState) -> list[Pair]:
+    """Return the pairs of links, the smaller index first, that are neither adjacent nor touch in the rest pose.
+
+    The rest pose is that in which the body was added, or which ``SetNonCollidingConfiguration`` declared.
+    """
+    known = _touching_at_rest.get(body)
+    if known is None or known[0] is not body.rest_poses:
+        _touching_at_rest[body] = known = body.rest_poses, _find_touching(world, body)
+    left_out = adjacent_pairs(body.scene) | known[1]
+    links = range(len(body.scene.links))
+    return [pair for pair in combinations(links, 2) if pair not in left_out]
+
+
+def _find_touching(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
+    if body.rest_poses is None:
+        return frozenset()
+    links = range(len(body.scene.links))
+    candidates = sorted(set(combinations(links, 2)) - adjacent_pairs(body.scene))
+    geoms = [world.geoms_of_link(body, link, enabled_only=False) for link in links]
+    pairs = world.make_pairs(*joined(cross(geoms[first], geoms[second]) for first, second in candidates))
+    motions = {
+        (body, link): rest @ inverse(now)
+        for link, (rest, now) in enumerate(zip(body.rest_poses, body.link_transforms(), strict=True))
+    }
+    with world.moved(motions):
+        return frozenset((world.owner(first)[1], world.owner(second)[1]) for first, second in world.hits(pairs))
 
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:
@@ -153,17 +173,15 @@ def body_of(thing: BodyState | LinkOf) -> BodyState:
 
 
 def _geoms(world: CollisionWorld, thing: BodyState | LinkOf, links: Links = None) -> Ints:
-    return _part(world, thing, links) if isinstance(thing, BodyState) else world.geoms_of_link(*thing)
-
-
-def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:
-    """Return the geoms of some links and what they hold, or of a body and all that is connected to it."""
+    """Return the geoms of a link, of some links and what they hold, or of a body and all that is connected to it."""
+    if not isinstance(thing, BodyState):
+        return world.geoms_of_link(*thing)
     if links is None:
-        return world.geoms_of_group(body)
+        return world.geoms_of_group(thing)
     if isinstance(links, MovedBy):
-        links = moved_links(body.scene, links.dofs)
-    own = [world.geoms_of_link(body, link) for link in sorted(links)]
-    held = [_held(world, grab.body) for grab in body.grabs if grab.link in links]
+        links = moved_links(thing.scene, links.dofs)
+    own = [world.geoms_of_link(thing, link) for link in sorted(links)]
+    held = [_held(world, grab.body) for grab in thing.grabs if grab.link in links]
     return np.concatenate([_nothing(), *own, *held])
 
 

@@ -19,31 +19,12 @@ _SHORTEST = 1e-14
 
 
 class RayHit(NamedTuple):
-    """Where a ray meets a geom.
-
-    Attributes:
-        geom: The geom.
-        fraction: How far along the ray, from 0 to 1.
-        position: The point, in the world [m], shape (3,).
-        normal: Unit normal of the surface, outwards, shape (3,).
-    """
+    """Where a ray meets a geom."""
 
     geom: int
-    fraction: float
-    position: Floats
-    normal: Floats
-
-
-class Hits(NamedTuple):
-    """What many rays meet first.
-
-    Attributes:
-        distances: How far along each ray, in lengths of its direction, shape (n,); -1 where it meets nothing.
-        geoms: The geoms, shape (n,); -1 where it meets nothing.
-    """
-
-    distances: Floats
-    geoms: NDArray[np.int32]
+    fraction: float  # how far along the ray, from 0 to 1
+    position: Floats  # in the world [m], shape (3,)
+    normal: Floats  # of the surface, outwards, of length 1, shape (3,)
 
 
 class RayCaster:
@@ -53,25 +34,24 @@ class RayCaster:
     visible and in the group that is meant, so that threads that draw the model meanwhile notice nothing.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        self._model, self._data = copy(model), data
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> None:
+        """Take a model, its state, and the geoms that rays can meet where no others are named."""
+        self._model, self._data, self._geoms = copy(model), data, geoms
         self._model.geom_rgba[:, 3] = 1.0
         self._targets: Ints | None = None
 
-    def _aim_at(self, geoms: Ints) -> None:
+    def _aim_at(self, geoms: Ints | None) -> None:
         """Let rays meet these geoms only."""
+        geoms = self._geoms if geoms is None else geoms
         if self._targets is not geoms and (self._targets is None or not np.array_equal(self._targets, geoms)):
             self._model.geom_group[:] = _LEFT_OUT
             self._model.geom_group[geoms] = _TARGET
         self._targets = geoms
 
-    def first_hit(self, geoms: Ints, start: Floats, direction: Floats) -> RayHit | None:
+    def first_hit(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
         """Return where a ray first meets a surface; one that starts inside a solid meets it where it comes out.
 
-        Args:
-            geoms: The geoms that it can meet.
-            start: Where it begins, in the world [m], shape (3,).
-            direction: Its direction and length [m], shape (3,).
+        It begins at ``start`` in the world [m], shape (3,), and is as long as its direction [m], shape (3,).
         """
         if math.hypot(*direction.tolist()) <= _SHORTEST:
             return None
@@ -83,16 +63,19 @@ class RayCaster:
         return RayHit(int(geom[0]), fraction, start + fraction * direction, normal)
 
     def cast(
-        self, geoms: Ints, start: Floats, directions: Floats, reach: float = _FAR, *, normals: Floats | None = None
-    ) -> Hits:
+        self,
+        start: Floats,
+        directions: Floats,
+        reach: float = _FAR,
+        geoms: Ints | None = None,
+        normals: Floats | None = None,
+    ) -> tuple[Floats, NDArray[np.int32]]:
         """Return what rays from one point meet first; inside of a solid, it is where they come out.
 
-        Args:
-            geoms: The geoms that they can meet.
-            start: Where they begin, in the world [m], shape (3,).
-            directions: Their directions, none of them zero, shape (n, 3).
-            reach: Distance beyond which geoms may be left out [m].
-            normals: Filled with the outward unit normals of the surfaces, shape (n, 3).
+        Geoms beyond ``reach`` [m] may be left out. ``normals`` is filled with the outward unit normals there, (n, 3).
+
+        Returns:
+            How far along each ray, in lengths of its direction, and the geom, each (n,); -1 where it meets nothing.
         """
         self._aim_at(geoms)
         count = len(directions)
@@ -101,14 +84,16 @@ class RayCaster:
         mujoco.mj_multiRay(
             self._model, self._data, start, rays, _GROUPS, True, -1, found, distances, flat, count, reach
         )
-        return Hits(distances, found)
+        return distances, found
 
-    def first_hits(self, geoms: Ints, rays: Floats, *, front_facing_only: bool) -> tuple[NDArray[np.bool_], Floats]:
+    def first_hits(
+        self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
+    ) -> tuple[NDArray[np.bool_], Floats]:
         """Return where rays first meet a surface, in one call for all that begin at the same point.
 
         Args:
-            geoms: The geoms that they can meet.
             rays: Start and direction of each; the direction is as long as the ray [m], shape (n, 6).
+            geoms: The geoms that they can meet.
             front_facing_only: Whether hits from behind, on the inside of a surface, are left out.
 
         Returns:
@@ -117,14 +102,14 @@ class RayCaster:
         """
         found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
         if len(rays) == 1:
-            hit = self.first_hit(geoms, rays[0, :3], rays[0, 3:])
+            hit = self.first_hit(rays[0, :3], rays[0, 3:], geoms)
             if hit is not None and not (front_facing_only and hit.normal @ rays[0, 3:] >= 0):
                 found[0], points[0, :3], points[0, 3:] = True, hit.position, hit.normal
             return found, points
         long = np.flatnonzero(np.linalg.norm(rays[:, 3:], axis=1) > _SHORTEST)
         for some in _of_one_start(rays, long) if len(long) else ():
             start, directions, normals = rays[some[0], :3], rays[some, 3:], np.zeros((len(some), 3))
-            distances, _ = self.cast(geoms, start, directions, normals=normals)
+            distances, _ = self.cast(start, directions, geoms=geoms, normals=normals)
             is_hit = (distances >= 0) & (distances <= 1)
             if front_facing_only:
                 is_hit &= (normals * directions).sum(axis=1) < 0

@@ -19,17 +19,11 @@ _FAR = 1e10  # m
 
 
 class Contact(NamedTuple):
-    """Where two geoms are in each other.
+    """Where two geoms are in each other."""
 
-    Attributes:
-        position: The middle between the deepest point of each, in the world [m], shape (3,).
-        normal: Unit vector out of the second geom towards the first, shape (3,).
-        depth: How far they are in each other [m]; 0 where they just touch.
-    """
-
-    position: Floats
-    normal: Floats
-    depth: float
+    position: Floats  # the middle between the deepest point of each, in the world [m], shape (3,)
+    normal: Floats  # unit vector out of the second geom towards the first, shape (3,)
+    depth: float  # how far they are in each other [m]; 0 where they just touch
 
 
 def _triangle_tests(model: mujoco.MjModel, data: mujoco.MjData) -> "TriangleTests":

@@ -63,13 +63,7 @@ class TriangleTests:
         return not self._is_convex[mesh]
 
     def touch(self, mesh: int, other: int, touching: float) -> bool:
-        """Return whether a mesh and another geom overlap.
-
-        Args:
-            mesh: A geom that is a mesh.
-            other: Another geom.
-            touching: The distance up to which a solid touches a mesh [m]. Two meshes have to overlap.
-        """
+        """Return whether a mesh and another geom overlap, or a solid is no farther away than ``touching`` [m]."""
         overlaps = fcl.CollisionResult()
         if not fcl.collide(self._placed(mesh), self._placed(other), _ANY, overlaps):
             return False
@@ -81,16 +75,9 @@ class TriangleTests:
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
 
     def distance(self, mesh: int, other: int, limit: float, segment: Floats) -> float:
-        """Return the signed distance [m] of a mesh and another geom.
+        """Return the signed distance [m] of a mesh and another geom, or ``limit`` if it is not less.
 
-        Args:
-            mesh: A geom that is a mesh.
-            other: Another geom.
-            limit: Greater distances are of no interest [m].
-            segment: Takes the nearest or deepest points of mesh and other, in the world, shape (6,).
-
-        Returns:
-            The distance, or ``limit`` if it is not less.
+        ``segment`` takes the nearest or deepest points of mesh and other, in the world, shape (6,).
         """
         if not self._is_mesh(other):
             candidates = self._triangles_of(mesh).near(*self._place_solid(mesh, other), limit)
@@ -116,8 +103,7 @@ class TriangleTests:
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
         """Put a shape that is no mesh into the scratch model.
 
-        Returns:
-            Centre and half the edges of a box around it along the axes of the mesh, in the mesh's frame.
+        Returned are centre and half the edges of a box around it along the axes of the mesh, in the mesh's frame.
         """
         rotation, position = self._pose_in(mesh, solid)
         self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]
@@ -135,15 +121,9 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return the least distance of some candidates in the frame of a mesh, as ``distance``.
+        """Return ``distance`` of the nearest candidate; those whose bound is least come first.
 
-        Args:
-            mesh: The geom.
-            place: What triangles are measured against in the scratch model.
-            candidates: Those whose bound is least come first.
-            limit: See ``distance``.
-            segment: See ``distance``.
-            enough: The search ends at this distance or less [m].
+        Triangles are measured against the geom ``place`` of the scratch model, until one is as near as ``enough`` [m].
         """
         best, found = limit, np.zeros(6)
         for bound, triangle, other in candidates:
@@ -200,12 +180,7 @@ class TriangleTests:
 
 
 class _Triangles:
-    """The triangles of a mesh, with a box around each.
-
-    Attributes:
-        corners: Their corners, shape (n, 3, 3).
-        tree: FCL's tree of boxes.
-    """
+    """The triangles of a mesh: their corners, shape (n, 3, 3), and FCL's tree of boxes around them."""
 
     def __init__(self, vertices: Floats, triangles: Ints) -> None:
         self.corners = vertices[triangles]
@@ -218,10 +193,7 @@ class _Triangles:
     def near(self, centre: Floats, half: Floats, limit: float) -> Iterable[_Candidate]:
         """Yield the triangles whose boxes are no farther than ``limit`` from a box, the nearest first.
 
-        Args:
-            centre: Centre of the box, in the frame of the mesh [m], shape (3,).
-            half: Half its edges [m], shape (3,).
-            limit: The limit [m].
+        ``centre`` and ``half`` are its centre and half its edges, in the frame of the mesh [m], shape (3,).
         """
         apart = np.maximum(np.maximum(self._low - centre - half, centre - half - self._high), 0.0)
         bounds = np.sqrt((apart * apart).sum(axis=1))

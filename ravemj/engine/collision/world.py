@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Detection, Pairs
-from ravemj.engine.collision.rays import Hits, RayCaster, RayHit
+from ravemj.engine.collision.rays import RayCaster
 from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
@@ -35,21 +35,14 @@ class CollisionWorld:
     """The geoms of all bodies in the present model, and the pairs that were asked for before.
 
     ``Simulation.collisions`` returns it, up to date. Bodies may move in the meantime; whatever else changes makes a new
-    one.
-
-    Attributes:
-        bodies: The bodies of the world.
-        model: The model that it was made for.
-        stamp: ``Simulation.collision_stamp`` of that time.
-        shapes: Exact tests.
-        collides: For each geom, whether it collides: it belongs to an enabled link and is no mere picture.
+    one: ``stamp`` is the ``collision_stamp`` that it was made at.
     """
 
     def __init__(self, bodies: tuple[BodyState, ...], model: WorldModel, stamp: int) -> None:
         self.bodies, self.model, self.stamp = bodies, model, stamp
         self._model, self._data = model.model, model.data
         self.shapes = ShapeTests(model.model, model.data)
-        self._detection = Detection(model, self.shapes)
+        self.detection = Detection(model, self.shapes)
         self._number = {body: number for number, body in enumerate(self.bodies)}
         self._pairs: dict[Hashable, Pairs] = {}
         self._kept: dict[Hashable, Any] = {}
@@ -67,7 +60,7 @@ class CollisionWorld:
         of_geom = model.geom_bodyid
         self._owner, self._link = owners[of_geom], links[of_geom]
         self._is_solid = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
-        self.collides = self._is_solid & enabled[of_geom]
+        self._collides = self._is_solid & enabled[of_geom]
 
     def group(self, body: BodyState) -> list[BodyState]:
         """Return a body and all that are connected to it by grabbing; it comes first."""
@@ -77,14 +70,13 @@ class CollisionWorld:
     def geoms_of_body(self, body: BodyState, *, enabled_only: bool = True) -> Ints:
         """Return the geoms of a body that collide, or would if all its links were enabled."""
         number = self._number.get(body, -2)
-        among = self.collides if enabled_only else self._is_solid
+        among = self._collides if enabled_only else self._is_solid
         return np.flatnonzero(among & (self._owner == number))
 
     def geoms_of_link(self, body: BodyState, link: int, *, enabled_only: bool = True) -> Ints:
         """Return the geoms of a link that collide, or would if it were enabled."""
-        number = self._number.get(body, -2)
-        among = self.collides if enabled_only else self._is_solid
-        return np.flatnonzero(among & (self._owner == number) & (self._link == link))
+        geoms = self.geoms_of_body(body, enabled_only=enabled_only)
+        return geoms[self._link[geoms] == link]
 
     def geoms_of_group(self, body: BodyState) -> Ints:
         """Return the geoms of a body and all that are connected to it by grabbing."""
@@ -93,7 +85,7 @@ class CollisionWorld:
     def geoms_of_others(self, body: BodyState) -> Ints:
         """Return the geoms of the bodies that are not connected to this one by grabbing."""
         numbers = [self._number[one] for one in self.group(body) if one in self._number]
-        return np.flatnonzero(self.collides & ~np.isin(self._owner, numbers))
+        return np.flatnonzero(self._collides & ~np.isin(self._owner, numbers))
 
     def owner(self, geom: int) -> tuple[BodyState, int]:
         """Return the body and the index of the link that a geom belongs to."""
@@ -107,11 +99,7 @@ class CollisionWorld:
         return int(np.searchsorted(np.cumsum(part.names.geoms[link]), number, side="right"))
 
     def labels(self, geoms: NDArray[np.int32]) -> Ints:
-        """Return the index of the body in the environment, and of the link, of geoms of any shape (...).
-
-        Returns:
-            Shape (..., 2); 0 and -1 where there is no geom, -1.
-        """
+        """Return the indices of body and link of geoms (...), as (..., 2): 0 and -1 for the geom -1, which is none."""
         indices = np.array([*(body.index for body in self.bodies), 0])
         bodies, links = indices[self._owner[geoms]], self._link[geoms]
         nothing = geoms < 0
@@ -124,12 +112,7 @@ class CollisionWorld:
         return self._kept[query]
 
     def pairs(self, query: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
-        """Return the pairs that a query is about.
-
-        Args:
-            query: The query; pairs are kept under it.
-            find: Returns the first and the second geoms, where they are not known yet.
-        """
+        """Return the pairs that a query is about, which ``find`` finds where they are not known yet."""
         pairs = self._pairs.get(query)
         if pairs is None:
             first, second = find()
@@ -137,16 +120,12 @@ class CollisionWorld:
             if self._pair_count > MOST_PAIRS:
                 self._pairs.clear()
                 self._pair_count = len(first)
-            pairs = self._pairs[query] = Pairs(first, second, self._detection)
+            pairs = self._pairs[query] = Pairs(first, second, self.detection)
         return pairs
 
     def make_pairs(self, first: Ints, second: Ints) -> Pairs:
         """Return pairs of geoms for a query that is made once."""
-        return Pairs(first, second, self._detection, once=True)
-
-    def found_by_mujoco(self, first: Ints, second: Ints) -> NDArray[np.bool_]:
-        """Return which pairs of geoms MuJoCo's own collision detection looks at, shape (n,)."""
-        return self._detection.finds(first, second)
+        return Pairs(first, second, self.detection, once=True)
 
     def finds_only(self, count: int) -> bool:
         """Return whether so many pairs of geoms are all that MuJoCo looks at, and all geoms are convex.
@@ -159,18 +138,14 @@ class CollisionWorld:
     @cached_property
     def _found_count(self) -> int:
         first, second = np.triu_indices(self._model.ngeom, 1)
-        return int(np.count_nonzero(self._detection.finds(first, second)))
+        return int(np.count_nonzero(self.detection.finds(first, second)))
 
     @cached_property
     def _has_concave(self) -> bool:
         return any(map(self.shapes.is_concave, self._colliding.tolist()))
 
     def have_contacts(self, qpos: Floats) -> NDArray[np.bool_]:
-        """Return for each configuration of the world whether MuJoCo finds contacts, on all processors at once.
-
-        Args:
-            qpos: The configurations, ``MOST_AT_ONCE`` at most, shape (n, nq).
-        """
+        """Return for each of ``MOST_AT_ONCE`` configurations at most, shape (n, nq), whether MuJoCo finds contacts."""
         if _processors() == 1:
             return self._have_contacts_one_by_one(qpos)
         batch, count = self._batch, len(qpos)
@@ -228,40 +203,20 @@ class CollisionWorld:
         measured = (self.shapes.distance(*pairs.geoms(number), beyond) for number in near)
         return sum(distance <= tolerance for distance in measured)
 
-    def ray(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
-        """Return where a ray first meets one of the geoms; None: any that collides. See ``RayCaster.first_hit``."""
-        return self._ray_caster.first_hit(self._among(geoms), start, direction)
-
-    def rays(
-        self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
-    ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return where many rays first meet one of the geoms; None: any that collides. See ``RayCaster.first_hits``."""
-        return self._ray_caster.first_hits(self._among(geoms), rays, front_facing_only=front_facing_only)
-
-    def fan(self, start: Floats, directions: Floats, reach: float) -> Hits:
-        """Return what rays from one point first meet of all that collides. See ``RayCaster.cast``."""
-        return self._ray_caster.cast(self._among(None), start, directions, reach)
-
     @cached_property
-    def _ray_caster(self) -> RayCaster:
-        return RayCaster(self._model, self._data)
-
-    def _among(self, geoms: Ints | None) -> Ints:
-        return self._colliding if geoms is None else geoms
+    def rays(self) -> RayCaster:
+        """Casts rays at what collides, or at other geoms."""
+        return RayCaster(self._model, self._data, self._colliding)
 
     @cached_property
     def _colliding(self) -> Ints:
-        return np.flatnonzero(self.collides)
+        return np.flatnonzero(self._collides)
 
     @contextmanager
     def moved(self, motions: Mapping[tuple[BodyState, int], Floats]) -> Generator[None]:
-        """Put links elsewhere for the tests inside the ``with``; the bodies themselves stay.
-
-        Args:
-            motions: For a body and a link, the motion in the world, shape (4, 4).
-        """
+        """Put links elsewhere for the tests inside the ``with``, by motions in the world (4, 4); bodies stay."""
         positions, rotations = self._data.geom_xpos, self._data.geom_xmat
-        self._detection.is_overruled = True
+        self.detection.is_overruled = True
         try:
             for (body, link), motion in motions.items():
                 for geom in self.geoms_of_link(body, link, enabled_only=False):
@@ -269,7 +224,7 @@ class CollisionWorld:
                     rotations[geom] = (motion[:3, :3] @ rotations[geom].reshape(3, 3)).ravel()
             yield
         finally:
-            self._detection.is_overruled = False
+            self.detection.is_overruled = False
             mujoco.mj_kinematics(self._model, self._data)
 
 

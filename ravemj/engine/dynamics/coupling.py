@@ -27,23 +27,14 @@ SMALL = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
-    """P and its derivative at given joint values, of one configuration or of many (a last axis).
+    """P and its derivative at given joint values, of one configuration or of many (a last axis)."""
 
-    Attributes:
-        dof: How many DOFs there are.
-        count: How many velocity coordinates there are.
-        dofs: The DOFs that are coordinates themselves.
-        coordinates: These coordinates.
-        first: Further entries of P: coordinate, DOF, value.
-        second: Entries of P's derivative: coordinate, the DOF that changes, the DOF of the column, value.
-    """
-
-    dof: int
-    count: int
-    dofs: Ints
-    coordinates: Ints
-    first: list[tuple[int, int, Floats]]
-    second: list[tuple[int, int, int, Floats]]
+    dof: int  # how many DOFs there are
+    count: int  # how many velocity coordinates there are
+    dofs: Ints  # the DOFs that are coordinates themselves
+    coordinates: Ints  # these coordinates
+    first: list[tuple[int, int, Floats]]  # further entries of P: coordinate, DOF, value
+    second: list[tuple[int, int, int, Floats]]  # of P's derivative: coordinate, DOF that changes, DOF of column, value
 
     def forward(self, rates: Floats) -> Floats:
         """Return P times something: velocities of the coordinates, shape (dof, ...) to (coordinates, ...)."""
@@ -62,11 +53,7 @@ class Coupling:
         return collected
 
     def bias(self, rates: Floats) -> Floats:
-        """Return dP/dt dq/dt: accelerations of the coordinates while the DOFs keep their velocities, shape (dof, ...).
-
-        Returns:
-            Shape (coordinates, ...).
-        """
+        """Return dP/dt dq/dt: accelerations of the coordinates while the DOFs keep their velocities (dof, ...)."""
         bias = np.zeros((self.count, *rates.shape[1:]))
         for coordinate, along, dof, value in self.second:
             bias[coordinate] += value * rates[along] * rates[dof]
@@ -101,12 +88,7 @@ class CouplingMap:
         return tree.of_qpos[places[0]] if places else NO_QPOS
 
     def at(self, values: Floats, *, second: bool = True) -> Coupling:
-        """Return P and its derivative.
-
-        Args:
-            values: Joint values [rad or m], shape (dof,) or (dof, N).
-            second: Whether the derivative is wanted.
-        """
+        """Return P and, if wanted, its derivative at joint values [rad or m], shape (dof,) or (dof, N)."""
         return self.constant or self._at(values, second=second)
 
     def _at(self, values: Floats, *, second: bool) -> Coupling:
@@ -211,12 +193,7 @@ def rotation_rate(vector: Floats) -> tuple[Floats, list[Floats]]:
     """Return the matrix that takes the rate of a rotation vector to the angular velocity in the turned axes.
 
     The right Jacobian of SO(3), I - a [v] + b [v]^2 with a = (1 - cos t) / t^2, b = (t - sin t) / t^3 and t = |v|.
-
-    Args:
-        vector: Shape (3, ...).
-
-    Returns:
-        The matrix, shape (3, 3, ...), and its derivatives by the three components of the vector.
+    For a vector (3, ...) it has shape (3, 3, ...), and so have its derivatives by the vector's three components.
     """
     square = (vector * vector).sum(axis=0)
     a, a_slope = _series(square, 2)

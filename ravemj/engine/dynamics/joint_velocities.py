@@ -13,27 +13,15 @@ _ONES = np.ones(3)
 
 
 class JointAxes:
-    """Which links joints are between, and their axes.
-
-    Attributes:
-        parents: Index of the parent link of each joint, shape (joints,).
-        children: Index of the child link.
-        parent_ids: MuJoCo's index of the parent link.
-        directions: First axis, in the parent link, shape (joints, 3, 1).
-        slides: Which of them are sliders.
-        slide_parents: Index of the parent link of each slider, shape (sliders,).
-        slide_parent_ids: MuJoCo's index of it.
-        slide_child_ids: MuJoCo's index of the child link.
-        special: Those that have more than one axis, with their indices.
-        ids: MuJoCo's index of each joint; None where one has none, or has several axes.
-    """
+    """Which links joints are between, and their axes; ``..._ids`` are MuJoCo's indices, and others those of links."""
 
     def __init__(self, joints: Sequence[Joint], body_ids: Ints, ids: Ints | None = None) -> None:
+        """Take joints, with MuJoCo's indices of them, or None where one has none, or has several axes."""
         self.ids = ids
         self.parents = np.array([joint.parent for joint in joints], dtype=int)
         self.children = np.array([joint.child for joint in joints], dtype=int)
         self.parent_ids = body_ids[self.parents]
-        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3, 1)
+        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3, 1)  # in the parents
         self.slides = np.array([index for index, joint in enumerate(joints) if joint.kind == "slider"], dtype=int)
         self.slide_parents = self.parents[self.slides]
         self.slide_parent_ids, self.slide_child_ids = self.parent_ids[self.slides], body_ids[self.children[self.slides]]
@@ -41,11 +29,9 @@ class JointAxes:
         self._seen: tuple[Floats, Floats, Floats] | None = None
 
     def relative(self, velocities: Floats) -> tuple[Floats, Floats]:
-        """Return how fast child links are against their parents.
+        """Return how fast child links are against their parents, for velocities of the links, shape (links, 6).
 
-        Args:
-            velocities: Those of the links, shape (links, 6), in an array that is never changed: the same one is asked
-                for in one configuration after the other.
+        These are in an array that is never changed: the same one is asked for in one configuration after the other.
 
         Returns:
             Angular velocities, for sliders those of the origins, shape (joints, 3), and matrices that take the cross
@@ -71,14 +57,9 @@ class JointVelocities:
         self._of_dofs = JointAxes(joints, kinematics.body_ids, ids)
 
     def of(self, joints: Sequence[Joint], velocities: Floats) -> list[Floats]:
-        """Return the velocities of joints, active or passive, that velocities of links show.
+        """Return the velocities of joints, active or passive, that velocities of links, shape (links, 6), show.
 
-        Args:
-            joints: Which joints.
-            velocities: Those of the links, shape (links, 6).
-
-        Returns:
-            For each joint those of its axes [rad/s or m/s], shape (axes,).
+        They are for each joint those of its axes [rad/s or m/s], shape (axes,).
         """
         return self._shown(velocities, JointAxes(joints, self._kinematics.body_ids))
 

@@ -16,12 +16,9 @@ class Motors:
     """Motors of the joints between links, one for each velocity coordinate."""
 
     def __init__(self, armature: Floats, coulomb: Floats, viscous: Floats) -> None:
-        """Take their data.
+        """Take their data, each of shape (coordinates,).
 
-        Args:
-            armature: Inertia of the rotors behind their gears [kg m^2], shape (coordinates,).
-            coulomb: Friction at any speed [N m], shape (coordinates,).
-            viscous: Friction per speed [N m s/rad], shape (coordinates,).
+        Inertia of the rotors behind their gears [kg m^2], friction at any speed [N m] and per speed [N m s/rad].
         """
         self._armature, self._coulomb, self._viscous = armature, coulomb, viscous
 
@@ -36,14 +33,9 @@ class Motors:
         return cls(*data) if data.any() else None
 
     def torques(self, speeds: Floats, accelerations: Floats) -> Floats:
-        """Return what the motors need.
+        """Return the torques and forces [N m or N] that motors need at speeds and accelerations of the coordinates.
 
-        Args:
-            speeds: Of the coordinates [rad/s or m/s], shape (coordinates, ...).
-            accelerations: Of the coordinates, in the same shape.
-
-        Returns:
-            Torques and forces [N m or N], in the same shape.
+        All three have the same shape (coordinates, ...).
         """
         armature, coulomb, viscous = (
             one.reshape(-1, *(1,) * (speeds.ndim - 1)) for one in (self._armature, self._coulomb, self._viscous)

@@ -15,12 +15,9 @@ class Rows:
     """
 
     def __init__(self, shape: tuple[int, ...], nv: int, columns: Ints | None) -> None:
-        """Make room.
+        """Make room for numbers of a shape (without the last axis) for each of MuJoCo's ``nv`` velocities.
 
-        Args:
-            shape: Shape without the last axis.
-            nv: How many velocities MuJoCo has.
-            columns: The one of each DOF, or ``nv`` for a DOF that moves nothing; None: they are not one to one.
+        ``columns``: that of each DOF, or ``nv`` for a DOF that moves nothing; None: they are not one to one.
         """
         count = math.prod(shape)
         self._numbers = np.zeros(count * nv + 1)  # the last number stays 0
@@ -30,9 +27,5 @@ class Rows:
             self._places = np.where(columns < nv, firsts + columns, count * nv)
 
     def of_dofs(self, coupling: Floats | None) -> Floats:
-        """Return the derivatives by the DOFs, shape (..., dof); a copy.
-
-        Args:
-            coupling: The coupling matrix, shape (nv, dof); None: velocities and DOFs are one to one.
-        """
+        """Return the derivatives by the DOFs, shape (..., dof); a copy. The coupling matrix is (nv, dof), or none."""
         return self._numbers[self._places] if coupling is None else self.matrix.dot(coupling)

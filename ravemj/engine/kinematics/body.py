@@ -10,7 +10,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, wxyz_from_rows
 from ravemj.engine.compiled import Compiled, write_inertial
-from ravemj.engine.kinematics.axes import fix_to_parents
+from ravemj.engine.kinematics.displacement import fix_to_parents
 from ravemj.engine.kinematics.link_poses import LinkPoses
 from ravemj.engine.kinematics.shown_values import ShownValues
 from ravemj.engine.kinematics.spherical import SphericalJoint

@@ -6,24 +6,27 @@ goes into the fixed part of a link's pose in its parent, ``body_pos`` and ``body
 ``mj_kinematics`` gives these poses again.
 """
 
+from typing import TYPE_CHECKING
+
+import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats, inverse
-from ravemj.engine.kinematics.body import BodyKinematics
+from ravemj.core.transforms import Floats, inverse, rows_from_wxyz
+
+if TYPE_CHECKING:
+    from ravemj.engine.kinematics.body import BodyKinematics
 
 ROUNDING = 1e-10
 """A link this far [m or in its matrix] from where its joint places it is where its joint places it."""
 
 _NO_DISPLACEMENT = ROUNDING / 1000  # of a link in its parent; in a chain they add up
+_ONE_AXIS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 
-def place_links(kinematics: BodyKinematics, T_world_links: Floats, last_values: Floats) -> None:
-    """Put every link at a pose; joints get the values that the poses show.
+def place_links(kinematics: "BodyKinematics", T_world_links: Floats, last_values: Floats) -> None:
+    """Put every link at a pose, shape (links, 4, 4); joints get the values that the poses show.
 
-    Args:
-        kinematics: The body.
-        T_world_links: Shape (links, 4, 4).
-        last_values: Joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,).
+    ``last_values`` are joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,).
     """
     for root, link in enumerate(kinematics.roots):
         kinematics.set_root_transform(root, T_world_links[link])
@@ -33,7 +36,7 @@ def place_links(kinematics: BodyKinematics, T_world_links: Floats, last_values: 
         _displace(kinematics, placed, T_world_links)
 
 
-def _displace(kinematics: BodyKinematics, placed: Floats, wanted: Floats) -> None:
+def _displace(kinematics: "BodyKinematics", placed: Floats, wanted: Floats) -> None:
     """Change the fixed part of links' poses so that they come where they are wanted."""
     link_of = np.zeros(kinematics.model.nbody, dtype=int)
     link_of[kinematics.body_ids] = np.arange(len(placed))
@@ -53,3 +56,22 @@ def _inverses(transforms: Floats) -> Floats:
     inverses[:, :3, 3:] = -rotations @ transforms[:, :3, 3:]
     inverses[:, 3, 3] = 1.0
     return inverses
+
+
+def fix_to_parents(model: mujoco.MjModel, data: mujoco.MjData, positions: Floats, quaternions: Floats) -> None:
+    """Put the axes of joints where their parent links have them, as in OpenRAVE (random-api-234).
+
+    MuJoCo has them in the child links. The two axes of a ``hinge2`` and the ball of a spherical joint stay there.
+
+    ``mj_kinematics`` has run. ``positions`` and ``quaternions`` (wxyz) are where joints at rest place each link in its
+    parent, shapes (nbody, 3) [m] and (nbody, 4).
+    """
+    for body_id in np.flatnonzero(model.body_jntnum == 1).tolist():
+        joint, parent = int(model.body_jntadr[body_id]), int(model.body_parentid[body_id])
+        if model.jnt_type[joint] in _ONE_AXIS:
+            w, x, y, z = quaternions[body_id].tolist()
+            rotation = np.array(rows_from_wxyz((w, x, y, z)))
+            R_world_parent = data.xmat[parent].reshape(3, 3)
+            data.xaxis[joint] = R_world_parent @ rotation @ model.jnt_axis[joint]
+            anchor = rotation @ model.jnt_pos[joint] + positions[body_id]
+            data.xanchor[joint] = R_world_parent @ anchor + data.xpos[parent]

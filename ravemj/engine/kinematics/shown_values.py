@@ -32,11 +32,8 @@ class ShownValues:
     def read(self, T_world_links: Floats, last_values: Floats) -> Floats:
         """Return the values [rad or m], shape (dof,).
 
-        They are the last ones where only rounding is between them, so that values do not drift when poses are put back.
-
-        Args:
-            T_world_links: Shape (links, 4, 4).
-            last_values: Values to which those of hinges are next, full turns apart, shape (dof,).
+        They are the last ones where only rounding is between them, so that values do not drift when poses are put back;
+        those of hinges are next to the last ones, full turns apart.
         """
         values = last_values.copy()
         if len(dofs := self._hinges.dofs):

@@ -9,13 +9,9 @@ from ravemj.engine.simulation import BodyState
 
 
 class PhysicalBody:
-    """A body in the model of physics; the simulation says where it is, and follows.
+    """A body in the model of physics, where its roots may be free; the simulation says where it is, and follows.
 
-    Attributes:
-        state: The body in the simulation.
-        part: Its part of the model of physics, where its roots may be free.
-        body_ids: MuJoCo's index of each link there, shape (links,).
-        rows: Where the velocity coordinates of ``state.dynamics.tree`` are in ``qvel``.
+    ``rows`` are the places of the velocity coordinates of ``state.dynamics.tree`` in ``qvel``.
     """
 
     def __init__(self, state: BodyState, model: mujoco.MjModel, data: mujoco.MjData, part: ModelPart) -> None:
@@ -58,10 +54,6 @@ class PhysicalBody:
         """Whether it has a joint, or nothing holds it."""
         return self.part.is_free or len(self.rows) > 0
 
-    def give_configuration(self) -> None:
-        """Tell the simulation where the body is."""
-        self.part.give(self.state.kinematics)
-
     def give_velocities(self) -> None:
         """Tell the simulation how fast the body moves."""
         data, body_ids = self.data, self.body_ids
@@ -70,7 +62,3 @@ class PhysicalBody:
         velocities = np.concatenate([data.cvel[body_ids, 3:] + cross_rows(spins, arms), spins], axis=1)
         self.state.set_link_velocities(velocities)
         self._known = velocities
-
-    def settle(self) -> None:
-        """Take note that the body is where the simulation has it."""
-        self.part.stamp = self.state.kinematics.stamp

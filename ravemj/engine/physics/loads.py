@@ -1,4 +1,4 @@
-"""What pushes bodies during a step of physics."""
+"""What pushes bodies during a step of physics: forces, motors, and the spring with which people pull them."""
 
 from dataclasses import dataclass
 
@@ -10,33 +10,26 @@ from ravemj.engine.kinematics import NO_QPOS
 from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.simulation import BodyState
 
+_FREQUENCY = 15.0
+"""Natural frequency of what hangs on a spring [rad/s]: it follows within a fifth of a second, and hangs 4 cm low."""
+
 
 @dataclass
 class Motor:
-    """Joints that are to move at given velocities.
-
-    Attributes:
-        dofs: Which DOFs.
-        velocities: Their velocities [rad/s or m/s], shape (len(dofs),).
-    """
+    """Joints that are to move at given velocities [rad/s or m/s], shape (len(dofs),)."""
 
     dofs: Ints
     velocities: Floats
 
 
 class Loads:
-    """What pushes one body: torques and forces during the next step only, and a motor until it is let go.
-
-    Attributes:
-        torques: On the DOFs [N m or N], shape (dof,).
-        motor: What drives joints, or None.
-    """
+    """What pushes one body: torques and forces during the next step only, and a motor until it is let go."""
 
     def __init__(self, state: BodyState, motor: Motor | None = None) -> None:
         self._state = state
         self.motor = motor
         links = len(state.scene.links)
-        self.torques = np.zeros(len(state.scene.dof_axes))
+        self.torques = np.zeros(len(state.scene.dof_axes))  # on the DOFs [N m or N]
         self._forces, self._levers, self._moments = np.zeros((links, 3)), np.zeros((links, 3)), np.zeros((links, 3))
 
     def next(self) -> "Loads":
@@ -44,27 +37,14 @@ class Loads:
         return Loads(self._state, self.motor)
 
     def push(self, link: int, force: Floats, position: Floats, *, add: bool) -> None:
-        """Let a force act on a link.
-
-        Args:
-            link: Index of the link.
-            force: In the world [N], shape (3,).
-            position: Where it acts, in the world [m], shape (3,).
-            add: Whether forces that were there stay.
-        """
+        """Let a force [N] act on a link at a position [m], both in the world; ``add``: forces that were there stay."""
         T_world_link = self._state.link_transform(link)
         center = T_world_link[:3, :3] @ self._state.scene.links[link].inertial.com + T_world_link[:3, 3]
         self._forces[link] = force + add * self._forces[link]
         self._levers[link] = np.cross(position - center, force) + add * self._levers[link]
 
     def turn(self, link: int, moment: Floats, *, add: bool) -> None:
-        """Let a torque act on a link.
-
-        Args:
-            link: Index of the link.
-            moment: In world axes [N m], shape (3,).
-            add: Whether torques that were there stay.
-        """
+        """Let a torque [N m], in world axes, act on a link; ``add``: torques that were there stay."""
         self._moments[link] = moment + add * self._moments[link]
 
     def apply(self, body: PhysicalBody) -> None:
@@ -79,9 +59,7 @@ class Loads:
     def drive(self, body: PhysicalBody, applied: Floats) -> None:
         """Let the motor act: the torques with which the joints have their velocities after a time step.
 
-        Args:
-            body: The body, in a model whose accelerations are computed.
-            applied: The other forces on all joints of the model, shape (nv,).
+        The accelerations of the model are computed; ``applied`` are the other forces on all its joints, shape (nv,).
         """
         if self.motor is None:
             return
@@ -105,3 +83,41 @@ def _motor_rows(body: PhysicalBody, motor: Motor) -> tuple[Ints, Floats, Floats]
     rows = body.rows[[coordinates[int(qpos)] for qpos in kinematics.qpos_indices[dofs]]]
     torques = [body.state.scene.dof_axes[int(dof)].max_torque or np.inf for dof in dofs]
     return rows, motor.velocities[places], np.array(torques)
+
+
+@dataclass(eq=False)
+class Spring:
+    """A spring between a point of a link and a place in the world, and a damper that keeps it from swinging.
+
+    It is as stiff as suits the mass that it feels.
+    """
+
+    state: BodyState
+    link: int
+    point: Floats  # in the link [m], shape (3,)
+    goal: Floats  # in the world [m], shape (3,)
+
+    @property
+    def place(self) -> Floats:
+        """Where the point is now, in the world [m], shape (3,)."""
+        T_world_link = self.state.link_transform(self.link)
+        return T_world_link[:3, :3] @ self.point + T_world_link[:3, 3]
+
+    def act(self, body: PhysicalBody, applied: Floats) -> None:
+        """Let the spring act during the next time step, beside the forces applied to all links, shape (bodies, 6).
+
+        The force is m (w^2 d - 2 w v), critically damped, with d the way to the goal, v the velocity of the point and m
+        the mass that is felt there: the inverse of the mean of the diagonal of J M^-1 J^T.
+        """
+        model, data, body_id = body.model, body.data, int(body.body_ids[self.link])
+        mujoco.mj_forward(model, data)
+        place = data.xpos[body_id] + data.xmat[body_id].reshape(3, 3) @ self.point
+        jacobian, answers = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, jacobian, None, place, body_id)
+        mujoco.mj_solveM(model, data, answers, jacobian)
+        mobility = float(np.einsum("ij,ij->", jacobian, answers)) / 3
+        if mobility > 0:  # nothing else moves the link
+            pull = _FREQUENCY**2 * (self.goal - place) - 2 * _FREQUENCY * (jacobian @ data.qvel)
+            force = pull / mobility
+            wrench = np.concatenate([force, np.cross(place - data.xipos[body_id], force)])
+            data.xfrc_applied[body_id] = applied[body_id] + wrench

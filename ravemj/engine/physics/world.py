@@ -8,16 +8,16 @@ it the simulation follows. So it can be made anew whenever bodies come, go or ch
 import itertools
 import logging
 import math
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats, wxyz_from_rows
-from ravemj.engine.collision.resting import tested_pairs
+from ravemj.engine.collision.queries import tested_pairs
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.physics.body import PhysicalBody
-from ravemj.engine.physics.loads import Loads
-from ravemj.engine.physics.spring import Spring
+from ravemj.engine.physics.loads import Loads, Spring
 from ravemj.engine.simulation import BodyState, Compiled, Simulation
 from ravemj.errors import Diagnostics
 from ravemj.formats.mjcf import Mjcf, Options
@@ -30,27 +30,17 @@ LONGEST_STEP = 0.002
 
 
 class Physics:
-    """Moves the bodies of a simulation as their masses, forces, joints and contacts say.
-
-    Attributes:
-        self_collisions: Whether links of one body collide with one another.
-        spring: What someone pulls with, or None.
-    """
+    """Moves the bodies of a simulation as their masses, forces, joints and contacts say."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self.self_collisions = True
-        self.spring: Spring | None = None
+        self.self_collisions = True  # of links of one body with one another
+        self.spring: Spring | None = None  # what someone pulls with
         self._loads: dict[BodyState, Loads] = {}
         self._bodies: dict[BodyState, PhysicalBody] = {}
         self._made_of: list[object] = []
         self._model = mujoco.MjModel.from_xml_string("<mujoco/>")
         self._data = mujoco.MjData(self._model)
-
-    def set_self_collisions(self, value: bool) -> None:
-        """Say whether links of one body collide with one another."""
-        self.self_collisions = value
-        self._made_of.clear()
 
     def loads(self, state: BodyState) -> Loads:
         """Return what pushes a body during the next step, to be changed."""
@@ -59,11 +49,7 @@ class Physics:
         return self._loads[state]
 
     def step(self, timestep: float) -> None:
-        """Let time pass: the bodies move, and the simulation follows.
-
-        Args:
-            timestep: How long [s].
-        """
+        """Let time [s] pass: the bodies move, and the simulation follows."""
         self.prepare()
         model, data = self._model, self._data
         count = math.ceil(timestep / LONGEST_STEP)
@@ -102,9 +88,8 @@ class Physics:
     def prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over gravity and what users moved."""
         states = self._simulation.bodies
-        made_of: list[object] = [
-            part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs)
-        ]
+        parts = (part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs))
+        made_of: list[object] = [self.self_collisions, *parts]
         if len(made_of) != len(self._made_of) or any(a is not b for a, b in zip(made_of, self._made_of, strict=True)):
             self._make(states)
             self._made_of = made_of
@@ -146,13 +131,7 @@ class Physics:
         return pairs.difference(tested_pairs(self._simulation.collisions(), state)) if self.self_collisions else pairs
 
     def joint_wrench(self, state: BodyState, child: int, anchor: Floats) -> tuple[Floats, Floats]:
-        """Return the force on a link from its parent [N], and the torque about a point [N m], in world axes.
-
-        Args:
-            state: The body.
-            child: Index of the link.
-            anchor: The point, in the world [m], shape (3,).
-        """
+        """Return the force on a link from its parent [N], and the torque about a point [N m], in world axes."""
         body_id = self._body_id(state, child)
         if body_id is None:
             return np.zeros(3), np.zeros(3)
@@ -173,9 +152,8 @@ class Physics:
     def link_acceleration(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
         """Return the acceleration of a link's origin without that of free fall, and its angular acceleration.
 
-        Returns:
-            What an accelerometer there measures [m/s^2], gravity's opposite at rest, and [rad/s^2], each of shape (3,),
-            in world axes; zero if no step has seen the body.
+        That is what an accelerometer there measures [m/s^2], gravity's opposite at rest, and [rad/s^2], each of shape
+        (3,), in world axes; zero if no step has seen the body.
         """
         body_id, acceleration = self._body_id(state, link), np.zeros(6)
         if body_id is not None:
@@ -184,28 +162,19 @@ class Physics:
         return acceleration[3:], acceleration[:3]
 
     def link_contacts(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
-        """Return the points where a link is touched [m] and the forces on it there [N].
-
-        Returns:
-            Each of shape (contacts, 3), in the world.
-        """
+        """Return the points where a link is touched [m] and the forces on it there [N], each (n, 3), in the world."""
         body_id = self._body_id(state, link)
         touches = [] if body_id is None else self._touches()
-        points = [point for sides, point, _ in touches if body_id in sides]
-        forces = [push if sides[1] == body_id else -push for sides, _, push in touches if body_id in sides]
-        return np.array(points).reshape(-1, 3), np.array(forces).reshape(-1, 3)
+        felt = [touch for touch in touches if body_id in touch[0]]
+        return _columns((point, push if sides[1] == body_id else -push) for sides, point, push in felt)
 
     def contacts(self) -> tuple[Floats, Floats]:
-        """Return the points of all contacts of the last step [m], and the force at each [N].
+        """Return the points of all contacts of the last step [m], and the force at each [N], each (n, 3), in the world.
 
-        Returns:
-            Each of shape (contacts, 3), in the world; the force is that on the body that can move, and on either of
-            two that can.
+        The force is that on the body that can move, and on either of two that can.
         """
         touches, fixed = self._touches(), self._model.body_weldid == 0
-        points = [point for _, point, _ in touches]
-        forces = [-push if fixed[sides[1]] else push for sides, _, push in touches]
-        return np.array(points).reshape(-1, 3), np.array(forces).reshape(-1, 3)
+        return _columns((point, -push if fixed[sides[1]] else push) for sides, point, push in touches)
 
     def mean_weight(self) -> float:
         """Return the mean weight of the links that can move [N]; 0 where none can or nothing falls."""
@@ -246,10 +215,16 @@ class Physics:
         held = {grab.body for state in self._bodies for grab in state.grabs}
         own = [body for body in moving if body.state not in held]
         for body in own:
-            body.give_configuration()
+            body.part.give(body.state.kinematics)
         for body in own:
             body.state.moved()
         for body in own:
-            body.settle()
+            body.part.stamp = body.state.kinematics.stamp  # it is where the simulation has it
         for body in moving:
             body.give_velocities()
+
+
+def _columns(pairs: Iterable[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Return the first and the second vectors of pairs, each of shape (n, 3)."""
+    both = np.array(list(pairs)).reshape(-1, 2, 3)
+    return both[:, 0], both[:, 1]

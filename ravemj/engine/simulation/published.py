@@ -8,16 +8,11 @@ from ravemj.core.transforms import Floats
 
 
 class Published:
-    """A copy of the state of the world, for which nobody needs the lock of the simulation.
-
-    Attributes:
-        number: How many copies there were so far.
-        is_wanted: Whether a viewer waits for the simulation; copies are made for nobody else.
-    """
+    """A copy of the state of the world, for which nobody needs the lock of the simulation."""
 
     def __init__(self) -> None:
-        self.number = 0
-        self.is_wanted = False
+        self.number = 0  # how many copies there were so far
+        self.is_wanted = False  # whether a viewer waits for the simulation; copies are made for nobody else
         self._lock = Lock()
         self._model: mujoco.MjModel | None = None
         self._data: mujoco.MjData | None = None
@@ -39,14 +34,7 @@ class Published:
             return True
 
     def poses(self, model: mujoco.MjModel) -> tuple[Floats, Floats] | None:
-        """Return positions, shape (B, 3) [m], and quaternions wxyz, shape (B, 4), of the bodies in the world.
-
-        Args:
-            model: The model that numbers the bodies.
-
-        Returns:
-            Copies; None if the state is of another model.
-        """
+        """Return positions (B, 3) [m] and quaternions wxyz (B, 4) of a model's bodies; None for another model."""
         with self._lock:
             if self._data is None or self._model is not model:
                 return None

@@ -77,21 +77,13 @@ class Simulation:
         return BodyState(scene, self)
 
     def add(self, scene: KinBody) -> BodyState:
-        """Add a new body in its loaded configuration.
-
-        Raises:
-            RavemjError: a body of that name is already there.
-        """
+        """Add a new body in its loaded configuration; errors as for ``insert``."""
         body = self.create(scene)
         self.insert(body)
         return body
 
     def insert(self, body: BodyState, index: int | None = None) -> None:
-        """Take a body into the world, in the pose that it has.
-
-        Args:
-            body: The body.
-            index: Its index, which is free; None: the first free one.
+        """Take a body into the world, in the pose that it has, with a free index or by default the first free one.
 
         Raises:
             RavemjError: a body of that name is already there, or the name is empty.
@@ -169,11 +161,7 @@ class Simulation:
     def copy(self, other: "Simulation", *, bodies: bool = True) -> dict[BodyState, BodyState]:
         """Replace bodies, view and gravity by copies of another world's. The caller holds both locks.
 
-        Joints outside their limits go to them, as in OpenRAVE (random-api-232).
-
-        Args:
-            other: The other world.
-            bodies: Whether its bodies are copied; else this world is empty.
+        Joints outside their limits go to them, as in OpenRAVE (random-api-232). Without ``bodies`` this world is empty.
 
         Returns:
             For each body of the other world its copy.
@@ -221,11 +209,7 @@ class Simulation:
             self.published.put(world.model, world.data)
 
     def compile(self) -> "WorldModel":
-        """Return the model of the present bodies, which may be elsewhere than the bodies are.
-
-        Raises:
-            CompileError: MuJoCo refuses the model.
-        """
+        """Return the model of the present bodies, which may be elsewhere than they are; errors as for ``compiled``."""
         with self.lock:
             if self._world is None:
                 self._world = self._compile()
@@ -233,11 +217,7 @@ class Simulation:
             return self._world
 
     def collisions(self) -> "CollisionWorld":
-        """Return what collision checking knows of the present bodies as they are now. The caller holds ``lock``.
-
-        Raises:
-            CompileError: MuJoCo refuses the model.
-        """
+        """Return what collision checking knows of the present bodies as they are now. The caller holds ``lock``."""
         model, stamp, known = self._world, self.collision_stamp, self._collisions
         if model is None or not model.stamp:
             model = self.compiled()

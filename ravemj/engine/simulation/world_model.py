@@ -7,7 +7,7 @@ import mujoco
 
 from ravemj.core.transforms import Ints
 from ravemj.engine.compiled import Compiled, write_inertial
-from ravemj.engine.kinematics import NO_QPOS, BodyKinematics
+from ravemj.engine.kinematics import NO_QPOS
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.simulation.body import BodyState
 from ravemj.errors import Diagnostics
@@ -55,13 +55,6 @@ class WorldModel(Compiled):
                 self._described[body] = body.scene
             if (body.is_compiled or not _is_at_reference(body.scene)) and part.take(body.own_kinematics):
                 self.pose_stamp += 1
-        self.stamp += 1
-        mujoco.mj_kinematics(self.model, self.data)
-
-    def follow(self, part: ModelPart, kinematics: BodyKinematics) -> None:
-        """Take over the joint values of one body; in fewer steps than ``take``."""
-        if part.take(kinematics):
-            self.pose_stamp += 1
         self.stamp += 1
         mujoco.mj_kinematics(self.model, self.data)
 

@@ -10,12 +10,14 @@ convention (see :mod:`ravemj.graphics.rendering.camera`).
 """
 
 import logging
+from functools import partial
 from typing import Protocol, Self
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.camera import (
     Camera,
     CameraIntrinsics,
@@ -26,8 +28,7 @@ from ravemj.graphics.rendering.camera import (
     view_from_above,
 )
 from ravemj.graphics.rendering.checks import WHITE
-from ravemj.graphics.rendering.style import AS_IT_IS, Style
-from ravemj.graphics.rendering.visibility import drawn_geoms
+from ravemj.graphics.rendering.style import AS_IT_IS, Style, drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
 
 __all__ = [
@@ -81,54 +82,31 @@ class Renderer(Protocol):
             ArgumentError: the data are of another model, or the background is no colour.
             RenderingError: the renderer is closed.
         """
-        ...
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
         """Say which geom each pixel centre shows; drawings hide nothing.
 
-        Args:
-            data: State of the model with the poses computed.
-            camera: Where the picture is taken from.
+        Arguments and errors as for ``render``.
 
         Returns:
             A new array (height, width) of geom ids, -1 where nothing is. Transparent geoms count.
-
-        Raises:
-            ArgumentError: the data are of another model.
-            RenderingError: the renderer is closed.
         """
-        ...
 
     def resize(self, width: int, height: int, samples: int) -> None:
-        """Draw pictures of another size from now on, or with other samples per pixel; that takes a millisecond.
-
-        Args:
-            width: Columns of the pictures.
-            height: Rows of the pictures.
-            samples: Samples per pixel against jagged edges, 0 or 4.
-        """
-        ...
+        """Draw pictures of another size from now on, or with other samples per pixel; that takes a millisecond."""
 
     def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
         """Measure how far away what each pixel centre shows is; drawings hide nothing.
 
-        Args:
-            data: State of the model with the poses computed.
-            camera: Where the picture is taken from.
+        Arguments and errors as for ``render``.
 
         Returns:
             A new array (height, width) of distances along the viewing direction [m], infinite where nothing is.
             Transparent geoms count.
-
-        Raises:
-            ArgumentError: the data are of another model.
-            RenderingError: the renderer is closed.
         """
-        ...
 
     def close(self) -> None:
         """Free what the renderer holds. Also done at the end of a ``with`` block."""
-        ...
 
     def __enter__(self) -> Self: ...
     def __exit__(self, *_: object) -> None: ...
@@ -157,9 +135,25 @@ def open_renderer(
         ArgumentError: a size that is not positive, or an argument that is not among those named here.
         RenderingError: the backend that was asked for does not work here; the message says why.
     """
-    from ravemj.graphics.rendering.backends import opened  # noqa: PLC0415 - slow to import
+    from ravemj.graphics.rendering import contexts  # noqa: PLC0415 - slow to import
+    from ravemj.graphics.rendering.gl import GlRenderer  # noqa: PLC0415
     from ravemj.graphics.rendering.gl_scene import Quality  # noqa: PLC0415
+    from ravemj.graphics.rendering.ray import RayRenderer  # noqa: PLC0415
 
-    renderer = opened(model, Quality(width, height, shadows, samples), backend)
+    known = (*contexts.GL_BACKENDS, contexts.RAY)
+    if width < 1 or height < 1:
+        raise ArgumentError(f"picture size {width} x {height}: expected at least 1 x 1 pixels")
+    if samples not in (0, 4):
+        raise ArgumentError(f"samples is {samples}, expected 0 or 4")
+    if backend is not None and backend not in known:
+        raise ArgumentError(f"backend is {backend!r}, expected one of {', '.join(known)}")
+    make = partial(GlRenderer, model, Quality(width, height, shadows, samples))
+    chosen = backend or contexts.requested_backend()
+    renderer: Renderer | None = None
+    if chosen is None:
+        renderer = contexts.make_with_any_backend(make)
+    elif chosen != contexts.RAY:
+        renderer = contexts.make_with_backend(chosen, make)
+    renderer = renderer or RayRenderer(model, width, height, samples)
     _LOG.info("pictures of %d x %d are drawn by %s", width, height, renderer.backend)
     return renderer

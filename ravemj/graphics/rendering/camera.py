@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats, Ints, normalize, rows_from_wxyz
 from ravemj.errors import ArgumentError
-from ravemj.graphics.rendering.visibility import drawn_geoms
+from ravemj.graphics.rendering.style import drawn_geoms
 
 DEFAULT_FOVY = math.radians(45)
 """Vertical field of view of OpenRAVE's viewers [rad]."""
@@ -29,19 +29,12 @@ _SHAPES = "a 4x4 matrix, a 3x4 matrix or a pose [w, x, y, z, tx, ty, tz]"
 
 
 class Pinhole(NamedTuple):
-    """How a camera maps directions to pixels; continuous coordinates, (0, 0) is the top left corner of the image.
+    """How a camera maps directions to pixels; continuous coordinates, (0, 0) is the top left corner of the image."""
 
-    Attributes:
-        fx: Focal length along the columns [pixels].
-        fy: Focal length along the rows [pixels].
-        cx: Column of the principal point [pixels].
-        cy: Row of the principal point [pixels].
-    """
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
+    fx: float  # focal length along the columns [pixels]
+    fy: float  # focal length along the rows [pixels]
+    cx: float  # column of the principal point [pixels]
+    cy: float  # row of the principal point [pixels]
 
 
 @dataclass(eq=False)
@@ -125,12 +118,7 @@ class Camera:
         return replace(self, calibration=Pinhole(*(factor * part for part in self.calibration)))
 
     def project(self, points: ArrayLike, width: int, height: int) -> tuple[Floats, Floats]:
-        """Project points of the world into an image.
-
-        Args:
-            points: World coordinates, (N, 3) [m].
-            width: Columns of the image.
-            height: Rows of the image.
+        """Project points of the world (N, 3) [m] into an image of that many columns and rows.
 
         Returns:
             Pixel coordinates (N, 2), columns first, continuous: (0, 0) is the top left corner of the image and
@@ -162,12 +150,7 @@ class Camera:
 
 
 def view_from_above(center: ArrayLike, radius: float) -> Camera:
-    """Return the view with which OpenRAVE's window opens: straight down, world +y up in the picture.
-
-    Args:
-        center: Centre of the bounding sphere of what should be seen, world coordinates (3,) [m].
-        radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height.
-    """
+    """Return the view with which OpenRAVE's window opens: straight down, world +y up; see ``three_quarter_view``."""
     return _looking_at(center, radius, forward=(0.0, 0.0, -1.0), up=(0.0, 1.0, 0.0))
 
 
@@ -179,20 +162,15 @@ def three_quarter_view(center: ArrayLike, radius: float) -> Camera:
         radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height.
     """
     azimuth, elevation = math.radians(40), math.radians(25)
-    forward = (
-        -math.cos(elevation) * math.cos(azimuth),
-        -math.cos(elevation) * math.sin(azimuth),
-        -math.sin(elevation),
-    )
+    level = -math.cos(elevation)
+    forward = (level * math.cos(azimuth), level * math.sin(azimuth), -math.sin(elevation))
     return _looking_at(center, radius, forward, up=(0.0, 0.0, 1.0))
 
 
 def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:
     """Return a sphere around everything that the renderers draw, planes apart.
 
-    Args:
-        model: The compiled model.
-        data: Its state, with the poses of the geoms computed (``mj_kinematics`` or ``mj_forward``).
+    The poses of the geoms are computed (``mj_kinematics`` or ``mj_forward``).
 
     Returns:
         Centre in the world (3,) [m] and radius [m]; the unit sphere at the origin where there is nothing to see.

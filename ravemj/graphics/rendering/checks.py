@@ -9,19 +9,24 @@ from ravemj.errors import ArgumentError
 WHITE = (1.0, 1.0, 1.0)
 
 
-def color_bytes(color: ArrayLike) -> NDArray[np.uint8]:
-    """Return a colour of three numbers 0..1 as the bytes of a pixel, (3,).
+def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:
+    """Return a colour as three floats.
 
     Raises:
-        ArgumentError: not three numbers between 0 and 1.
+        ArgumentError: it is not three numbers from 0 to 1.
     """
     try:
-        numbers = np.asarray(color, dtype=np.float64)
+        red, green, blue = (float(part) for part in np.asarray(colour, dtype=np.float64).reshape(-1)[:4])
     except (TypeError, ValueError):
-        raise ArgumentError(f"background: expected three numbers between 0 and 1, found {color!r}") from None
-    if numbers.shape != (3,) or not ((numbers >= 0) & (numbers <= 1)).all():
-        raise ArgumentError(f"background: expected three numbers between 0 and 1, found {numbers.tolist()}")
-    return np.rint(255 * numbers).astype(np.uint8)
+        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}") from None
+    if not all(0 <= part <= 1 for part in (red, green, blue)):
+        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}")
+    return (red, green, blue)
+
+
+def color_bytes(color: ArrayLike) -> NDArray[np.uint8]:
+    """Return a colour of three numbers 0..1 as the bytes of a pixel, (3,); errors as for ``checked_colour``."""
+    return np.rint(255 * np.array(checked_colour(color))).astype(np.uint8)
 
 
 def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:

@@ -22,7 +22,7 @@ from collections.abc import Callable, Generator
 from typing import Protocol, TypeVar
 
 from ravemj.errors import RenderingError
-from ravemj.graphics.rendering.egl_check import check_egl
+from ravemj.graphics.rendering.egl_check import check_egl, variable_restored
 
 RAY = "ray"
 GL_BACKENDS = ("egl", "osmesa", "glfw")
@@ -69,7 +69,7 @@ class OffscreenContext:
             raise RenderingError(f"{backend} cannot draw in a process that {' and '.join(_used)} draws in already")
         if backend not in _used:
             _CHECKS[backend]()
-        with _pyopengl_platform_restored():
+        with variable_restored("PYOPENGL_PLATFORM"):  # mujoco.egl sets it; children would inherit it and fail
             context_class: type[_GLContext] = importlib.import_module(f"mujoco.{backend}").GLContext
             self._context = _make_glfw(context_class) if backend == "glfw" else context_class(64, 64)
         _used.add(backend)
@@ -128,11 +128,7 @@ def requested_backend() -> str | None:
 
 
 def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
-    """Make something in a new context of one backend.
-
-    Args:
-        backend: One of ``GL_BACKENDS``.
-        make: Called with the context; takes over the duty to close it.
+    """Make something in a new context of one of ``GL_BACKENDS``; ``make`` takes over the duty to close the context.
 
     Raises:
         RenderingError: the backend does not work; the message says why and how to install it.
@@ -149,10 +145,7 @@ def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -
 def make_with_any_backend(make: Callable[[OffscreenContext], _Made]) -> _Made | None:
     """Make something in a context of the first backend that works; None where none does.
 
-    The one that worked is remembered, and tried first from then on.
-
-    Args:
-        make: Called with the context; takes over the duty to close it.
+    The one that worked is remembered, and tried first from then on. ``make`` takes over the duty to close the context.
     """
     for backend in _order():
         try:
@@ -193,18 +186,6 @@ def _order() -> tuple[str, ...]:
 def _close_all() -> None:
     for resource in list(_open):
         resource.close()
-
-
-@contextlib.contextmanager
-def _pyopengl_platform_restored() -> Generator[None]:
-    """Undo what mujoco.egl and mujoco.osmesa write into the environment: children inherit it and then fail."""
-    name = "PYOPENGL_PLATFORM"
-    before = os.environ.get(name)
-    try:
-        yield
-    finally:
-        if before is None:
-            os.environ.pop(name, None)
 
 
 def _check_osmesa() -> None:

@@ -5,7 +5,7 @@ import os
 import signal
 import subprocess
 import sys
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 
@@ -25,21 +25,13 @@ except Exception as error:
 """
 
 
-@dataclass(frozen=True)
-class BackendReport:
-    """What one backend does on this machine.
+class BackendReport(NamedTuple):
+    """What one backend does on this machine."""
 
-    Attributes:
-        name: ``egl``, ``osmesa``, ``glfw`` or ``ray``.
-        works: Whether a picture can be drawn with it.
-        detail: The driver that draws, or why it does not work, in one line.
-        install: What to install where it does not work; else empty.
-    """
-
-    name: str
+    name: str  # ``egl``, ``osmesa``, ``glfw`` or ``ray``
     works: bool
-    detail: str
-    install: str
+    detail: str  # the driver that draws, or why it does not work, in one line
+    install: str  # what to install where it does not work; else empty
 
 
 def probe_backends() -> list[BackendReport]:
@@ -58,15 +50,15 @@ def driver_name(backend: str) -> str:
     Raises:
         Exception: whatever the backend raises where it does not work.
     """
-    return attempt(backend, _driver_name)
 
+    def ask(context: OffscreenContext) -> str:
+        model = mujoco.MjModel.from_xml_string("<mujoco/>")
+        with GlRenderer(model, Quality(16, 16, samples=0), context), context.current():
+            gl = importlib.import_module("OpenGL.GL")
+            name: bytes | None = gl.glGetString(gl.GL_RENDERER)
+        return name.decode(errors="replace") if name else "an unnamed OpenGL driver"
 
-def _driver_name(context: OffscreenContext) -> str:
-    model = mujoco.MjModel.from_xml_string("<mujoco/>")
-    with GlRenderer(model, context, Quality(16, 16, samples=0)), context.current():
-        gl = importlib.import_module("OpenGL.GL")
-        name: bytes | None = gl.glGetString(gl.GL_RENDERER)
-    return name.decode(errors="replace") if name else "an unnamed OpenGL driver"
+    return attempt(backend, ask)
 
 
 def probe(backend: str) -> BackendReport:

@@ -18,14 +18,7 @@ _Floats32 = NDArray[np.float32]
 def add_drawing_geoms(
     scene: mujoco.MjvScene, primitives: Primitives, camera: Camera, width: int, height: int
 ) -> list[_Floats32]:
-    """Append drawings to a scene that has been updated; what does not fit is left out.
-
-    Args:
-        scene: The scene.
-        primitives: The drawings, in the world.
-        camera: Where the picture is taken from.
-        width: Columns of the picture.
-        height: Rows of the picture.
+    """Append drawings in the world to a scene that has been updated; what does not fit is left out.
 
     Returns:
         The widths of what is as wide as said on the screen, each (N, 2), which may be written to [pixels].

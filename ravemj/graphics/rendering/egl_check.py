@@ -20,7 +20,7 @@ def check_egl() -> None:
     library = _load(("libEGL.so.1",))
     try:
         _load(("libOpenGL.so.0", "libGL.so.1"))
-        with _quiet():
+        with variable_restored("EGL_LOG_LEVEL", "fatal"):  # else Mesa writes its own warnings to stderr
             _initialize_a_device(library)
     except BaseException:
         _ctypes.dlclose(library._handle)  # pyright: ignore[reportPrivateUsage] - documented in the manual
@@ -65,14 +65,14 @@ def _address(library: ctypes.CDLL, name: bytes) -> int:
 
 
 @contextlib.contextmanager
-def _quiet() -> Generator[None]:
-    """Keep Mesa from writing its own warnings to stderr."""
-    name = "EGL_LOG_LEVEL"
+def variable_restored(name: str, meanwhile: str | None = None) -> Generator[None]:
+    """Give an environment variable that is not set a value meanwhile, and remove it afterwards, whoever set it."""
     if name in os.environ:
         yield
         return
-    os.environ[name] = "fatal"
+    if meanwhile is not None:
+        os.environ[name] = meanwhile
     try:
         yield
     finally:
-        del os.environ[name]
+        os.environ.pop(name, None)

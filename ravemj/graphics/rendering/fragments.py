@@ -30,17 +30,11 @@ _SLACK = 1e-9
 
 
 class Fragments(NamedTuple):
-    """What drawings contribute to rays, in any order.
+    """What drawings contribute to rays, in any order."""
 
-    Attributes:
-        ray: Index of the ray, (N,).
-        depth: Depth along the viewing direction, (N,) [m].
-        color: Colour and opacity, (N, 4): 0..255 and 0..1.
-    """
-
-    ray: Ints
-    depth: Floats
-    color: Floats
+    ray: Ints  # index of the ray, (N,)
+    depth: Floats  # along the viewing direction, (N,) [m]
+    color: Floats  # colour and opacity, (N, 4): 0..255 and 0..1
 
     def select(self, chosen: NDArray[np.bool_]) -> "Fragments":
         """Return some of the fragments, by a mask (N,)."""
@@ -79,21 +73,13 @@ NO_FRAGMENTS = Fragments(np.empty(0, dtype=np.int_), np.empty(0), np.empty((0, 4
 
 @dataclass
 class Raster:
-    """Finds the fragments of drawings in one picture.
-
-    Attributes:
-        camera: Where the picture is taken from.
-        size: Columns and rows.
-        lights: What falls on triangles and spheres.
-        offset: Where rays go through the pixels, from their centres to the right and down [pixels].
-        ray_of_pixel: Index of the ray of each pixel, (H * W,), -1 where none is wanted; None: its own number.
-    """
+    """Finds the fragments of drawings in one picture."""
 
     camera: Camera
-    size: tuple[int, int]
-    lights: Lights
-    offset: tuple[float, float] = (0.0, 0.0)
-    ray_of_pixel: Ints | None = None
+    size: tuple[int, int]  # columns and rows
+    lights: Lights  # what falls on triangles and spheres
+    offset: tuple[float, float] = (0.0, 0.0)  # of rays from the centres of the pixels, right and down [pixels]
+    ray_of_pixel: Ints | None = None  # index of the ray of each pixel, (H * W,), -1: none; None: its own number
 
     def fragments(self, primitives: Primitives) -> Fragments:
         """Return what drawings, given in the world, cover."""
@@ -161,8 +147,7 @@ class Raster:
         """Return the rectangles on the screen; where the plane of the eye cuts a sphere, the whole of it."""
         x_or_y, depth, r = center[:, :2], center[:, 2:], radius[:, None]
         in_front = (depth > r)[:, 0]
-        low, high = np.full((2, len(radius), 2), np.inf)
-        low[:] = -np.inf
+        low, high = _whole_screen(len(radius))
         x_or_y, depth, r = x_or_y[in_front], depth[in_front], r[in_front]
         aside = r * np.sqrt(x_or_y**2 + depth**2 - r**2)
         focal, principal = np.array(self._pinhole).reshape(2, 2)
@@ -190,8 +175,7 @@ class Raster:
     def _around_triangles(self, corners: Floats) -> tuple[Floats, Floats]:
         """Return the rectangles on the screen; where the plane of the eye cuts a triangle, the whole of it."""
         in_front = (corners[:, :, 2] > _NEAREST).all(axis=1)
-        low, high = np.full((2, len(corners), 2), np.inf)
-        low[:] = -np.inf
+        low, high = _whole_screen(len(corners))
         on_screen = self._project(corners[in_front])
         low[in_front], high[in_front] = on_screen.min(axis=1), on_screen.max(axis=1)
         return low, high
@@ -238,6 +222,11 @@ class Raster:
                 wanted = ray >= 0
                 owner, ray, row, column = owner[wanted], ray[wanted], row[wanted], column[wanted]
             yield owner, ray, np.stack([column, row], axis=1) + center
+
+
+def _whole_screen(count: int) -> tuple[Floats, Floats]:
+    """Return the least and the largest coordinates of rectangles without bounds, each (count, 2)."""
+    return np.full((count, 2), -np.inf), np.full((count, 2), np.inf)
 
 
 def _select(batch: PrimitiveBatch, chosen: NDArray[np.bool_]) -> PrimitiveBatch:

@@ -27,7 +27,7 @@ class GlRenderer:
         backend: The platform of the context: ``egl``, ``osmesa`` or ``glfw``.
     """
 
-    def __init__(self, model: mujoco.MjModel, context: OffscreenContext, quality: Quality) -> None:
+    def __init__(self, model: mujoco.MjModel, quality: Quality, context: OffscreenContext) -> None:
         self._gl_scene: GlScene | None = None
         self.backend = context.backend
         self._model = model

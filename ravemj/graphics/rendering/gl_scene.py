@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera, bounding_sphere
 from ravemj.graphics.rendering.drawing_geoms import add_drawing_geoms
-from ravemj.graphics.rendering.style import AS_IT_IS, Style
-from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms
+from ravemj.graphics.rendering.style import AS_IT_IS, DRAWN_GROUPS, Style, drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
 
 SHADOW_SIZE = 2048
@@ -55,19 +54,12 @@ _LOG = logging.getLogger("ravemj")
 
 @dataclass(frozen=True)
 class Quality:
-    """What an OpenGL context is made for; it cannot be changed afterwards.
+    """What an OpenGL context is made for; it cannot be changed afterwards."""
 
-    Attributes:
-        width: Columns of the offscreen buffer.
-        height: Rows of the offscreen buffer.
-        shadows: Whether lights that cast shadows do so. MuJoCo's headlight never does.
-        samples: Samples per pixel against jagged edges, 0 or 4.
-    """
-
-    width: int
-    height: int
-    shadows: bool = False
-    samples: int = 4
+    width: int  # columns of the offscreen buffer
+    height: int  # rows of the offscreen buffer
+    shadows: bool = False  # whether lights that cast shadows do so; MuJoCo's headlight never does
+    samples: int = 4  # per pixel against jagged edges, 0 or 4
 
 
 class GlScene:
@@ -76,7 +68,6 @@ class GlScene:
     Attributes:
         scene: MuJoCo's list of what is drawn; filled by :meth:`fill`.
         context: MuJoCo's resources on the graphics card.
-        has_background: Whether the model has the skybox texture that background colours are painted with.
     """
 
     def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
@@ -115,13 +106,8 @@ class GlScene:
     ) -> None:
         """Take over the poses of the geoms, the drawings and the point of view.
 
-        Args:
-            data: State of the model with the poses computed.
-            camera: Where the picture is taken from.
-            size: Columns and rows of the viewport.
-            primitives: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw
-                these once more for each light that casts some, and add the colours up.
-            style: How the geoms are drawn.
+        With points or lines there are no shadows: MuJoCo would draw these once more for each light that casts some, and
+        add the colours up. ``size`` is columns and rows of the viewport.
         """
         self._make_room(len(primitives))
         has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
@@ -141,11 +127,7 @@ class GlScene:
         self._widths = [(array, array.copy()) for array in add_drawing_geoms(self.scene, primitives, camera, *size)]
 
     def aim(self, camera: Camera, size: tuple[int, int]) -> tuple[float, float]:
-        """Look at what was filled in from elsewhere; arguments as for ``fill``.
-
-        Returns:
-            Nearest and farthest depth that is drawn [m].
-        """
+        """Look at what was filled in from elsewhere; return the nearest and the farthest depth that is drawn [m]."""
         depths = self._contents.depths(camera)
         aim(self.scene, camera, size, depths)
         self._columns = size[0]
@@ -169,12 +151,10 @@ class GlScene:
             self._make_scene(min(2 * figures, _MAX_FIGURES))
 
     def draw(self, viewport: mujoco.MjrRect, background: NDArray[np.uint8]) -> None:
-        """Draw into the current framebuffer.
+        """Draw into a rectangle of the current framebuffer, in pixels from its lower left corner.
 
-        Args:
-            viewport: Rectangle of the framebuffer, in pixels from its lower left corner. Where it has fewer columns
-                than the size that was filled in for, points and lines are narrower.
-            background: Colour where nothing is, (3,) in 0..255; black where the model has no skybox texture.
+        Where it has fewer columns than the size that was filled in for, points and lines are narrower. The background,
+        (3,) in 0..255, is black where the model has no skybox texture.
         """
         self._paint_background(background)
         for widths, whole in self._widths:
@@ -242,11 +222,7 @@ def drawing_option() -> mujoco.MjvOption:
 def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
     """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
 
-    Args:
-        scene: The scene.
-        camera: Where the picture is taken from.
-        size: Width and height of the picture [pixels].
-        depths: Nearest and farthest depth that is drawn [m].
+    ``size`` is width and height of the picture [pixels], ``depths`` the nearest and farthest that are drawn [m].
     """
     near, far = depths
     right_down_forward = camera.rotation
@@ -264,15 +240,10 @@ def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: t
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """How far what is drawn reaches.
+    """How far what is drawn reaches."""
 
-    Attributes:
-        spheres: Centres and radii of spheres around geoms, and around drawings if there are some [m].
-        floor: For models with planes, how far these are drawn [m]; else 0.
-    """
-
-    spheres: tuple[tuple[Floats, float], ...]
-    floor: float
+    spheres: tuple[tuple[Floats, float], ...]  # centres and radii around geoms, and around drawings if there are some
+    floor: float  # for models with planes, how far these are drawn [m]; else 0
 
     @classmethod
     def of(cls, model: mujoco.MjModel, data: mujoco.MjData, primitives: Primitives = NOTHING) -> "Contents":

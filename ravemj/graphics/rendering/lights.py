@@ -16,13 +16,7 @@ class Lights:
         self._scene = mujoco.MjvScene(model, 1)
 
     def update(self, data: mujoco.MjData, camera: Camera, depths: tuple[float, float]) -> None:
-        """Take over where the lights are now.
-
-        Args:
-            data: State of the model.
-            camera: Where the picture is taken from; the headlight shines from there.
-            depths: Nearest and farthest depth in view [m].
-        """
+        """Take over where the lights are now; the headlight shines from the camera, which sees these depths [m]."""
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         aim(self._scene, camera, (1, 1), depths)
@@ -31,10 +25,8 @@ class Lights:
     def on(self, points: Floats, rays: Floats, normals: Floats) -> Floats:
         """Return the light of three colours that surfaces reflect, (N, 3); 1 shows their own colour.
 
-        Args:
-            points: Where the surfaces are, world coordinates (N, 3) [m].
-            rays: Directions in which they are seen, (N, 3).
-            normals: Unit normals, (N, 3); turned towards the eye where they look away.
+        They are at points in the world (N, 3) [m] and seen along rays (N, 3); their unit normals (N, 3) are turned
+        towards the eye where they look away.
         """
         away = np.einsum("ij,ij->i", normals, rays) > 0
         facing = np.where(away[:, None], -normals, normals)

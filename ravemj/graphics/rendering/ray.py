@@ -21,8 +21,7 @@ from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.fragments import Fragments, Raster
 from ravemj.graphics.rendering.gl_scene import Contents
 from ravemj.graphics.rendering.lights import Lights
-from ravemj.graphics.rendering.style import AS_IT_IS, Style
-from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms, geom_rgba
+from ravemj.graphics.rendering.style import AS_IT_IS, DRAWN_GROUPS, Style, drawn_geoms, geom_rgba
 from ravemj.model.drawing import NOTHING, Primitives
 
 _BAND = 1 << 16
@@ -164,20 +163,12 @@ class RayRenderer:
 
 @dataclass
 class _RayScene:
-    """One state of a model, seen from one point.
+    """One state of a model, seen from one point."""
 
-    Attributes:
-        model: The model; its geom groups say what can be hit.
-        data: Its state.
-        origin: Eye point in the world, (3,) [m].
-        rgba: Colours of the geoms, (ngeom, 4).
-        lights: What lights them.
-    """
-
-    model: mujoco.MjModel
+    model: mujoco.MjModel  # its geom groups say what can be hit
     data: mujoco.MjData
-    origin: Floats
-    rgba: Floats
+    origin: Floats  # the eye in the world, (3,) [m]
+    rgba: Floats  # colours of the geoms, (ngeom, 4)
     lights: Lights
 
     def colors(self, rays: Floats, background: NDArray[np.uint8], drawn: Fragments, layers: int = _LAYERS) -> Floats:
@@ -212,29 +203,14 @@ class _RayScene:
         geom_ids = np.empty(count, dtype=np.int32)
         depth = np.empty(count)
         normals = np.empty((count, 3))
-        self._multi_ray(rays, geom_ids, depth, normals)
+        given = self.model, self.data, self.origin, rays.reshape(-1), DRAWN_GROUPS, True, -1
+        mujoco.mj_multiRay(*given, geom_ids, depth, normals.reshape(-1), count, _MAX_DEPTH)
         inside = (np.einsum("ij,ij->i", normals, rays) > 0) & self._has_two_walls(geom_ids)
         if inside.any():  # the eye is in these geoms, so no ray can see them
             again = np.flatnonzero(inside)
             self.model.geom_group[geom_ids[again]] = _HIDDEN_GROUP
             geom_ids[again], depth[again], normals[again] = self.cast(rays[again])
         return geom_ids, depth, normals
-
-    def _multi_ray(self, rays: Floats, geom_ids: NDArray[np.int32], depth: Floats, normals: Floats) -> None:
-        mujoco.mj_multiRay(
-            self.model,
-            self.data,
-            self.origin,
-            rays.reshape(-1),
-            DRAWN_GROUPS,
-            True,
-            -1,
-            geom_ids,
-            depth,
-            normals.reshape(-1),
-            len(rays),
-            _MAX_DEPTH,
-        )
 
     def _has_two_walls(self, geom_ids: NDArray[np.int32]) -> NDArray[np.bool_]:
         two_walls = np.isin([*self.model.geom_type, -1], _TWO_WALLS)  # the last stands for no geom, -1
@@ -258,10 +234,7 @@ class _RayScene:
 def _edges(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Return which pixels differ from the one beside or below, or the one before, (H, W)."""
     edges = np.zeros(picture.shape[:2], dtype=np.bool_)
-    for first, second in (
-        (np.s_[:-1], np.s_[1:]),
-        (np.s_[:, :-1], np.s_[:, 1:]),
-    ):
+    for first, second in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         one, other = picture[first], picture[second]
         differs = (np.maximum(one, other) - np.minimum(one, other) > _EDGE).any(axis=2)
         edges[first] |= differs

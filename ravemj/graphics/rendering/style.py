@@ -1,4 +1,4 @@
-"""How the geoms of a model are drawn, besides their colours."""
+"""Which geoms of a model are drawn, and how: the rules of MuJoCo's visualiser, and the styles of viewers."""
 
 from dataclasses import dataclass
 
@@ -7,11 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
-from ravemj.graphics.rendering.visibility import DRAWN_GROUPS
+
+DRAWN_GROUPS = np.array([1, 1, 1, 0, 0, 0], dtype=np.uint8)
+"""Geom groups that a default ``mjvOption`` draws: 0, 1 and 2."""
 
 COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
 """Geom groups of what collides: 2 is only seen, 3 only collides."""
 
+_UNSET_RGBA = (0.5, 0.5, 0.5, 1.0)  # which MuJoCo takes for no colour
 _TINT = np.array([0.3, 0.6, 1.0])
 _TINT_PART = 0.4
 """A body that is pointed at has so much of this colour, which shows on white and on black."""
@@ -19,23 +22,33 @@ _TINT_PART = 0.4
 _OPACITY = 0.35
 
 
+def geom_rgba(model: mujoco.MjModel) -> Floats:
+    """Return the colour and opacity of every geom, (ngeom, 4) in 0..1.
+
+    A geom with a material and no colour of its own (which MuJoCo recognises by its default grey) has the
+    material's.
+    """
+    rgba = np.array(model.geom_rgba, dtype=np.float64)
+    from_material = (model.geom_matid >= 0) & (rgba == _UNSET_RGBA).all(axis=1)
+    rgba[from_material] = model.mat_rgba[model.geom_matid[from_material]]
+    return rgba
+
+
+def drawn_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Return which geoms appear in pictures, (ngeom,): those of groups 0 to 2 that are not wholly transparent."""
+    groups = np.clip(model.geom_group, 0, len(DRAWN_GROUPS) - 1)
+    return (DRAWN_GROUPS[groups] > 0) & (geom_rgba(model)[:, 3] > 0)
+
+
 @dataclass(frozen=True)
 class Style:
-    """A way to draw geoms. Rays draw them as they are; OpenGL is needed for others.
+    """A way to draw geoms. Rays draw them as they are; OpenGL is needed for others."""
 
-    Attributes:
-        collision: Whether what collides is drawn, in place of what is seen.
-        hulls: Whether meshes are drawn as their convex hulls.
-        transparent: Whether bodies are half transparent.
-        wireframe: Whether only edges are drawn.
-        lit: The body of the model that stands out from the others by a tint; -1: none.
-    """
-
-    collision: bool = False
-    hulls: bool = False
-    transparent: bool = False
-    wireframe: bool = False
-    lit: int = -1
+    collision: bool = False  # what collides is drawn, in place of what is seen
+    hulls: bool = False  # meshes are drawn as their convex hulls
+    transparent: bool = False  # bodies are half transparent
+    wireframe: bool = False  # only edges are drawn
+    lit: int = -1  # the body of the model that stands out from the others by a tint; -1: none
 
     @property
     def groups(self) -> NDArray[np.uint8]:

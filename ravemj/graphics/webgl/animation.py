@@ -26,33 +26,18 @@ _STILL = 1e-9
 
 
 class Recording(NamedTuple):
-    """What moved.
-
-    Attributes:
-        fps: Frames in a second.
-        positions: Of all bodies of the model in the world, shape (frames, bodies, 3) [m].
-        rotations: Their quaternions wxyz, shape (frames, bodies, 4).
-        values: Of the joints, shape (frames, joints) [rad or m].
-        names: Of the joints.
-        units: Of their values: ``rad`` or ``m``.
-    """
+    """What moved."""
 
     fps: float
-    positions: Floats
-    rotations: Floats
-    values: Floats
-    names: list[str]
-    units: list[str]
+    positions: Floats  # of all bodies of the model in the world, shape (frames, bodies, 3) [m]
+    rotations: Floats  # their quaternions wxyz, shape (frames, bodies, 4)
+    values: Floats  # of the joints, shape (frames, joints) [rad or m]
+    names: list[str]  # of the joints
+    units: list[str]  # of their values: ``rad`` or ``m``
 
 
 class Appearance(NamedTuple):
-    """How the page begins.
-
-    Attributes:
-        camera: Where it looks from.
-        background: Red, green and blue from 0 to 1.
-        title: What it is called.
-    """
+    """How the page begins: where it looks from, on what background (0 to 1), and what it is called."""
 
     camera: Camera
     background: tuple[float, float, float]
@@ -96,14 +81,9 @@ def animation_page(
     appearance: Appearance,
     drawings: Primitives = NOTHING,
 ) -> str:
-    """Return a page that plays a recording; it holds all that it needs.
+    """Return a page that plays a recording; it holds all that it needs. What scripts have drawn does not move.
 
-    Args:
-        model: The compiled model.
-        data: Its state; bodies that do not move in the recording stay where they are in it.
-        recording: The poses.
-        appearance: How the page begins.
-        drawings: What scripts have drawn; it does not move.
+    Bodies that do not move in the recording stay where they are in the state ``data`` of the model.
     """
     package = Package()
     pack_scene(package, model, surfaces(model))

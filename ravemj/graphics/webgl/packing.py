@@ -56,11 +56,7 @@ class Package:
         }
 
     def content(self, level: int = 9) -> bytes:
-        """Return all of it, compressed (zlib).
-
-        Args:
-            level: From 1, quick, to 9, small.
-        """
+        """Return all of it, compressed (zlib) at a level from 1, quick, to 9, small."""
         document = json.dumps(self.document, separators=(",", ":")).encode()
         document += b" " * (-len(document) % 4)
         return zlib.compress(len(document).to_bytes(4, "little") + document + b"".join(self._arrays), level)
@@ -71,13 +67,7 @@ class Package:
 
 
 def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None:
-    """Add surfaces of a model, and its lights.
-
-    Args:
-        package: Gets ``meshes``, ``shapes``, ``bodies`` and ``lights``, and the ``ball`` that spheres are drawn as.
-        model: The compiled model.
-        shown: What is drawn of it.
-    """
+    """Add surfaces of a model: ``meshes``, ``shapes``, ``bodies``, ``lights``, and the ``ball`` that spheres are."""
     package.document["meshes"] = [_packed_mesh(package, mesh) for mesh in shown.meshes]
     package.document["ball"] = _packed_mesh(package, round_mesh(0.0))
     package.document["shapes"] = [
@@ -136,10 +126,11 @@ def _packed_batch(package: Package, batch: PrimitiveBatch) -> dict[str, Any]:
 
 def _lights(model: mujoco.MjModel) -> list[dict[str, Any]]:
     """Return the lights, all directional; the first is that of the camera, which has no direction of its own."""
-    head = model.vis.headlight
-    lights = [{name: getattr(head, name).tolist() for name in ("ambient", "diffuse", "specular")}]
-    for number in range(model.nlight):
-        light = model.light(number)
-        colours = {name: getattr(light, name).tolist() for name in ("ambient", "diffuse", "specular")}
-        lights.append({**colours, "direction": light.dir.tolist()})
+    others = [model.light(number) for number in range(model.nlight)]
+    lights = [
+        {name: getattr(light, name).tolist() for name in ("ambient", "diffuse", "specular")}
+        for light in (model.vis.headlight, *others)
+    ]
+    for packed, light in zip(lights[1:], others, strict=True):
+        packed["direction"] = light.dir.tolist()
     return lights

@@ -1,6 +1,9 @@
 """The surfaces of a compiled model as triangles: few, since shapes of one kind share theirs."""
 
+import itertools
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import mujoco
@@ -8,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
-from ravemj.graphics.rendering.visibility import drawn_geoms, geom_rgba
+from ravemj.graphics.rendering.style import drawn_geoms, geom_rgba
 
 Triangles = NDArray[np.uint32]
 
@@ -21,39 +24,27 @@ _SHARP = 0.8
 _PLANE = 1000.0
 """Half the side of a plane that has no end [m]."""
 
+_TWO_TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
+"""A square of four corners."""
+
 
 class Mesh(NamedTuple):
-    """Triangles whose corners have normals.
+    """Triangles whose corners have normals."""
 
-    Attributes:
-        positions: Corners, shape (N, 3).
-        normals: Unit normals there, shape (N, 3).
-        triangles: Three corners each, shape (M, 3), counterclockwise seen from outside.
-    """
-
-    positions: Floats
-    normals: Floats
-    triangles: Triangles
+    positions: Floats  # of the corners, shape (N, 3)
+    normals: Floats  # unit normals there, shape (N, 3)
+    triangles: Triangles  # three corners each, shape (M, 3), counterclockwise seen from outside
 
 
 class Shape(NamedTuple):
-    """A mesh that moves with a body of the model.
-
-    Attributes:
-        mesh: Number of the mesh.
-        body: Number of the body in the model.
-        geom: Number of the geom in the model.
-        T_body_shape: Pose with the scale in its columns, shape (3, 4) [m].
-        rgba: Colour and opacity, 0 to 1.
-        reach: Radius of a sphere about the shape's origin that holds it [m].
-    """
+    """A mesh that moves with a body, for a geom; all by their numbers."""
 
     mesh: int
     body: int
     geom: int
-    T_body_shape: Floats
-    rgba: Floats
-    reach: float
+    T_body_shape: Floats  # with the scale in its columns, shape (3, 4) [m]
+    rgba: Floats  # colour and opacity, 0 to 1
+    reach: float  # radius of a sphere about the shape's origin that holds it [m]
 
 
 class Surfaces(NamedTuple):
@@ -76,58 +67,37 @@ def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, h
     colours = geom_rgba(model)
     shapes: list[Shape] = []
     for geom in np.flatnonzero(drawn_geoms(model) if geoms is None else geoms).tolist():
-        kind, data = int(model.geom_type[geom]), int(model.geom_dataid[geom])
-        size = model.geom_size[geom]
-        is_hull = hulls and _has_hull(model, geom)
-        key = (*_key(kind, data, size), is_hull)
+        key, scale, make = _shared(model, geom, is_hull=hulls and _has_hull(model, geom))
         if key not in numbers:
             numbers[key] = len(meshes)
-            meshes.append(_hull(model, data) if is_hull else _mesh(model, kind, data, size))
+            meshes.append(make())
         rotation = np.empty(9)
         mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
-        reach = float(
-            np.linalg.norm(_scale(kind, size)) if kind == mujoco.mjtGeom.mjGEOM_PLANE else model.geom_rbound[geom]
-        )
-        placed = np.column_stack([rotation.reshape(3, 3) * _scale(kind, size), model.geom_pos[geom]])
+        is_plane = key[0] == mujoco.mjtGeom.mjGEOM_PLANE
+        reach = float(np.linalg.norm(scale) if is_plane else model.geom_rbound[geom])
+        placed = np.column_stack([rotation.reshape(3, 3) * scale, model.geom_pos[geom]])
         shapes.append(Shape(numbers[key], int(model.geom_bodyid[geom]), geom, placed, colours[geom], reach))
     return Surfaces(meshes, shapes)
 
 
-def _key(kind: int, data: int, size: Floats) -> tuple[int, ...]:
-    """Return what geoms have in common that share a mesh."""
-    if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        return kind, data
-    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
-        return kind, round(1000 * size[1] / size[0])  # its ends stay round only if it is scaled evenly
-    return (kind,)
-
-
-def _scale(kind: int, size: Floats) -> Floats:
-    """Return by what the axes of the shared mesh are multiplied, shape (3,)."""
-    if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        return np.ones(3)
-    if kind in (mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_CAPSULE):
-        return np.full(3, size[0])
-    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
-        return np.array([size[0], size[0], size[1]])
-    if kind == mujoco.mjtGeom.mjGEOM_PLANE:
-        return np.array([*np.where(size[:2] > 0, size[:2], _PLANE), 1.0])
-    return np.array(size)
-
-
-def _mesh(model: mujoco.MjModel, kind: int, data: int, size: Floats) -> Mesh:
-    if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        return _mesh_of_model(model, data)
-    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
-        return round_mesh(size[1] / size[0])
-    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
-        return _cylinder()
-    if kind == mujoco.mjtGeom.mjGEOM_BOX:
-        return _box()
-    if kind == mujoco.mjtGeom.mjGEOM_PLANE:
-        corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
-        return Mesh(corners, np.tile([0.0, 0, 1], (4, 1)), np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32))
-    return round_mesh(0.0)  # spheres and ellipsoids
+def _shared(model: mujoco.MjModel, geom: int, *, is_hull: bool) -> tuple[tuple[int, ...], Floats, Callable[[], Mesh]]:
+    """Return what geoms have in common that share a mesh, by what its axes are multiplied, (3,), and what makes it."""
+    kind, data, size = int(model.geom_type[geom]), int(model.geom_dataid[geom]), model.geom_size[geom]
+    match mujoco.mjtGeom(kind):
+        case mujoco.mjtGeom.mjGEOM_MESH:
+            return (kind, data, is_hull), np.ones(3), partial(_hull if is_hull else _mesh_of_model, model, data)
+        case mujoco.mjtGeom.mjGEOM_CAPSULE:  # its ends stay round only if it is scaled evenly
+            half_length = size[1] / size[0]
+            return (kind, round(1000 * half_length)), np.full(3, size[0]), partial(round_mesh, half_length)
+        case mujoco.mjtGeom.mjGEOM_CYLINDER:
+            return (kind,), size[[0, 0, 1]], _cylinder
+        case mujoco.mjtGeom.mjGEOM_PLANE:
+            return (kind,), np.array([*np.where(size[:2] > 0, size[:2], _PLANE), 1.0]), _square
+        case mujoco.mjtGeom.mjGEOM_BOX:
+            return (kind,), size.copy(), _box
+        case _:
+            is_ellipsoid = kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID
+            return (kind,), size.copy() if is_ellipsoid else np.full(3, size[0]), partial(round_mesh, 0.0)
 
 
 def _mesh_of_model(model: mujoco.MjModel, number: int) -> Mesh:
@@ -169,19 +139,18 @@ def _hull(model: mujoco.MjModel, number: int) -> Mesh:
     return Mesh(corners, normals.repeat(3, axis=0), np.arange(3 * faces, dtype=np.uint32).reshape(-1, 3))
 
 
+def _square() -> Mesh:
+    corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    return Mesh(corners, np.tile([0.0, 0, 1], (4, 1)), _TWO_TRIANGLES)
+
+
 def _box() -> Mesh:
-    positions: list[list[float]] = []
-    normals: list[list[float]] = []
-    for axis in range(3):
-        for side in (-1.0, 1.0):
-            for one, other in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-                corner = [0.0, 0.0, 0.0]
-                corner[axis], corner[(axis + 1) % 3], corner[(axis + 2) % 3] = side, one * side, other
-                positions.append(corner)
-                normals.append([side if index == axis else 0.0 for index in range(3)])
-    starts = 4 * np.arange(6, dtype=np.uint32)[:, None, None]
-    triangles = (starts + np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)).reshape(-1, 3)
-    return Mesh(np.array(positions), np.array(normals), triangles)
+    positions, normals = np.zeros((6, 4, 3)), np.zeros((6, 4, 3))
+    for face, (axis, side) in enumerate(itertools.product(range(3), (-1.0, 1.0))):
+        positions[face, :, axis] = normals[face, :, axis] = side
+        positions[face, :, axis - 2], positions[face, :, axis - 1] = [-side, side, side, -side], [-1, -1, 1, 1]
+    triangles = 4 * np.arange(6, dtype=np.uint32)[:, None, None] + _TWO_TRIANGLES
+    return Mesh(positions.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3))
 
 
 def round_mesh(half_length: float) -> Mesh:

@@ -36,7 +36,7 @@ def pick(simulation: Simulation, ray: Ray) -> Hit | None:
     center, radius = bounding_sphere(model, data)
     reach = 2 * (float(np.linalg.norm(center - ray.start)) + radius)
     drawn = np.flatnonzero(drawn_geoms(model))
-    hit = simulation.collisions().ray(ray.start, reach * ray.direction, drawn)
+    hit = simulation.collisions().rays.first_hit(ray.start, reach * ray.direction, drawn)
     if hit is None:
         return None
     body_id = model.geom_bodyid[hit.geom]

@@ -14,7 +14,8 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
-from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
+from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Resize
 from ravemj.gui.viewers.callbacks import Callback, Callbacks
 from ravemj.gui.viewers.player import Playing

@@ -9,8 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.core.arrays import checked_numbers, checked_rows, checked_transform
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.moving import batch_collides
-from ravemj.engine.collision.queries import moved_apart
-from ravemj.engine.collision.resting import tested_pairs
+from ravemj.engine.collision.queries import moved_apart, tested_pairs
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import AABB, OrientedBox, OrientedBoxFromAABB
 from ravemj.model.bounds import enclosing_box, links_bounds

@@ -134,7 +134,7 @@ class Collision(Contents):
         checker = self.GetCollisionChecker()
         with self._simulation.lock, checker.groups.world() as world:
             targets = checker.ray_targets(world, ... if body is None else body)
-            return world.rays(rows, targets, front_facing_only=front_facing_only)
+            return world.rays.first_hits(rows, targets, front_facing_only=front_facing_only)
 
     @also_named(fncallback="callback")
     def RegisterCollisionCallback(self, callback: CollisionCallback) -> CollisionCallbackHandle:

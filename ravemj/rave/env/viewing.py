@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.output import AnyPath, check_file
 from ravemj.graphics.rendering import Camera
-from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
+from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.rave.env.base import EnvironmentPart
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, wxyz_from_rows
 from ravemj.engine.simulation import Simulation
 from ravemj.engine.simulation.published import Published
-from ravemj.graphics.rendering.visibility import geom_rgba
+from ravemj.graphics.rendering.style import geom_rgba
 from ravemj.graphics.webgl.packing import Package, pack_drawings
 from ravemj.gui.interaction import Overlay, View
 from ravemj.gui.interaction.control import Control

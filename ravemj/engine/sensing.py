@@ -1,0 +1,192 @@
+"""What sensors measure, as numbers, and what viewers draw of it. Pictures of cameras are the renderers'."""
+
+import math
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, Vec3, rows_from_wxyz, wxyz_from_axis_angle
+from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.physics import Physics
+from ravemj.engine.simulation import BodyState
+from ravemj.model.drawing import NOTHING, Primitives, line_list, merge, mesh, points
+from ravemj.model.scene import Device, FlashLidar, ForceTorque, Intrinsics, Laser
+
+_WHOLE = 1e-9
+"""How near to one more step of the angle a range may end, in steps, and still hold its ray."""
+
+_FRUSTUM = 0.15
+"""Depth of a drawn frustum [m]."""
+
+_ICON = 0.05
+"""Least radius of the fan that stands for a laser [m]."""
+
+_POINT = 5.0  # pixels, as in OpenRAVE
+_LINE = 1.5  # pixels
+_ICON_RAYS = 11
+_FAN_OPACITY = 0.2  # as in OpenRAVE
+_EDGES = (0, 1, 0, 2, 0, 3, 0, 4, 1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 5, 7)
+"""Ends of the lines of a frustum: from the eye to the corners, between these, and the mark over the picture's top."""
+
+
+class Scan(NamedTuple):
+    """What the n rays of a laser measure, in the world."""
+
+    origin: Floats  # where the rays begin [m], shape (3,)
+    directions: Floats  # of unit length, shape (n, 3)
+    distances: Floats  # how far each goes [m], shape (n,): the greatest range where it meets nothing
+    is_hit: NDArray[np.bool_]  # which meet something, shape (n,)
+    geoms: NDArray[np.int32]  # what they meet, shape (n,); -1: nothing
+
+
+@lru_cache(maxsize=64)
+def ray_directions(device: Laser | FlashLidar) -> Floats:
+    """Return the unit directions of a device's rays in its own frame, shape (n, 3); not to be changed.
+
+    Those of a laser lie in the plane of x and y, in the order of their angles. Those of a flash lidar go through its
+    pixels as those of a camera do, column after column, as in OpenRAVE.
+    """
+    if isinstance(device, Laser):
+        steps = math.floor((device.max_angle - device.min_angle) / device.resolution + _WHOLE)
+        directions = _around(device.min_angle + np.arange(steps + 1) * device.resolution)
+    else:
+        columns, rows = np.meshgrid(np.arange(device.width), np.arange(device.height), indexing="ij")
+        through = ((columns - device.cx) / device.fx, (rows - device.cy) / device.fy, np.ones(columns.shape))
+        directions = np.stack(through, axis=-1).reshape(-1, 3)
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    directions.flags.writeable = False
+    return directions
+
+
+def _around(angles: NDArray[np.floating[Any]]) -> Floats:
+    """Return the unit vectors in the plane of x and y at angles [rad], shape (n, 3)."""
+    return np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
+
+
+def spun(laser: Laser, T_world_sensor: Floats, angle: float) -> Floats:
+    """Return the pose of a laser's plane that has turned about its spin axis by an angle [rad], shape (4, 4)."""
+    turn = np.eye(4)
+    turn[:3, :3] = rows_from_wxyz(wxyz_from_axis_angle(laser.spin_axis, angle))
+    centre = np.array(laser.spin_position)
+    turn[:3, 3] = centre - turn[:3, :3] @ centre
+    return T_world_sensor @ turn
+
+
+def scan(world: CollisionWorld, device: Laser | FlashLidar, T_world_rays: Floats) -> Scan:
+    """Return where the rays of a device meet the bodies of a world, the robot that carries it included.
+
+    All rays are one call of ``mj_multiRay``. One that meets something nearer than the least range goes on from there.
+    """
+    origin = T_world_rays[:3, 3].copy()
+    directions = ray_directions(device) @ T_world_rays[:3, :3].T
+    distances, geoms = world.rays.cast(origin, directions, device.max_range)
+    for ray in np.flatnonzero((distances >= 0) & (distances < device.min_range)).tolist():
+        start = origin + device.min_range * directions[ray]
+        length = device.max_range - device.min_range
+        hit = world.rays.first_hit(start, length * directions[ray])
+        distances[ray] = -1.0 if hit is None else device.min_range + length * hit.fraction
+        geoms[ray] = -1 if hit is None else hit.geom
+    is_hit = (distances >= 0) & (distances <= device.max_range)
+    distances[~is_hit], geoms[~is_hit] = device.max_range, -1
+    return Scan(origin, directions, distances, is_hit, geoms)
+
+
+def motion_at(state: BodyState, link: int, point: Floats) -> tuple[Floats, Floats]:
+    """Return the velocity of a point on a link [m/s] and its angular velocity [rad/s], each (3,), in the world."""
+    velocity = state.present_velocities[link]
+    arm = point - state.link_transform(link)[:3, 3]
+    return velocity[:3] + np.cross(velocity[3:], arm), velocity[3:].copy()
+
+
+def acceleration_at(physics: Physics, state: BodyState, link: int, point: Floats) -> Floats:
+    """Return what an accelerometer at a point on a link measures: its acceleration without that of free fall.
+
+    Point and acceleration [m/s^2] are in world axes, shape (3,).
+    """
+    linear, angular = physics.link_acceleration(state, link)
+    spin = state.present_velocities[link][3:]
+    arm = point - state.link_transform(link)[:3, 3]
+    return linear + np.cross(angular, arm) + np.cross(spin, np.cross(spin, arm))
+
+
+def encoder_values(state: BodyState, resolution: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
+    """Return what the encoders of a robot's joints read: values, velocities and steps, each of shape (dof,).
+
+    The values [rad or m] are rounded to the steps, of which there is one for each DOF, one for all, or none.
+    """
+    values = state.kinematics.values()
+    velocities = state.dynamics.dof_velocities(state.link_velocities())
+    steps = np.broadcast_to(np.array(resolution or (0.0,)), values.shape).copy()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        values = np.where(steps > 0, np.round(values / steps) * steps, values)
+    return values, velocities, steps
+
+
+def wrench(physics: Physics, state: BodyState, link: int, T_world_sensor: Floats) -> tuple[Floats, Floats]:
+    """Return the force with which its parent holds a link, and all that hangs on it, as MuJoCo's sensor does.
+
+    Returns:
+        Force on the link [N] and torque about the sensor's origin [N m], each of shape (3,), in the sensor's axes.
+    """
+    force, torque = physics.joint_wrench(state, link, T_world_sensor[:3, 3])
+    axes = T_world_sensor[:3, :3]
+    return force @ axes, torque @ axes
+
+
+def corrected(device: ForceTorque, force: Floats, torque: Floats) -> tuple[Floats, Floats]:
+    """Return force and torque as a calibrated device says them: with its sign and its matrix."""
+    both = device.polarity * np.concatenate([force, torque])
+    if device.correction:
+        both = np.reshape(device.correction, (6, 6)) @ both
+    return both[:3], both[3:]
+
+
+def touches(physics: Physics, state: BodyState, link: int, T_world_sensor: Floats) -> tuple[Floats, Floats]:
+    """Return the points where a link is touched [m], and the forces on it there [N], each (n, 3), in sensor axes."""
+    points, forces = physics.link_contacts(state, link)
+    axes, origin = T_world_sensor[:3, :3], T_world_sensor[:3, 3]
+    return (points - origin) @ axes, forces @ axes
+
+
+def shape_figure(device: Device, color: Vec3) -> Primitives:
+    """Return what shows where a sensor is, in its own frame: frusta of cameras, fans of lasers, nothing of others."""
+    match device:
+        case Intrinsics() | FlashLidar() if device.problem() is None:
+            return _frustum(device, color)
+        case Laser() if device.problem() is None:
+            around = _around(np.linspace(device.min_angle, device.max_angle, _ICON_RAYS))
+            return _fan(np.zeros(3), max(device.min_range, _ICON) * around, color, 0.7)
+        case _:
+            return NOTHING
+
+
+def _frustum(camera: Intrinsics | FlashLidar, color: Vec3) -> Primitives:
+    left, right = -camera.cx / camera.fx, (camera.width - camera.cx) / camera.fx
+    top, bottom = -camera.cy / camera.fy, (camera.height - camera.cy) / camera.fy
+    middle, above = (left + right) / 2, top - (bottom - top) / 5
+    marks = [(left, top), (right, top), (right, bottom), (left, bottom), (middle, above), (left, top), (right, top)]
+    corners = np.array([(0.0, 0.0, 0.0), *((x, y, 1.0) for x, y in marks)])[list(_EDGES)]
+    return line_list(_FRUSTUM * corners, _LINE, _colors(len(corners), color, 1.0))
+
+
+def scan_figure(device: Laser | FlashLidar, found: Scan, color: Vec3) -> Primitives:
+    """Return what a laser measures, in the world: points where it meets something, and the surface that it sweeps."""
+    ends = found.origin + found.distances[:, None] * found.directions
+    met = ends[found.is_hit]
+    dots = points(met, _POINT, _colors(len(met), color, 1.0)) if len(met) else NOTHING
+    if isinstance(device, FlashLidar):
+        return dots
+    return merge([dots, _fan(found.origin, ends, color, _FAN_OPACITY)])
+
+
+def _fan(origin: Floats, ends: Floats, color: Vec3, opacity: float) -> Primitives:
+    """Return the triangles between a point and each two ends that follow one another."""
+    first = np.arange(1, len(ends))
+    triangles = np.column_stack([np.zeros_like(first), first, first + 1])
+    return mesh(np.vstack([origin, ends]), triangles, _colors(len(ends) + 1, color, opacity))
+
+
+def _colors(count: int, color: Vec3, opacity: float) -> Floats:
+    return np.tile((*color, opacity), (count, 1))
