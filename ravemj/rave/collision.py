@@ -22,10 +22,9 @@ from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.collision_extras import CheckerExtras
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.geometry_groups import GeometryGroups
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Part
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -54,18 +53,12 @@ class CollisionChecker(CheckerExtras):
     _internal = ("answer", "groups", "ray_targets")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._name = name
+        super().__init__(env, name)
         self._simulation = env.simulation
         self._options = 0
         self._wanted = Wanted()
         self._tolerance = 0.0
         self.groups = GeometryGroups(env.simulation)
-
-    def GetXMLId(self) -> str:
-        """Return the name that the checker was made by."""
-        return self._name
 
     def Clone(self, ref: "CollisionChecker", cloningoptions: int = 0) -> None:
         """Take over the options, the description and the data of users from another checker.
@@ -275,7 +268,7 @@ class CollisionChecker(CheckerExtras):
     def __repr__(self) -> str:
         if self._env.GetCollisionChecker() is self:
             return f"{self._env!r}.GetCollisionChecker()"
-        return f"RaveCreateCollisionChecker({self._env!r}, {self._name!r})"
+        return f"RaveCreateCollisionChecker({self._env!r}, {self._xmlid!r})"
 
 
 class NoCollisionChecker(CollisionChecker):
@@ -346,12 +339,12 @@ def RaveCreateCollisionChecker(env: "Environment", name: str) -> CollisionChecke
     Returns:
         The checker; None for an unknown name.
     """
-    checked_environment(env, "RaveCreateCollisionChecker")
-    kind = name.lower()
+    word = asked_for(env, name, "RaveCreateCollisionChecker")[0]
+    kind = word.lower()
     if kind in _OTHERS and kind not in _told:
         _told.add(kind)
-        _LOG.warning("there is no collision checker '%s'; the one over MuJoCo takes its place", name)
-    return CollisionChecker(env, name) if kind in _OTHERS or kind == "mujoco" else None
+        _LOG.warning("there is no collision checker '%s'; the one over MuJoCo takes its place", word)
+    return CollisionChecker(env, word) if kind in _OTHERS or kind == "mujoco" else None
 
 
 def _state(body: object) -> BodyState:

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj.core.arguments import also_named, checked_kind
+from ravemj.core.arguments import also_named
 from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.sequences import halton
 from ravemj.rave.enums import InterfaceType, Interval
-from ravemj.rave.interface import Interface, checked_environment
-from ravemj.rave.user_data import Annotations
+from ravemj.rave.interface import Interface, asked_for
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -43,14 +42,8 @@ class SpaceSampler(Interface):
     _interface_type = InterfaceType.spacesampler
 
     def __init__(self, env: "Environment", name: str, sequence: "_Random") -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._name = name
+        super().__init__(env, name)
         self._sequence = sequence
-
-    def GetXMLId(self) -> str:
-        """Return the name of the sampler, spelled as the caller of ``RaveCreateSpaceSampler`` spelled it."""
-        return self._name
 
     def SetSeed(self, seed: int) -> None:
         """Restart the sequence.
@@ -150,7 +143,7 @@ class SpaceSampler(Interface):
 
     def _one(self, type: SampleDataType, interval: int) -> float:
         if self.GetDOF() != 1 or isinstance(self._sequence, _Halton):
-            message = f"'{self._name}' gives points of {self.GetDOF()} dimensions; call SampleSequence2D"
+            message = f"'{self._xmlid}' gives points of {self.GetDOF()} dimensions; call SampleSequence2D"
             raise RavemjError(message, ErrorCode.InvalidState)
         return self.SampleSequence(type, 1, interval)[0]
 
@@ -165,13 +158,13 @@ class SpaceSampler(Interface):
         Raises:
             openrave_exception: always (``NotImplemented``).
         """
-        raise RavemjError(f"'{self._name}' has no complete samples", ErrorCode.NotImplemented)
+        raise RavemjError(f"'{self._xmlid}' has no complete samples", ErrorCode.NotImplemented)
 
     SampleComplete2D = SampleComplete
 
     def _check(self, type: SampleDataType, caller: str) -> None:
         if not self.Supports(type):
-            message = f"{caller}: '{self._name}' gives no numbers of type {SampleDataType(type).name}"
+            message = f"{caller}: '{self._xmlid}' gives no numbers of type {SampleDataType(type).name}"
             raise RavemjError(message, ErrorCode.NotImplemented)
 
 
@@ -266,8 +259,7 @@ def RaveCreateSpaceSampler(env: "Environment", name: str) -> SpaceSampler | None
     Raises:
         openrave_exception: there is no such body or robot.
     """
-    checked_environment(env, "RaveCreateSpaceSampler")
-    kind, *arguments = checked_kind(name, str, "RaveCreateSpaceSampler: name", "a text").split() or [""]
+    kind, *arguments = asked_for(env, name, "RaveCreateSpaceSampler")
     match kind.lower():
         case "mt19937":
             return SpaceSampler(env, kind, _Random())

@@ -15,7 +15,6 @@ from ravemj.rave.infos.sensor import SensorGeometry
 from ravemj.rave.infos.sensor_devices import device_of, geometry_of, sensor_type
 from ravemj.rave.interface import Interface
 from ravemj.rave.sensor_data import DATA, SensorData
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.attached_sensor import AttachedSensor
@@ -35,8 +34,7 @@ class DescribedSensor(Interface):
     def __init__(
         self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None"
     ) -> None:
-        self._env = env
-        self.annotations = Annotations()
+        super().__init__(env, description.type or "")
         self._own = description
         self.attached = attached
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_number
 from ravemj.core.transforms import Ints, Pose
 from ravemj.errors import ArgumentError, RavemjError
@@ -18,7 +17,7 @@ from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.infos.sensor import CameraIntrinsics
 from ravemj.rave.instruments import Instrument, Place
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.sensor_data import (
     ActuatorSensorData,
     CameraSensorData,
@@ -374,13 +373,12 @@ def RaveCreateSensor(env: "Environment", name: str) -> Sensor | None:
         >>> laser.SetTransform([1, 0, 0, 0, 0.5, 0, 0.3])
         >>> env.Add(laser)
     """
-    checked_environment(env, "RaveCreateSensor")
-    words = checked_kind(name, str, "RaveCreateSensor: name", "a text").split() or [""]
-    kind = scene.SENSOR_KINDS.get(words[0].lower())
+    word = asked_for(env, name, "RaveCreateSensor")[0]
+    kind = scene.SENSOR_KINDS.get(word.lower())
     if kind is None:
         _LOG.warning("there is no sensor '%s'; there are %s", name, ", ".join(KIND_NAMES))
         return None
     description = scene.AttachedSensor(
-        name="", link=None, T_link_sensor=Pose(), type=words[0], device=kind.device, source=FROM_SCRIPT
+        name="", link=None, T_link_sensor=Pose(), type=word, device=kind.device, source=FROM_SCRIPT
     )
     return Sensor(env, description)

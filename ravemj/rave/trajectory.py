@@ -17,7 +17,6 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Interface
 from ravemj.rave.specification import ConfigurationSpecification
-from ravemj.rave.user_data import Annotations
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints
@@ -47,14 +46,8 @@ class Trajectory(Interface):
     _internal = ("waypoints",)
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
-        self._env = env
-        self._xmlid = xmlid
-        self.annotations = Annotations()
+        super().__init__(env, xmlid)
         self._waypoints: Waypoints | None = None
-
-    def GetXMLId(self) -> str:
-        """Return the name of the type, spelled as the caller of ``RaveCreateTrajectory`` spelled it."""
-        return self._xmlid
 
     @also_named(group="spec")
     def Init(self, spec: Spec) -> None:

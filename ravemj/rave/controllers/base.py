@@ -11,7 +11,6 @@ from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Interface
 from ravemj.rave.trajectory import Trajectory
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -23,19 +22,13 @@ class Controller(Interface):
 
     _interface_type = InterfaceType.controller
 
-    def __init__(self, env: "Environment", xml_id: str) -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._xml_id = xml_id
+    def __init__(self, env: "Environment", xmlid: str) -> None:
+        super().__init__(env, xmlid)
         self._attached_robot: Robot | None = None
         self._dofs: Ints | None = None
         self._moves_base = False
         self._is_done = True
         self._time = 0.0
-
-    def GetXMLId(self) -> str:
-        """Return the name of the controller, spelled as the caller of ``RaveCreateController`` spelled it."""
-        return self._xml_id
 
     def Init(self, robot: "Robot", dofindices: ArrayLike | None = None, controltransform: int = 1) -> bool:
         """Set the robot and the DOFs that the controller moves; ``robot.SetController`` calls this.
@@ -162,4 +155,4 @@ class Controller(Interface):
         robot = self._attached_robot
         if robot is not None and robot.GetController() is self:
             return f"{robot!r}.GetController()"
-        return f"RaveCreateController({self._env!r}, {self._xml_id!r})"
+        return f"RaveCreateController({self._env!r}, {self._xmlid!r})"

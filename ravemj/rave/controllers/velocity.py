@@ -60,7 +60,7 @@ class VelocityController(Controller):
         """
         if self._velocities is None:
             return
-        if self._env.GetPhysicsEngine().is_simulated:
+        if self._env.GetPhysicsEngine().dynamics is not None:
             self._drive(self._velocities)
             return
         robot, dofs = self._robot, self._robot_dofs()

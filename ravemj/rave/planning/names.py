@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.planning.retiming import topp_ra
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.planning.hand_planners import GraspGradient, WorkspaceTrajectoryTracker
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
@@ -64,11 +63,7 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
     Example:
         >>> planner = RaveCreatePlanner(env, "birrt")
     """
-    checked_environment(env, "RaveCreatePlanner")
-    checked_kind(name, str, "RaveCreatePlanner: name", "a text")
-    word = next(iter(name.split()), "")
-    if word.lower() in MISSING:
-        raise UnsupportedError(f"planner '{word}'", MISSING[word.lower()])
+    word = asked_for(env, name, "RaveCreatePlanner", MISSING)[0]
     make = _maker(word)
     if make is None:
         _LOG.warning("there is no planner '%s'", name)
