@@ -86,11 +86,7 @@ class AttachedSensor(ApiObject):
         return self.description.T_link_sensor.matrix()
 
     def SetRelativeTransform(self, transform: ArrayLike) -> None:
-        """Move the sensor on its link.
-
-        Args:
-            transform: ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
-        """
+        """Move the sensor on its link to ``transform``, ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
         self.edit(T_link_sensor=pose_of(checked_transform(transform, "SetRelativeTransform: transform")))
 
     def GetTransformPose(self) -> Floats:
@@ -126,20 +122,12 @@ class AttachedSensor(ApiObject):
         return AttachedSensorInfo.of(self._state.scene, self.description)
 
     def UpdateAndGetInfo(self, type: SensorType | None = None) -> AttachedSensorInfo:  # OpenRAVE's name
-        """Return ``GetInfo()``.
-
-        Args:
-            type: Not used.
-        """
+        """Return ``GetInfo()``. ``type`` is not used."""
         del type
         return self.GetInfo()
 
     def UpdateInfo(self, type: SensorType | None = None) -> None:  # OpenRAVE's name
-        """Do nothing: ``GetInfo`` always gives the present state.
-
-        Args:
-            type: Not used.
-        """
+        """Do nothing, since ``GetInfo`` always returns the current state. ``type`` is not used."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()

@@ -61,12 +61,7 @@ class CollisionChecker(CheckerExtras):
         self.groups = GeometryGroups(env.simulation)
 
     def Clone(self, ref: "CollisionChecker", cloningoptions: int = 0) -> None:
-        """Take over the options, the description and the data of users from another checker.
-
-        Args:
-            ref: The other checker.
-            cloningoptions: Not used.
-        """
+        """Copy the options, the description and the user data of ``ref``. ``cloningoptions`` are not used."""
         super().Clone(ref, cloningoptions)
         self._tolerance = ref.GetTolerance()
         self.SetCollisionOptions(ref.GetCollisionOptions())
@@ -110,11 +105,7 @@ class CollisionChecker(CheckerExtras):
         return self._options
 
     def SetTolerance(self, tolerance: float) -> None:
-        """Set the distance [m] of ``CollisionOptions.UseTolerance``.
-
-        Args:
-            tolerance: The distance [m].
-        """
+        """Set the distance ``tolerance`` [m] of ``CollisionOptions.UseTolerance``."""
         self._tolerance = float(tolerance)
         self._choose()
 

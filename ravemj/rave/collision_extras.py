@@ -118,20 +118,12 @@ class CheckerExtras(Interface):
         return self._env.CheckCollisionRays(rays, body, front_facing_only)
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; nothing needs to be prepared.
-
-        Args:
-            body: The body.
-        """
+        """Return True: ``body`` needs no preparation."""
         del body
         return True
 
     def RemoveKinBody(self, body: "KinBody") -> None:
-        """Do nothing; OpenRAVE's checkers free memory here.
-
-        Args:
-            body: The body.
-        """
+        """Do nothing about ``body``; OpenRAVE's checkers free memory here."""
 
     def SetGeometryGroup(self, groupname: str) -> None:
         """Take a group of geometries in place of those that links have, for all bodies.
@@ -165,9 +157,5 @@ class CheckerExtras(Interface):
         return found
 
     def GetBodyGeometryGroup(self, body: "KinBody") -> str:
-        """Return the group that is taken for a body; empty: the geometries that its links have.
-
-        Args:
-            body: The body.
-        """
+        """Return the group of geometries that is used for ``body``; empty: the geometries that its links have."""
         return self.groups.of(body.simulation_state)

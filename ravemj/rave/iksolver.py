@@ -40,11 +40,7 @@ class IkSolver(IkSearch):
     _internal = ("copy_for",)
 
     def Supports(self, iktype: IkParameterizationType) -> bool:
-        """Return whether the solver answers goals of a type.
-
-        Args:
-            iktype: The type.
-        """
+        """Return whether the solver answers goals of the type ``iktype``."""
         return iktype == self.kind
 
     def copy_for(self, robot: "Robot") -> "IkSolver":

@@ -45,14 +45,7 @@ class Module(Interface):
         """End the work of the module. The environment calls this when it removes the module."""
 
     def SimulationStep(self, timeelapsed: float) -> bool:
-        """Advance the module by a step of simulation time. ``env.StepSimulation`` calls this for added modules.
-
-        Args:
-            timeelapsed: The duration of the step [s].
-
-        Returns:
-            Whether the module did anything.
-        """
+        """Advance by ``timeelapsed`` [s] and return whether anything was done; ``env.StepSimulation`` calls this."""
         del timeelapsed
         return False
 

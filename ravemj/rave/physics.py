@@ -55,12 +55,7 @@ class PhysicsEngine(Interface):
             self.dynamics = Physics(env.simulation)
 
     def Clone(self, ref: "PhysicsEngine", cloningoptions: int = 0) -> None:
-        """Copy gravity, the description and the user data of another engine.
-
-        Args:
-            ref: The other engine.
-            cloningoptions: Not used.
-        """
+        """Copy gravity, the description and the user data of ``ref``. ``cloningoptions`` are not used."""
         super().Clone(ref, cloningoptions)
         self.SetGravity(ref.GetGravity())
 
@@ -91,10 +86,9 @@ class PhysicsEngine(Interface):
         return np.array(self._env.simulation.gravity if self._is_attached else self._gravity)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set which collisions the simulation handles, and return whether the engine has options.
+        """Set whether links of one body collide, and return whether the engine has options.
 
-        Args:
-            physicsoptions: ``PhysicsEngineOptions.SelfCollisions``; with 0, links of one body do not collide.
+        ``physicsoptions`` is ``PhysicsEngineOptions.SelfCollisions``; with 0 they do not.
         """
         if self.dynamics is None:
             return False
@@ -107,11 +101,7 @@ class PhysicsEngine(Interface):
         return PhysicsEngineOptions(int(self.dynamics is not None and self.dynamics.self_collisions))
 
     def SimulateStep(self, timestep: float) -> None:
-        """Advance the bodies by a time step; ``StepSimulation`` calls this.
-
-        Args:
-            timestep: The duration of the step [s].
-        """
+        """Advance the bodies by ``timestep`` [s]; ``StepSimulation`` calls this."""
         checked = checked_number(timestep, "SimulateStep: timestep", 0, " s")
         if self.dynamics is not None:
             with self._env.simulation.lock:
@@ -125,11 +115,7 @@ class PhysicsEngine(Interface):
         """Do nothing. OpenRAVE's engines free their memory here."""
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; the engine needs no preparation.
-
-        Args:
-            body: The body.
-        """
+        """Return True: ``body`` needs no preparation."""
         del body
         return True
 
@@ -160,11 +146,7 @@ class PhysicsEngine(Interface):
         return True
 
     def GetLinkVelocities(self, body: "KinBody") -> Floats:
-        """Return the velocities of all links of a body, shape (links, 6); see ``body.GetLinkVelocities``.
-
-        Args:
-            body: The body.
-        """
+        """Return the velocities of all links of ``body``, shape (links, 6); see ``body.GetLinkVelocities``."""
         return body.GetLinkVelocities()
 
     def SetLinkVelocities(self, body: "KinBody", velocities: ArrayLike) -> bool:

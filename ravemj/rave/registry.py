@@ -60,11 +60,7 @@ class ManageData(ApiObject):
     GetData = GetOffsetLink = IsPresent = IsEnabled = IsLocked = GetSystem
 
     def Lock(self, dolock: bool) -> NoReturn:
-        """Raise an error, since there is no sensor system.
-
-        Args:
-            dolock: Whether to keep it.
-        """
+        """Raise an error, since there is no sensor system; ``dolock`` is not used."""
         raise UnsupportedError("ManageData.Lock", SENSOR_SYSTEMS)
 
 
@@ -126,12 +122,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
 
 
 def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's names of the arguments
-    """Return whether ``RaveCreateInterface`` makes something of a kind and name.
-
-    Args:
-        type: The kind.
-        name: The name; letter case does not matter.
-    """
+    """Return whether ``RaveCreateInterface`` knows a kind ``type`` and ``name``, in any letter case."""
     known = RaveGetLoadedInterfaces()[InterfaceType(type)]
     return checked_kind(name, str, "RaveHasInterface: name", "a text").lower() in {one.lower() for one in known}
 

@@ -75,20 +75,12 @@ class SpaceSampler(Interface):
 
     @also_named(seed="type")
     def Supports(self, type: SampleDataType) -> bool:
-        """Return whether the sampler returns this kind of numbers.
-
-        Args:
-            type: A ``SampleDataType``.
-        """
+        """Return whether the sampler returns numbers of ``type``, a ``SampleDataType``."""
         return SampleDataType(type) in self._sequence.kinds
 
     @also_named(seed="type")
     def GetLimits(self, type: SampleDataType) -> tuple[Floats, Floats]:
-        """Return the smallest and the greatest values, shape (dof,) each.
-
-        Args:
-            type: A ``SampleDataType``.
-        """
+        """Return the smallest and the greatest values of ``type``, a ``SampleDataType``, shape (dof,) each."""
         self._check(type, "GetLimits")
         return self._sequence.limits()
 

@@ -177,10 +177,9 @@ class DescribedSensor(Interface):
             self.take_state(other)
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
-        """Return the constant properties of the sensor; None if it has none of the requested kind.
+        """Return the constant properties of the sensor.
 
-        Args:
-            type: The kind of geometry; by default the sensor's own.
+        None if it has none of the kind ``type``, which by default is its own.
         """
         device = self.description.device
         geometry = None if device is None else geometry_of(device)
@@ -199,11 +198,7 @@ class DescribedSensor(Interface):
         return DATA[self._checked_type(type, "CreateSensorData")]()
 
     def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
-        """Return whether the sensor measures this kind of data.
-
-        Args:
-            type: A ``Sensor.Type``.
-        """
+        """Return whether the sensor measures data of ``type``, a ``Sensor.Type``."""
         device = self.description.device
         return device is not None and type == sensor_type(device)
 

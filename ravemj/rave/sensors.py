@@ -193,22 +193,13 @@ class Sensor(DescribedSensor):
             self._restart()
 
     def SimulationStep(self, timeelapsed: float) -> None:
-        """Advance this sensor alone by a time step; ``env.StepSimulation`` advances all sensors.
-
-        Args:
-            timeelapsed: The duration of the step [s].
-        """
+        """Advance this sensor alone by ``timeelapsed`` [s]; ``env.StepSimulation`` advances all sensors."""
         checked = checked_number(timeelapsed, "SimulationStep: timeelapsed", 0)
         with self._env.simulation.lock:
             self.advance(checked, self._env.clock.now)
 
     def advance(self, timestep: float, stamp: int) -> None:
-        """Advance the sensor by a time step, and measure if a measurement is due.
-
-        Args:
-            timestep: The duration of the step [s].
-            stamp: The time at the end of the step [microseconds].
-        """
+        """Advance by ``timestep`` [s], which ends at ``stamp`` [microseconds], and measure if a measurement is due."""
         if self._switched[SensorCommand.PowerOn]:
             device = self.device
             self._instrument.advance(device, self._place(), timestep)
@@ -326,11 +317,7 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw the geometry of the sensor if that is switched on.
-
-        Args:
-            anew: Whether the geometry may have changed since it was drawn.
-        """
+        """Draw the geometry of the sensor if that is on; ``anew``: it may have changed since it was drawn."""
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
         device = self.device

@@ -100,20 +100,16 @@ class ConfigurationSpecification(ConfigurationData):
         return None if found is None else layout.copied([found])[0]
 
     def FindTimeDerivativeGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return a copy of the group with the time derivative of another, or None. See ``FindCompatibleGroup``.
+        """Return a copy of the group with the time derivative of ``name``, a group or its name, or None.
 
-        Args:
-            name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be the same, too.
+        With ``exactmatch``, the rest of the name has to be the same, too.
         """
         return self._shifted(name, 1, exactmatch)
 
     def FindTimeIntegralGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return a copy of the group whose time derivative another group is, or None. See ``FindCompatibleGroup``.
+        """Return a copy of the group whose time derivative ``name`` is, a group or its name, or None.
 
-        Args:
-            name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be the same, too.
+        With ``exactmatch``, the rest of the name has to be the same, too.
         """
         return self._shifted(name, -1, exactmatch)
 
@@ -186,18 +182,16 @@ class ConfigurationSpecification(ConfigurationData):
         return self.ConvertToDerivativeSpecification(1)
 
     def ConvertToDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
-        """Return a specification with time derivatives in place of positions.
+        """Return a specification with derivatives in place of positions.
 
-        Args:
-            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
+        ``timederivative`` is their order: 1 for velocities, 2 for accelerations.
         """
         return self.of(layout.derived(self._groups, checked_order(timederivative)))
 
     def GetTimeDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
-        """Return the groups of a time derivative alone: 0 for positions, 1 for velocities and so on.
+        """Return the groups of a derivative alone.
 
-        Args:
-            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
+        ``timederivative`` is its order: 0 for positions, 1 for velocities, 2 for accelerations.
         """
         return self.of(layout.of_order(self._groups, checked_order(timederivative)))
 
@@ -228,11 +222,7 @@ class ConfigurationSpecification(ConfigurationData):
         return {"groups": [dict(vars(group)) for group in sorted(self._groups, key=lambda group: group.offset)]}
 
     def DeserializeJSON(self, obj: dict[str, list[dict[str, Any]]]) -> None:
-        """Replace the groups by those that ``SerializeJSON`` returned.
-
-        Args:
-            obj: A result of ``SerializeJSON``.
-        """
+        """Replace the groups by those of ``obj``, a result of ``SerializeJSON``."""
         self._groups = [Group(**group) for group in obj["groups"]]
 
     def __eq__(self, other: object) -> bool:

@@ -167,11 +167,7 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def GetAllWaypoints2D(self, spec: Spec | None = None) -> Floats:
-        """Return a copy of all waypoints, shape (n, dof).
-
-        Args:
-            spec: The layout of the result; by default that of the trajectory.
-        """
+        """Return a copy of all waypoints, shape (n, dof), in the layout ``spec``, by default that of the trajectory."""
         return self.GetWaypoints2D(0, len(self.waypoints), spec)
 
     def _as(self, rows: Floats, spec: Spec | None) -> Floats:
@@ -230,12 +226,7 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SamplePoints2D(self, times: ArrayLike, spec: Spec | None = None) -> Floats:
-        """Return the configurations at several times, shape (n, dof). See ``Sample``.
-
-        Args:
-            times: The times since the start [s], shape (n,).
-            spec: The layout of the result; by default that of the trajectory.
-        """
+        """Return the configurations at ``times`` [s], shape (n, dof); ``spec`` is as for ``Sample``."""
         rows = [self.Sample(float(time), spec) for time in checked_numbers(times, "times").ravel()]
         dof = (self.GetConfigurationSpecification() if spec is None else ConfigurationSpecification(spec)).GetDOF()
         return np.array(rows).reshape(len(rows), dof)
@@ -279,22 +270,13 @@ class Trajectory(Interface):
         return self.SamplePoints2D(times, spec)
 
     def Clone(self, ref: "Trajectory", cloningoptions: int = 0) -> None:
-        """Copy the layout, the waypoints, the description and the user data of another trajectory.
-
-        Args:
-            ref: The other trajectory.
-            cloningoptions: Not used.
-        """
+        """Copy layout, waypoints, description and user data of ``ref``. ``cloningoptions`` are not used."""
         super().Clone(ref, cloningoptions)
         known = ref._waypoints
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
 
     def Swap(self, traj: "Trajectory") -> None:
-        """Exchange layout and waypoints with another trajectory.
-
-        Args:
-            traj: The other trajectory.
-        """
+        """Exchange layout and waypoints with the trajectory ``traj``."""
         self._waypoints, traj._waypoints = traj._waypoints, self._waypoints
 
     def serialize(self, options: int | None = 0) -> bytes:

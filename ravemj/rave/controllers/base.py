@@ -82,11 +82,7 @@ class Controller(Interface):
         return self._time
 
     def Reset(self, options: int = 0) -> None:
-        """Cancel the current command. The robot stays in place, and the controller is done.
-
-        Args:
-            options: Not used.
-        """
+        """Cancel the current command; the robot stays in place. ``options`` are not used."""
         del options
         self._is_done = True
 
@@ -116,20 +112,12 @@ class Controller(Interface):
         raise self._cannot("take single values")
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory in simulation time from its first waypoint on, and return True.
-
-        Args:
-            traj: The trajectory; it is copied.
-        """
+        """Play a copy of the trajectory ``traj`` in simulation time from its first waypoint on, and return True."""
         del traj
         raise self._cannot("play paths")
 
     def SimulationStep(self, timestep: float) -> None:
-        """Advance the controller by a time step; ``StepSimulation`` and the thread of simulation time call this.
-
-        Args:
-            timestep: The duration of the step [s].
-        """
+        """Advance the controller by ``timestep`` [s]; each step of simulation time calls this."""
 
     def GetVelocity(self) -> Floats:
         """Return the current velocities of the DOFs that the controller moves [rad/s or m/s], shape (n,)."""

@@ -1,35 +1,19 @@
-"""Converts the bodies of an environment to triangles."""
+"""Which bodies of an environment are meant: the selections of ``TriangulateScene`` and ``Save``."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 
-from ravemj.engine.simulation import BodyState
-from ravemj.model.scene import KinBody, Mesh
-from ravemj.model.triangles import links_triangles
-from ravemj.rave.enums import TriangulateOptions
-from ravemj.rave.trimesh import TriMesh, trimesh_of
+from ravemj.model.scene import KinBody
+from ravemj.rave.enums import SelectionOptions
 
-_CHOICES: dict[TriangulateOptions, Callable[[KinBody, str], bool]] = {
-    TriangulateOptions.Obstacles: lambda body, name: not body.is_robot,
-    TriangulateOptions.Robots: lambda body, name: body.is_robot,
-    TriangulateOptions.Everything: lambda body, name: True,
-    TriangulateOptions.Body: lambda body, name: body.name == name,
-    TriangulateOptions.AllExceptBody: lambda body, name: body.name != name,
+_SELECTIONS: dict[SelectionOptions, Callable[[KinBody, Collection[str]], bool]] = {
+    SelectionOptions.NoRobots: lambda body, names: not body.is_robot,
+    SelectionOptions.Robots: lambda body, names: body.is_robot,
+    SelectionOptions.Everything: lambda body, names: True,
+    SelectionOptions.Body: lambda body, names: body.name in names,
+    SelectionOptions.AllExceptBody: lambda body, names: body.name not in names,
 }
 
 
-def chosen(bodies: Iterable[BodyState], options: TriangulateOptions, name: str) -> list[BodyState]:
-    """Return the bodies that options select.
-
-    Args:
-        bodies: All bodies.
-        options: The options.
-        name: The name of the body, for ``Body`` and ``AllExceptBody``.
-    """
-    takes = _CHOICES[options]
-    return [state for state in bodies if takes(state.scene, name)]
-
-
-def triangles(bodies: Iterable[BodyState]) -> TriMesh:
-    """Return the triangles of all geometries of bodies, in the world."""
-    parts = [links_triangles(body.scene.links, body.link_transforms()) for body in bodies]
-    return trimesh_of(Mesh.merged(parts))
+def selects(options: int, names: Collection[str], body: KinBody) -> bool:
+    """Return whether options select a body; ``names`` are for ``Body`` and ``AllExceptBody``."""
+    return _SELECTIONS[SelectionOptions(options)](body, names)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ravemj.rave.interface import asked_for
 from ravemj.rave.module import Command, Module
 from ravemj.rave.modules.base_manipulation import BaseManipulation
-from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
+from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, commands_of
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.modules.scene_saver import scene_module
 from ravemj.rave.modules.task_manipulation import TaskManipulation
@@ -39,13 +39,13 @@ MISSING: Mapping[str, str] = {
 def base_module(env: "Environment", xmlid: str = "BaseManipulation") -> tuple[Module, BaseManipulation]:
     """Make a module that moves arms; return it, and the object that plans its motions."""
     manipulation = BaseManipulation(env)
-    return _module(env, xmlid, manipulation, answering(BaseCommands(manipulation).named())), manipulation
+    return _module(env, xmlid, manipulation, commands_of(manipulation, BASE_COMMANDS)), manipulation
 
 
 def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Module, TaskManipulation]:
     """Make a module that moves grippers; return it, and the object that plans its motions."""
     manipulation = TaskManipulation(env)
-    return _module(env, xmlid, manipulation, answering(TaskCommands(manipulation).named())), manipulation
+    return _module(env, xmlid, manipulation, commands_of(manipulation, TASK_COMMANDS)), manipulation
 
 
 def RaveCreateModule(env: "Environment", name: str) -> Module | None:

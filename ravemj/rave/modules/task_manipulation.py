@@ -114,12 +114,7 @@ class TaskManipulation(Manipulation):
         return final, self._motion(dofs, final)
 
     def release_active(self, directions: Floats, step: float = _STEP) -> tuple[Floats, Trajectory]:
-        """Move the active joints to one side: return their last values, and the motion.
-
-        Args:
-            directions: The sign of the motion of each active joint.
-            step: The step in which joints move between two collision tests [rad or m].
-        """
+        """Move each active joint to the side of its sign in ``directions``; return the last values and the motion."""
         dofs = [int(dof) for dof in self.robot.GetActiveDOFIndices()]
         if len(directions) != len(dofs):
             raise ArgumentError(f"movingdir: has {len(directions)} numbers, and there are {len(dofs)} active joints")

@@ -87,11 +87,10 @@ class Bodies:
         self._free: set[KinBody] = set()  # whose joints stay as they are, and have no self-collision
 
     def numbers(self, name: str) -> Floats:
-        """Return one setting for every value of a configuration, shape (n,).
+        """Return one setting of each value, shape (n,).
 
-        Args:
-            name: The setting: ``lower``, ``upper``, ``max_velocity``, ``max_acceleration``, ``max_jerk``, ``weight`` or
-                ``resolution``.
+        Settings are ``lower``, ``upper``, ``max_velocity``, ``max_acceleration``, ``max_jerk``, ``weight`` and
+        ``resolution``.
         """
         result = np.zeros(self._dof)
         for part in self._parts:

@@ -92,11 +92,7 @@ class Hand:
         return self.manip.GetTransform(), jacobian
 
     def to_pose(self, T_world_goal: Floats) -> Error:
-        """Return the error function of a goal pose: the translation [m], then the rotation vector [rad], that are left.
-
-        Args:
-            T_world_goal: The goal pose of the tool, shape (4, 4).
-        """
+        """Return the error function of a goal pose (4, 4): the translation and rotation vectors that are left."""
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
             T_world_tool, jacobian = self.motion(values)

@@ -86,7 +86,8 @@ class Retimer(Planner):
             if group is None:
                 return self._failed("the times should be kept, and there are none")
             deltas = traj.GetAllWaypoints2D()[:, group.offset]
-        velocities = _given_velocities(traj, spec) if flag(values, "hasvelocities") else None
+        rates = spec.ConvertToDerivativeSpecification(1)
+        velocities = traj.GetAllWaypoints2D(rates) if flag(values, "hasvelocities") else None
         points = traj.GetAllWaypoints2D(spec)
         try:
             timed = _timed(profile, points, values.limits(), (deltas, velocities), values.numbers["_fsteplength"])
@@ -117,10 +118,6 @@ def lacking_group(spec: ConfigurationSpecification, source: ConfigurationSpecifi
     """Return the name of the first group of ``spec`` for which ``source`` has no values, or None."""
     names = [group.name for group in spec.GetGroups()]
     return next((name for name in names if source.FindCompatibleGroup(name) is None), None)
-
-
-def _given_velocities(traj: Trajectory, spec: ConfigurationSpecification) -> Floats:
-    return traj.GetAllWaypoints2D(spec.ConvertToDerivativeSpecification(1))
 
 
 def fill(
