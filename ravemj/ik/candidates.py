@@ -66,16 +66,7 @@ def _descended(solver: IKSolver, goal: Floats, seed: Floats) -> Floats:
 
 
 def shortfall(solver: IKSolver, goal: Floats, free: Floats | None = None) -> tuple[bool, bool]:
-    """Return why a goal may have no solution: it is out of reach, and solutions are beyond the limits.
-
-    Args:
-        solver: The solver.
-        goal: A pose (4, 4), or what else its task asks for.
-        free: Values of the free joints, shape (k,); None: samples.
-
-    Returns:
-        Whether it is out of reach, for any value of the free joints, and whether any solution is beyond the limits.
-    """
+    """Return whether a goal is out of reach for a value of free joints, and whether limits exclude solutions."""
     if solver.closed is None:
         return True, False
     found = solver.solve(goal[None], free=free, limits=False)

@@ -111,10 +111,7 @@ class NumericSolver:
     def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:
         """Return one solution within the limits, shape (n,), or None where no start finds any.
 
-        Args:
-            pose: The pose, shape (4, 4).
-            seed: Joint values to start at.
-            starts: How many starts at most; as many as the solver has if None.
+        The starts are a seed, if one is given, and others up to a number, by default as many as the solver has.
         """
         for number in range(self.starts if starts is None else starts):
             start = seed if seed is not None and number == 0 else self.start(number)

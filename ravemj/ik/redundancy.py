@@ -121,10 +121,9 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
-    """Find the configurations, of rows (K, n), in which two joints turn about the same line.
+    """Return the configurations, of rows (K, n), in which two joints turn about the same line.
 
-    Returns:
-        For each of them the row, the two joints, and 1 or -1 for the same or the opposite direction.
+    For each it is the row, the two joints, and 1 or -1 for the same or the opposite direction.
     """
     axes, points = chain.placed_axes(rows)
     turning = np.nonzero(~chain.prismatic)[0].tolist()
@@ -139,12 +138,9 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 
 
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
-    """Return other configurations (K, n) with the tool's pose of one in which two joints turn about one line.
+    """Return other configurations (K, n) with the tool's pose of a singular one, an item of ``singular_rows``.
 
-    Args:
-        chain: The arm.
-        singular: The configuration, the joints and the sign, of ``singular_rows``.
-        seed: A configuration; in one answer the first of the two joints has its value there, in another the second.
+    With a seed, the first of the two joints has its value there in one answer, and the second in another.
     """
     row, first, second, sign = singular
     angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)
@@ -163,11 +159,6 @@ def default_free(chain: Chain, name: str, dof: int) -> list[int]:
 
     They go from the tip down. Of goals with a place and a direction, the last joint is free if it turns about the
     direction, and else those at the base are.
-
-    Args:
-        chain: The arm.
-        name: The type of goal.
-        dof: How many joints it fixes.
     """
     surplus = max(0, chain.dof - dof)
     joints = list(range(chain.dof))
@@ -184,13 +175,8 @@ def default_steps(
 ) -> tuple[float, ...]:
     """Return a step for each free joint [rad or m].
 
-    Those of more than two joints are larger where there would be too many samples.
-
-    Args:
-        chain: The arm.
-        free: The joints.
-        angle: The step of revolute joints [rad].
-        slide: The step of prismatic ones, in units of the length of the arm.
+    Revolute joints have an angle, prismatic ones a fraction of the length of the arm. Those of more than two joints are
+    larger where there would be too many samples.
     """
     points = np.vstack([chain.points, chain.T_base_tool[:3, 3]])  # also those of prismatic joints, as in OpenRAVE
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) or 1.0

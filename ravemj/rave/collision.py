@@ -75,13 +75,9 @@ class CollisionChecker(CheckerExtras):
         """Do nothing; OpenRAVE's checkers free memory here."""
 
     def SetCollisionOptions(self, collisionoptions: int) -> bool:
-        """Set the options: what is tested and reported.
+        """Set ``collisionoptions``, ``CollisionOptions`` combined with ``|``.
 
-        Args:
-            collisionoptions: ``CollisionOptions`` combined with ``|``.
-
-        Returns:
-            False, and nothing changes, if there is an option among them that is not known.
+        Return False, and change nothing, if there is an unknown one among them.
         """
         if not 0 <= int(collisionoptions) < 2 * CollisionOptions.IgnoreCallbacks:
             return False
@@ -129,11 +125,9 @@ class CollisionChecker(CheckerExtras):
             return self.answer(world, self._pairs(world, arguments), report)
 
     def CheckSelfCollision(self, linkbody: "BodyCollision | Link", report: CollisionReport | None = None) -> bool:
-        """Return whether a body collides with itself; see ``body.CheckSelfCollision``.
+        """Return whether ``linkbody``, a body or a link of it, collides with the rest; see ``body.CheckSelfCollision``.
 
-        Args:
-            linkbody: The body, or one link that is tested against the others.
-            report: Filled with what is found.
+        ``report`` receives the collisions.
         """
         if report is not None:
             checked_kind(report, CollisionReport, "CheckSelfCollision: report")

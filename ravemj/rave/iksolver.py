@@ -155,13 +155,7 @@ _OPTIONS = "filteroptions"
 def split_options(
     caller: str, arguments: Sequence[object], named: Mapping[str, object], free_name: str = "freeparameters"
 ) -> tuple[ArrayLike | None, int]:
-    """Return values of free joints, or None, and ``IkFilterOptions`` of a call.
-
-    Args:
-        caller: The name of the method.
-        arguments: ``filteroptions``, or values of free joints and these.
-        named: The same by name.
-        free_name: What the values of free joints are called.
+    """Return values of free joints, or None, and ``IkFilterOptions`` of a call: ``([freeparameters,] filteroptions)``.
 
     Raises:
         TypeError: the options are missing, or there is something else.

@@ -120,27 +120,17 @@ class PhysicsEngine(Interface):
         return True
 
     def GetLinkVelocity(self, link: "Link") -> tuple[Floats, Floats]:
-        """Return the velocity of a link, in world axes.
+        """Return the velocity of the origin of ``link`` [m/s] and the angular velocity [rad/s] in the world.
 
-        Args:
-            link: The link.
-
-        Returns:
-            The velocity of the link's origin [m/s] and the angular velocity [rad/s], each of shape (3,).
+        Both have shape (3,).
         """
         velocity = link.GetVelocity()
         return velocity[:3], velocity[3:]
 
     def SetLinkVelocity(self, link: "Link", linearvel: ArrayLike, angularvel: ArrayLike) -> bool:
-        """Set the velocity of one link; see ``link.SetVelocity``.
+        """Set the velocity of ``link`` in world axes, and return True; see ``link.SetVelocity``.
 
-        Args:
-            link: The link.
-            linearvel: The velocity of the link's origin in world axes [m/s], shape (3,).
-            angularvel: The angular velocity in world axes [rad/s], shape (3,).
-
-        Returns:
-            True.
+        ``linearvel`` is that of its origin [m/s], ``angularvel`` its angular velocity [rad/s], shape (3,) each.
         """
         link.SetVelocity(linearvel, angularvel)
         return True
@@ -150,15 +140,7 @@ class PhysicsEngine(Interface):
         return body.GetLinkVelocities()
 
     def SetLinkVelocities(self, body: "KinBody", velocities: ArrayLike) -> bool:
-        """Set the velocities of all links of a body; see ``body.SetLinkVelocities``.
-
-        Args:
-            body: The body.
-            velocities: Shape (links, 6).
-
-        Returns:
-            True.
-        """
+        """Set the ``velocities`` of all links of ``body``, shape (links, 6), and return True."""
         body.SetLinkVelocities(velocities)
         return True
 

@@ -22,14 +22,7 @@ _POSES_FOR_THE_VIEW = 17  # configurations along a motion that the camera has to
 
 
 class Shot(NamedTuple):
-    """The settings of a video.
-
-    Attributes:
-        camera: The camera.
-        background: The background colour: red, green, blue from 0 to 1.
-        form: The size and quality of the frames.
-        fps: Frames per second.
-    """
+    """The settings of a video: camera, background, size and quality of the frames, and frames per second."""
 
     camera: Camera
     background: tuple[float, float, float]

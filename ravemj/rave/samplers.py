@@ -46,19 +46,14 @@ class SpaceSampler(Interface):
         self._sequence = sequence
 
     def SetSeed(self, seed: int) -> None:
-        """Restart the sequence.
+        """Restart the sequence: equal values of ``seed`` give equal sequences, though not those of OpenRAVE.
 
-        Args:
-            seed: Equal seeds give equal sequences, though not those of OpenRAVE. For Halton's sequence, the index of
-                the next point.
+        For Halton's sequence, it is the index of the next point.
         """
         self._sequence.start(int(seed))
 
     def SetSpaceDOF(self, dof: int) -> None:
-        """Set the number of dimensions.
-
-        Args:
-            dof: The number of dimensions, at least 1.
+        """Set the number of dimensions, ``dof``.
 
         Raises:
             openrave_exception: the number is less than 1, or differs from the DOFs of the sampled body.
@@ -87,14 +82,7 @@ class SpaceSampler(Interface):
     def SampleSequence(
         self, type: SampleDataType, num: int, interval: int = Interval.Closed
     ) -> "Floats | NDArray[np.uint32]":
-        """Return the next points of the sequence in one row, shape (num * dof,).
-
-        Args:
-            type: The kind of numbers, a ``SampleDataType``.
-            num: The number of points.
-            interval: Which of the limits belong to the space, an ``Interval``; not used, since samples hardly ever hit
-                a limit.
-        """
+        """Return the next points in one row, shape (num * dof,); ``type`` and ``interval`` as for the next method."""
         return self.SampleSequence2D(type, num, interval).ravel()
 
     def SampleSequence2D(
@@ -119,10 +107,7 @@ class SpaceSampler(Interface):
         return self._sequence.integers(int(num)) if whole else self._sequence.reals(int(num))
 
     def SampleSequenceOneReal(self, interval: int = Interval.Closed) -> float:
-        """Return the next number of a one-dimensional sequence.
-
-        Args:
-            interval: As of ``SampleSequence``.
+        """Return the next number of a one-dimensional sequence; ``interval`` is not used.
 
         Raises:
             openrave_exception: the sequence has more than one dimension (``InvalidState``).
@@ -140,12 +125,9 @@ class SpaceSampler(Interface):
         return self.SampleSequence(type, 1, interval)[0]
 
     def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
-        """Raise an error: no sampler of OpenRAVE returns points, shape (num, dof), that cover its space completely.
+        """Raise an error: no sampler of OpenRAVE returns ``num`` points, shape (num, dof), that cover its space.
 
-        Args:
-            type: The kind of numbers, a ``SampleDataType``.
-            num: The number of points.
-            interval: As of ``SampleSequence``.
+        ``type`` and ``interval`` are as for ``SampleSequence2D``.
 
         Raises:
             openrave_exception: always (``NotImplemented``).

@@ -86,10 +86,7 @@ class DescribedSensor(Interface):
         return f"{self.attached.GetRobot().GetName()}:{self.attached.GetName()}"
 
     def SetName(self, name: str) -> None:
-        """Set the name of a sensor without a robot.
-
-        Args:
-            name: The name.
+        """Set the ``name`` of a sensor without a robot.
 
         Raises:
             openrave_exception: a robot carries the sensor, or the environment has another one of that name.
@@ -117,10 +114,7 @@ class DescribedSensor(Interface):
         return pose_of(self.GetTransform()).numbers()
 
     def SetTransform(self, transform: ArrayLike) -> None:
-        """Move a sensor without a robot.
-
-        Args:
-            transform: ``T_world_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+        """Move a sensor without a robot to ``transform``, ``T_world_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
 
         Raises:
             openrave_exception: a robot carries the sensor; ``attached.SetRelativeTransform`` moves it on its link.
@@ -187,10 +181,7 @@ class DescribedSensor(Interface):
         return geometry if is_meant else None
 
     def CreateSensorData(self, type: SensorType | None = None) -> SensorData:  # OpenRAVE's name
-        """Return an empty measurement.
-
-        Args:
-            type: The kind of data; by default the sensor's own.
+        """Return an empty measurement of ``type``, by default of the sensor's own.
 
         Raises:
             openrave_exception: the sensor does not measure this kind of data.

@@ -36,11 +36,7 @@ class ConfigurationSpecification(ConfigurationData):
 
     @also_named(pyspec="spec", group="spec", xmldata="spec")
     def __init__(self, spec: "ConfigurationSpecification | Group | str | None" = None) -> None:
-        """Make a specification.
-
-        Args:
-            spec: A specification to copy, a group, or XML text, as ``repr`` shows it. By default there are no groups.
-        """
+        """Copy ``spec``, a specification, a group or XML text, as ``repr`` shows it; by default there are no groups."""
         if isinstance(spec, str):
             self._groups = read_layout(spec)
         elif isinstance(spec, Group):
@@ -92,9 +88,8 @@ class ConfigurationSpecification(ConfigurationData):
     def FindCompatibleGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
         """Return a copy of the group with values of the same kind and body, or None.
 
-        Args:
-            name: The name of a group or the beginning of one, for instance ``joint_values arm``.
-            exactmatch: Whether the names have to be equal.
+        ``name`` is the name of a group or the beginning of one, such as ``joint_values arm``; with ``exactmatch`` the
+        names have to be equal.
         """
         found = layout.find_compatible(self._groups, name if isinstance(name, str) else name.name, exactmatch)
         return None if found is None else layout.copied([found])[0]
@@ -147,11 +142,9 @@ class ConfigurationSpecification(ConfigurationData):
         return self.AddGroup(DELTATIME, 1)
 
     def AddDerivativeGroups(self, deriv: int, adddeltatime: bool = False) -> None:
-        """Append time derivatives of all positions, with the interpolations that fit those of the positions.
+        """Append the time derivatives of order ``deriv`` of all positions, with interpolations that fit.
 
-        Args:
-            deriv: 1 for velocities, 2 for accelerations and so on.
-            adddeltatime: Whether to append the time since the last waypoint as well.
+        With ``adddeltatime``, append the time since the last waypoint, too.
         """
         self._groups = layout.with_derivatives(self._groups, checked_order(deriv, "deriv"), adddeltatime)
 
@@ -160,14 +153,9 @@ class ConfigurationSpecification(ConfigurationData):
         self.AddDerivativeGroups(1, adddeltatime)
 
     def RemoveGroups(self, groupname: str, exactmatch: bool = True) -> int:
-        """Remove groups, and close the gaps.
+        """Remove the group ``groupname``, close the gap, and return how many groups were removed.
 
-        Args:
-            groupname: The name of a group.
-            exactmatch: False also removes groups whose names begin with it.
-
-        Returns:
-            The number of removed groups.
+        Without ``exactmatch``, groups whose names begin with it are removed, too.
         """
         before = len(self._groups)
         self._groups = layout.without(self._groups, groupname, exactmatch)

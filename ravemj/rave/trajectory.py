@@ -145,12 +145,9 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def GetWaypoints(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
-        """Return the waypoints from ``startindex`` to before ``endindex``, one after the other, shape (n * dof,).
+        """Return the waypoints from ``startindex`` to before ``endindex`` in one row, shape (n * dof,).
 
-        Args:
-            startindex: The first waypoint.
-            endindex: The index after the last waypoint.
-            spec: The layout of the result; by default that of the trajectory.
+        ``spec`` is the layout of the result, by default that of the trajectory.
         """
         return self.GetWaypoints2D(startindex, endindex, spec).ravel()
 
@@ -158,10 +155,7 @@ class Trajectory(Interface):
     def GetWaypoints2D(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
         """Return a copy of the waypoints from ``startindex`` to before ``endindex``, shape (n, dof).
 
-        Args:
-            startindex: The first waypoint.
-            endindex: The index after the last waypoint.
-            spec: The layout of the result; by default that of the trajectory.
+        ``spec`` is the layout of the result, by default that of the trajectory.
         """
         return self._as(self.waypoints.rows(startindex, endindex), spec)
 
@@ -178,10 +172,9 @@ class Trajectory(Interface):
         return self.waypoints.duration()
 
     def GetFirstWaypointIndexAfterTime(self, time: float) -> int:
-        """Return the index of the first waypoint at a time or later, or the number of waypoints after the last one.
+        """Return the index of the first waypoint at a ``time`` [s] or later.
 
-        Args:
-            time: The time since the start [s].
+        After the last waypoint, it is the number of waypoints.
 
         Raises:
             ArgumentError: the trajectory has no group ``deltatime``.
@@ -213,12 +206,9 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
-        """Return the configuration at a time, with ``data`` for values that the trajectory lacks. See ``Sample``.
+        """Return the configuration at a ``time`` [s], shape (dof,); see ``Sample``.
 
-        Args:
-            data: A configuration, shape (dof,).
-            time: The time since the start [s].
-            spec: The layout of the data and of the result.
+        ``data`` has the values that the trajectory lacks; ``spec`` is its layout and that of the result.
         """
         source = self.waypoints.sample(time, restamped=False, find_body=self._env.simulation.body)
         target = ConfigurationSpecification(spec)
@@ -233,15 +223,9 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SamplePointsSameDeltaTime2D(self, deltatime: float, ensurelastpoint: bool, spec: Spec | None = None) -> Floats:
-        """Return configurations at regular times.
+        """Return configurations every ``deltatime`` [s], shape (n, dof).
 
-        Args:
-            deltatime: The time between two configurations [s].
-            ensurelastpoint: Whether to append the end of the trajectory.
-            spec: As for ``Sample``.
-
-        Returns:
-            Shape (n, dof).
+        With ``ensurelastpoint``, the end of the trajectory is appended. ``spec`` is as for ``Sample``.
         """
         return self.SampleRangeSameDeltaTime2D(deltatime, 0.0, self.GetDuration(), ensurelastpoint, spec)
 
@@ -280,25 +264,12 @@ class Trajectory(Interface):
         self._waypoints, traj._waypoints = traj._waypoints, self._waypoints
 
     def serialize(self, options: int | None = 0) -> bytes:
-        """Return the trajectory in OpenRAVE's format.
-
-        Args:
-            options: 0x8000 for XML.
-
-        Returns:
-            Bytes, in UTF-8 for XML.
-        """
+        """Return the trajectory in OpenRAVE's format: binary, or XML in UTF-8 if ``options`` are 0x8000."""
         stored = Stored(self.waypoints, self.GetDescription())
         return to_text(stored, self._xmlid).encode() if (options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:
-        """Replace this trajectory by one that ``serialize`` returned.
-
-        Args:
-            data: A result of ``serialize``, binary or XML.
-
-        Returns:
-            The trajectory itself.
+        """Replace this trajectory by ``data``, which ``serialize`` returned, and return it.
 
         Raises:
             ArgumentError: the data is not a trajectory; this one stays as it is.
@@ -308,11 +279,7 @@ class Trajectory(Interface):
         return self
 
     def SaveToFile(self, filename: AnyPath, options: int | None = 0) -> None:
-        """Write the trajectory to a file, in the format of ``serialize``.
-
-        Args:
-            filename: The file.
-            options: 0x8000 for XML; otherwise the file is binary.
+        """Write the trajectory to the file ``filename``: binary, or XML if ``options`` are 0x8000.
 
         Raises:
             OutputError: the file cannot be written.
@@ -322,10 +289,7 @@ class Trajectory(Interface):
             path.write_bytes(content)
 
     def LoadFromFile(self, filename: AnyPath) -> None:
-        """Replace this trajectory by the one in a file, binary or XML.
-
-        Args:
-            filename: The file.
+        """Replace this trajectory by the one in the file ``filename``, binary or XML.
 
         Raises:
             openrave_exception: the file cannot be read, or is not a trajectory.

@@ -128,11 +128,7 @@ class Controller(Interface):
         return np.zeros(len(self._robot_dofs()))
 
     def _robot_dofs(self) -> Ints:
-        """Return the DOF indices that the controller moves.
-
-        Raises:
-            RavemjError: the controller has no robot.
-        """
+        """Return the DOF indices that the controller moves; an error where it has no robot."""
         assert self._robot is not None
         return self.GetControlDOFIndices()
 

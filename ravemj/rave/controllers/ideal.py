@@ -192,13 +192,9 @@ class IdealController(Controller):
         self._place(path.dofs, point[path.columns], T_world_base, elapsed)
 
     def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
-        """Set joint values and the pose of the base, with all velocities zero.
+        """Set joint values and the pose of the base, if there is one, with all velocities zero.
 
-        Args:
-            dofs: The DOF indices.
-            values: The joint values [rad or m].
-            T_world_base: The pose of the base; None leaves it in place.
-            elapsed: The duration of the motion, for the velocity limits [s]; 0 allows any speed.
+        ``elapsed`` is the duration of the motion, for the velocity limits [s]; 0 allows any speed.
         """
         robot = self._robot
         if len(dofs):

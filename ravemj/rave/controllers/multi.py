@@ -13,12 +13,7 @@ from ravemj.rave.trajectory import Trajectory
 
 
 class _Part(NamedTuple):
-    """One of the other controllers.
-
-    Attributes:
-        controller: The controller.
-        places: The indices of its values among those of the ``MultiController``.
-    """
+    """One of the other controllers, and the indices of its values among those of the ``MultiController``."""
 
     controller: Controller
     places: Ints

@@ -165,11 +165,7 @@ class Saving(Description):
 
 
 def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
-    """Return the arguments as pairs.
-
-    Raises:
-        ArgumentError: One of them is unknown.
-    """
+    """Return the arguments as pairs of texts."""
     if isinstance(atts, str):
         return [("target", atts)]
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())
@@ -195,11 +191,7 @@ def _check_words(name: str, value: str) -> None:
 
 
 def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) -> set[str]:
-    """Return the names of the bodies that the option ``externalref`` names.
-
-    Raises:
-        ArgumentError: No body of a name is saved.
-    """
+    """Return the names of the bodies that the option ``externalref`` names."""
     asked = {word for name, value in given if name == "externalref" for word in value.split()}
     missing = sorted(asked - {"*", *names})
     if missing:
@@ -208,11 +200,7 @@ def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) ->
 
 
 def _chosen(bodies: Sequence[KinBody], options: int, targets: Sequence[str]) -> list[KinBody]:
-    """Return the bodies that are selected.
-
-    Raises:
-        ArgumentError: There is no such selection, or no body of a name.
-    """
+    """Return the bodies that are selected."""
     if options not in set(SelectionOptions):
         raise ArgumentError(f"Save: options: {options!r} is no SelectionOptions")
     names = [body.name for body in bodies]

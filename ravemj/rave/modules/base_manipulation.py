@@ -30,11 +30,7 @@ class BaseManipulation(Manipulation):
     """Plans motions of the active DOFs, of an arm, or of its tool."""
 
     def move_manipulator(self, goals: Sequence[Floats], search: SearchOptions) -> Trajectory:
-        """Return a motion of the joints of the active manipulator's arm to one of several goals.
-
-        Args:
-            goals: The goals, each of shape (arm dof,).
-            search: The effort of the search.
+        """Return a motion of the active manipulator's arm to one of several goals, each of shape (arm dof,).
 
         Raises:
             PlanningError: no motion was found.
@@ -238,14 +234,10 @@ class BaseManipulation(Manipulation):
             self.planner = old
 
     def jitter_active(self, maxiter: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
-        """Return a nearby configuration of the active DOFs without collisions, and the straight motion to it.
-
-        Args:
-            maxiter: The number of random configurations to test.
-            jitter: The largest change of each value [rad or m].
+        """Return a free configuration of the active DOFs within ``jitter`` [rad or m], and the straight motion to it.
 
         Raises:
-            PlanningError: no tested configuration is free of collisions.
+            PlanningError: none of ``maxiter`` random configurations is free of collisions.
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)

@@ -81,14 +81,7 @@ class GraspPlan(NamedTuple):
 
 @dataclass
 class _Candidate:
-    """A reachable grasp.
-
-    Attributes:
-        index: The index of the grasp.
-        preshape: The values of the gripper.
-        rows: The values of the arm at the end of the motion.
-        goals: The goals of the tool at the places.
-    """
+    """A reachable grasp: its index, values of the gripper, of the arm there, and goals of the tool at the places."""
 
     index: int
     preshape: Floats

@@ -179,10 +179,7 @@ class Manipulation:
                 new.join(new.retimed(anchor, (1.0, 1.0), retimer, ""), anchor)
 
     def straight(self, points: Floats) -> Trajectory:
-        """Return the fastest motion of the active DOFs along straight lines.
-
-        Args:
-            points: The active values at the waypoints, shape (m, n).
+        """Return the fastest motion of the active DOFs along straight lines through points (m, n).
 
         Raises:
             PlanningError: the retimer finds no times.

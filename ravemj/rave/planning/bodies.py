@@ -243,14 +243,9 @@ def _numbers(part: _Part, name: str) -> Any:  # noqa: ANN401 - numbers
 
 
 def space_of(coordinates: Coordinates, lower: Floats, upper: Floats, weights: Floats, resolution: Floats) -> Space:
-    """Return the configuration space for planners. Circular values are bounded, because planners sample between limits.
+    """Return the configuration space for planners, from vectors of shape (n,); a resolution of 0 selects OpenRAVE's.
 
-    Args:
-        coordinates: The kinds of the values.
-        lower: Lower limits, shape (n,).
-        upper: Upper limits, shape (n,).
-        weights: Weights of the values in distances, shape (n,).
-        resolution: Steps for collision tests, shape (n,); 0 selects OpenRAVE's default.
+    Circular values are bounded, because planners sample between limits.
     """
     resolution = np.where(resolution > 0, resolution, _RESOLUTION)
     lower = np.where(coordinates.circular, -_ROUND, lower)

@@ -76,14 +76,9 @@ class Hand:
     dof: int
 
     def motion(self, values: Floats) -> tuple[Floats, Floats]:
-        """Move the robot to a configuration, and return the pose of its tool and the Jacobian.
+        """Move the robot to a configuration (n,), and return ``T_world_tool`` and its Jacobian, shape (6, n).
 
-        Args:
-            values: A configuration, shape (n,).
-
-        Returns:
-            ``T_world_tool``, shape (4, 4), and its Jacobian in world axes, shape (6, n): three rows for the velocity of
-            the origin, then three for the angular velocity.
+        In world axes, its first rows are the velocity of the origin, its last the angular velocity.
         """
         self.bodies.move(values)
         jacobian = np.zeros((6, self.dof))

@@ -65,15 +65,7 @@ def parameters_text(
     postprocessing: tuple[str, str],
     extra: str,
 ) -> str:
-    """Return planner parameters as the text of a ``<plannerparameters>`` element.
-
-    Args:
-        groups: The layout of a configuration.
-        vectors: Vectors, by the names of ``VECTORS``.
-        numbers: Scalars, by the names of ``NUMBERS``.
-        postprocessing: The planner that processes the path, and its parameters as XML text.
-        extra: Further elements as XML text.
-    """
+    """Return planner parameters as a ``<plannerparameters>`` element; ``extra`` are further elements as text."""
     planner, inner = postprocessing
     lines = [f"<{name}>{' '.join(repr(float(value)) for value in vectors[name])}</{name}>" for name in VECTORS]
     lines += [f"<{name}>{_number_text(numbers[name])}</{name}>" for name in NUMBERS]

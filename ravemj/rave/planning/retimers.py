@@ -123,14 +123,9 @@ def lacking_group(spec: ConfigurationSpecification, source: ConfigurationSpecifi
 def fill(
     traj: Trajectory, spec: ConfigurationSpecification, profile: Interpolated, timed: Timed, *, mark: bool = False
 ) -> None:
-    """Write a timed path into a trajectory.
+    """Write a timed path into a trajectory, whose layout and waypoints are replaced.
 
-    Args:
-        traj: The trajectory; its layout and waypoints are replaced.
-        spec: The layout of the path's values.
-        profile: The velocity profile, which says how values are interpolated and which derivatives are stored.
-        timed: The timed path.
-        mark: Whether to add a group ``iswaypoint``.
+    ``spec`` is the layout of the path's values; ``mark`` adds a group ``iswaypoint``.
     """
     groups = spec.GetGroups()
     for group in groups:
