@@ -54,13 +54,13 @@ class ManageData(ApiObject):
         raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
 
     def GetSystem(self) -> NoReturn:
-        """Raise an error, since there is no sensor system."""
+        """Refuse to return anything, since there is no sensor system."""
         raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
 
     GetData = GetOffsetLink = IsPresent = IsEnabled = IsLocked = GetSystem
 
     def Lock(self, dolock: bool) -> NoReturn:
-        """Raise an error, since there is no sensor system; ``dolock`` is not used."""
+        """Refuse to return anything, since there is no sensor system; ``dolock`` is not used."""
         raise UnsupportedError("ManageData.Lock", SENSOR_SYSTEMS)
 
 
