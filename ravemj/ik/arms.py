@@ -8,8 +8,8 @@ import numpy as np
 
 from ravemj.core.transforms import Pose, Vec3, rotate
 from ravemj.ik.chain import Chain
-from ravemj.ik.free_joints import default_free, default_steps
 from ravemj.ik.numeric import NumericSolver
+from ravemj.ik.redundancy import default_free, default_steps
 from ravemj.ik.solver import IKSolver, make_solver
 from ravemj.ik.tasks import Task
 from ravemj.model.joints import directions_at, relative_pose

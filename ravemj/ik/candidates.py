@@ -4,15 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ravemj.ik import redundancy
 from ravemj.ik.limits import all_turns, distances, nearest_turns
-from ravemj.ik.numeric import ACCURATE
-from ravemj.ik.solver import IKSolver
-from ravemj.ik.tasks import Task, goal_poses
+from ravemj.ik.solver import FIRST, NEXT, IKSolver
+from ravemj.ik.tasks import goal_poses
 from ravemj.ik.vectors import Floats
-
-_FIRST, _NEXT = 12, 96
-"""So many samples of free joints are solved at once; those near the present values mostly are enough."""
 
 
 def nearest_first(
@@ -53,44 +48,25 @@ def _groups(solver: IKSolver, goal: Floats, seed: Floats, free: Floats | None, *
         return
     values = solver.free_samples(seed[list(solver.free)]) if free is None else free.reshape(1, -1)
     some = False
-    for part in np.split(values, range(_FIRST, len(values), _NEXT)):
+    for part in np.split(values, range(FIRST, len(values), NEXT)):
         solutions = solver.solve(goal[None], free=part, limits=False)
         rows = solutions.values.reshape(len(part), -1, solver.chain.dof)
         for row, valid in zip(rows, solutions.valid.reshape(len(part), -1), strict=True):
             if valid.any():
                 some = True
-                yield _with_singular(solver, row[valid], seed) if solutions.merged[0] else row[valid]
+                yield solver.spread(row[valid], seed) if solutions.merged[0] else row[valid]
         if solutions.merged[0] and limits and not solver.free:
             yield _descended(solver, goal, seed)
     if not some and limits and free is None:
         yield _descended(solver, goal, seed)
 
 
-def _with_singular(solver: IKSolver, rows: Floats, seed: Floats) -> Floats:
-    """Add to configurations in which two joints turn about one line other angles of these."""
-    if solver.task is not Task.TRANSFORM:
-        return rows
-    found = redundancy.singular_rows(solver.chain, rows)
-    return np.vstack([rows, *(redundancy.spread(solver.chain, one, seed) for one in found)])
-
-
 def _descended(solver: IKSolver, goal: Floats, seed: Floats) -> Floats:
-    """Return the solution below a configuration, shape (1, n), or none, shape (0, n)."""
-    found = solver.numeric.descend(goal_poses(solver.chain, solver.task, goal), seed)
-    return found.values[None][: int(found.error < ACCURATE)]
+    return solver.descent(goal_poses(solver.chain, solver.task, goal), seed)
 
 
 def shortfall(solver: IKSolver, goal: Floats, free: Floats | None = None) -> tuple[bool, bool]:
-    """Return why a goal may have no solution: it is out of reach, and solutions are beyond the limits.
-
-    Args:
-        solver: The solver.
-        goal: A pose (4, 4), or what else its task asks for.
-        free: Values of the free joints, shape (k,); None: samples.
-
-    Returns:
-        Whether it is out of reach, for any value of the free joints, and whether any solution is beyond the limits.
-    """
+    """Return whether a goal is out of reach for a value of free joints, and whether limits exclude solutions."""
     if solver.closed is None:
         return True, False
     found = solver.solve(goal[None], free=free, limits=False)

@@ -145,14 +145,7 @@ class Chain:
         return [np.array(step.T, dtype=float, order="C") for step in steps]
 
     def _frames(self, turns: Turns) -> list[Floats]:
-        """Place the frames of the joints, each before its motion, and last the tool.
-
-        Args:
-            turns: For each joint cosines and sines, shape (2, M), or distances, shape (1, M).
-
-        Returns:
-            Columns x, y, z and origin by components by configurations, each of shape (4, 3, M).
-        """
+        """Return the frames of the joints before their motions, and the tool: x, y, z and origin (4, 3, M)."""
         count = turns[0].shape[-1] if len(turns) else 1
         frame = np.repeat(self._steps[0][:, :3, None], count, axis=2)
         frames = [frame]

@@ -240,14 +240,10 @@ def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
 
 
 def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
-    """Keep one of solutions that are the same: where two axes or two branches fall together.
+    """Keep one of equal solutions, where two axes or two branches fall together.
 
-    Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.
-
-    Args:
-        parts: Cosines, sines and distances of all joints, shape (K, B, N).
-        valid: Which are solutions, shape (B, N); changed.
-        merged: Where some were the same, shape (N,); changed.
+    ``parts`` are cosines, sines and distances of all joints, shape (K, B, N); ``valid`` (B, N) and ``merged`` (N,) are
+    changed. Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.
     """
     weights = np.mod(np.arange(1, len(parts) + 1) * 0.618034, 1) + 0.5
     mark = (weights @ parts.reshape(len(parts), -1)).reshape(valid.shape)

@@ -43,8 +43,7 @@ def nearest_turns(
 def all_turns(chain: Chain, values: Floats) -> Floats:
     """Return all rows (K, n) that show the configurations of given rows and are within the limits.
 
-    A revolute joint with a range of more than a turn gives several values, several such joints all combinations.
-    Circular joints give one value, in [-pi, pi].
+    A revolute joint with a range of more than a turn gives several values, circular joints one, in [-pi, pi].
     """
     lower, upper = chain.bounds
     first, inside = nearest_turns(chain, values)

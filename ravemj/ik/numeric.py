@@ -7,14 +7,13 @@ to 90 of 100 cases, so starts follow each other in a sequence that fills the spa
 2018, after R. Kronecker).
 """
 
-from collections.abc import Callable
+import itertools
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from ravemj.ik.chain import Chain
-from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.limits import nearest_turns
 from ravemj.ik.residuals import ToolMotion, residual_and_jacobian, rotation_between
 from ravemj.ik.tasks import Task
@@ -22,7 +21,6 @@ from ravemj.ik.vectors import Floats
 
 ACCURATE = 1e-9
 """The error, in units of the reach and in radians, below which a configuration is a solution."""
-Kinematics = Callable[[Floats], tuple[Floats, Floats, Floats]]
 _STEPS = 40
 _NEAREST_STEPS = 100
 _DISTINCT = 1e-3
@@ -58,10 +56,9 @@ class NumericSolver:
         task: Task = Task.TRANSFORM,
         *,
         starts: int = 200,
-        kinematics: Callable[[Chain], Kinematics] = CompiledKinematics,
     ) -> None:
         self.chain, self.task, self.starts = chain, task, starts
-        self._kinematics = kinematics(chain)
+        self._kinematics = CompiledKinematics(chain)
         self._scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
         endless = chain.circular | ~(np.isfinite(chain.lower) & np.isfinite(chain.upper))
         span = np.where(chain.prismatic, chain.reach, np.pi)
@@ -72,12 +69,7 @@ class NumericSolver:
         self._identity = np.eye(chain.dof)
 
     def descend(self, pose: Floats, start: Floats) -> Nearest:
-        """Follow the error from a start, to a solution or to where it stays: the fast way, if there is a solution.
-
-        Args:
-            pose: The pose, shape (4, 4).
-            start: Joint values, shape (n,).
-        """
+        """Follow the error of a pose (4, 4) from a start (n,), to a solution or to where it stays."""
         values = np.minimum(np.maximum(start, self._lowest), self._highest)
         best, at, stalled, step = np.inf, values, 0, 0
         for step in range(_STEPS):  # noqa: B007 - it is in the answer
@@ -119,10 +111,7 @@ class NumericSolver:
     def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:
         """Return one solution within the limits, shape (n,), or None where no start finds any.
 
-        Args:
-            pose: The pose, shape (4, 4).
-            seed: Joint values to start at.
-            starts: How many starts at most; as many as the solver has if None.
+        The starts are a seed, if one is given, and others up to a number, by default as many as the solver has.
         """
         for number in range(self.starts if starts is None else starts):
             start = seed if seed is not None and number == 0 else self.start(number)
@@ -184,3 +173,47 @@ def _evenly(count: int, number: int) -> Floats:
     for _ in range(30):
         ratio = (1 + ratio) ** (1 / (count + 1))
     return np.mod(0.5 + number * ratio ** -np.arange(1.0, count + 1), 1.0)
+
+
+class CompiledKinematics:
+    """Poses and Jacobians of one configuration by MuJoCo, for one thread; numpy is faster for many of them."""
+
+    def __init__(self, chain: Chain) -> None:
+        self.chain = chain
+        self.model = mujoco.MjModel.from_xml_string(_mjcf(chain))
+        self.data = mujoco.MjData(self.model)
+        self._qpos, self._place = self.data.qpos, self.data.site_xpos[0]
+        self._rows = self.data.site_xmat[0].reshape(3, 3)
+        self._jacobian = np.zeros((6, chain.dof))
+        self._parts = self._jacobian[:3], self._jacobian[3:]
+
+    def __reduce__(self) -> tuple[type["CompiledKinematics"], tuple[Chain]]:
+        return CompiledKinematics, (self.chain,)
+
+    def __call__(self, values: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the tool's rotation (3, 3), its place (3,) and the Jacobian (6, n); the next call overwrites them."""
+        self._qpos[:] = values
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_jacSite(self.model, self.data, *self._parts, 0)
+        return self._rows, self._place, self._jacobian
+
+
+def _mjcf(chain: Chain) -> str:
+    """Write a chain as bodies whose axes are parallel to the base's when all values are 0."""
+    points = np.vstack([np.zeros(3), chain.points, chain.T_base_tool[:3, 3]])
+    steps = [_text(step) for step in np.diff(points, axis=0)]
+    kinds = ("slide" if sliding else "hinge" for sliding in chain.prismatic.tolist())
+    bodies = [
+        f'<body pos="{step}"><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+        f'<joint type="{kind}" axis="{_text(axis)}"/>'
+        for step, kind, axis in zip(steps, kinds, chain.axes, strict=False)
+    ]
+    axes = " ".join(map(_text, chain.T_base_tool[:3, :2].T))
+    site = f'<site pos="{steps[-1]}" xyaxes="{axes}"/>'
+    inside = "".join(itertools.chain(bodies, [site], ["</body>"] * len(bodies)))
+    return f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody></mujoco>'
+
+
+def _text(numbers: Floats) -> str:
+    return " ".join(map(repr, numbers.tolist()))

@@ -1,4 +1,7 @@
-"""What is left open: joints that can have any value, and configurations in which two joints turn about one line."""
+"""What is left open: joints that can have any value, and configurations in which two joints turn about one line.
+
+Which joints stay free by default, and how finely they are sampled, follows OpenRAVE's rules.
+"""
 
 import itertools
 from collections.abc import Iterator, Sequence
@@ -12,11 +15,16 @@ from ravemj.ik.residuals import ToolMotion, residual_and_jacobian
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, constant
 
+ANGLE_STEP = 0.1
+"""Step of a revolute free joint [rad]."""
+SLIDE_STEP = 0.01
+"""Step of a prismatic free joint, in units of the reach."""
 SINGULAR_STEP = np.pi / 8
 """Where two joints turn about one line, the first of them is shown at every such angle."""
 MOST = 4096
 """Samples of all free joints together, at most."""
 _COAXIAL = 1e-9
+_ALONG = 1e-6
 _CONFIGURATIONS = 4
 
 
@@ -113,10 +121,9 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
-    """Find the configurations, of rows (K, n), in which two joints turn about the same line.
+    """Return the configurations, of rows (K, n), in which two joints turn about the same line.
 
-    Returns:
-        For each of them the row, the two joints, and 1 or -1 for the same or the opposite direction.
+    For each it is the row, the two joints, and 1 or -1 for the same or the opposite direction.
     """
     axes, points = chain.placed_axes(rows)
     turning = np.nonzero(~chain.prismatic)[0].tolist()
@@ -131,12 +138,9 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 
 
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
-    """Return other configurations (K, n) with the tool's pose of one in which two joints turn about one line.
+    """Return other configurations (K, n) with the tool's pose of a singular one, an item of ``singular_rows``.
 
-    Args:
-        chain: The arm.
-        singular: The configuration, the joints and the sign, of ``singular_rows``.
-        seed: A configuration; in one answer the first of the two joints has its value there, in another the second.
+    With a seed, the first of the two joints has its value there in one answer, and the second in another.
     """
     row, first, second, sign = singular
     angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)
@@ -148,3 +152,38 @@ def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats 
     turning = ~chain.prismatic
     rows[:, turning] = np.mod(rows[:, turning] + np.pi, 2 * np.pi) - np.pi
     return rows
+
+
+def default_free(chain: Chain, name: str, dof: int) -> list[int]:
+    """Return the joints that are left free where an arm has more than a type of goal fixes.
+
+    They go from the tip down. Of goals with a place and a direction, the last joint is free if it turns about the
+    direction, and else those at the base are.
+    """
+    surplus = max(0, chain.dof - dof)
+    joints = list(range(chain.dof))
+    if name != "TranslationDirection5D":
+        return joints[::-1][:surplus]
+    pointing = chain.T_base_tool[:3, :3] @ chain.direction
+    to_tool = chain.T_base_tool[:3, 3] - chain.points[-1]
+    turned = np.abs(np.cross(chain.axes[-1], [pointing, to_tool])).max() < _ALONG and not chain.prismatic[-1]
+    return ([joints.pop()] if turned and surplus else [])[:surplus] + joints[: surplus - int(turned)]
+
+
+def default_steps(
+    chain: Chain, free: Sequence[int], angle: float = ANGLE_STEP, slide: float = SLIDE_STEP
+) -> tuple[float, ...]:
+    """Return a step for each free joint [rad or m].
+
+    Revolute joints have an angle, prismatic ones a fraction of the length of the arm. Those of more than two joints are
+    larger where there would be too many samples.
+    """
+    points = np.vstack([chain.points, chain.T_base_tool[:3, 3]])  # also those of prismatic joints, as in OpenRAVE
+    length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) or 1.0
+    steps = np.array([slide * length if chain.prismatic[joint] else angle for joint in free])
+    if len(free) > 2:
+        joints = list(free)
+        spans = np.where(chain.circular[joints], 2 * np.pi, (chain.upper - chain.lower)[joints])
+        spans = np.where(chain.prismatic[joints], spans, np.minimum(spans, 2 * np.pi))
+        steps *= max(1.0, float(np.prod(spans / steps + 1) / MOST) ** (1 / len(free)))
+    return tuple(steps.tolist())

@@ -30,14 +30,10 @@ class ToolMotion(NamedTuple):
 def residual_and_jacobian(
     chain: Chain, task: Task, goal: Floats, tool: ToolMotion, scale: Floats
 ) -> tuple[Floats, Floats]:
-    """Return what the tool lacks of a goal, shape (k,), and the task's Jacobian, how joint values reduce it, (k, n).
+    """Return what the tool lacks of a goal, shape (k,), and how joint values reduce it, the task's Jacobian (k, n).
 
-    Args:
-        chain: The arm.
-        task: What is asked for.
-        goal: The goal as a pose, shape (4, 4); see ``goal_poses``.
-        tool: The tool at the configuration, and how it moves.
-        scale: What each component of velocities and angular velocities counts, shape (6,).
+    The goal is a pose (4, 4), see ``goal_poses``; ``scale`` is what each component of velocities and angular velocities
+    counts, shape (6,).
     """
     residual, jacobian = _RESIDUALS[task](chain, task, goal, tool)
     counts = scale[_rows(task)]

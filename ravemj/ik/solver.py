@@ -6,7 +6,7 @@ from the present value outwards; where two joints turn about one line, the first
 """
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,22 +15,18 @@ from numpy.typing import ArrayLike
 from ravemj.ik import redundancy
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm, Solutions
-from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.derive import Certificate, derive
 from ravemj.ik.limits import all_turns, distances, nearest_turns
-from ravemj.ik.numeric import ACCURATE, Kinematics, NumericSolver
+from ravemj.ik.numeric import ACCURATE, NumericSolver
 from ravemj.ik.reductions import ReducedForm, derive_reduced
+from ravemj.ik.redundancy import ANGLE_STEP, SLIDE_STEP
 from ravemj.ik.tasks import Task, goal_poses
 from ravemj.ik.vectors import Floats
 
-ANGLE_STEP = 0.1
-"""Step of a revolute free joint [rad]."""
-SLIDE_STEP = 0.01
-"""Step of a prismatic free joint, in units of the reach."""
 _TRIED = 12
 _STARTS = 24
 """Starts of a search for what is between the samples of a free joint."""
-_FIRST, _NEXT = 12, 96
+FIRST, NEXT = 12, 96
 """So many samples of free joints are tried at once; those near the present values mostly are enough."""
 
 
@@ -135,24 +131,17 @@ class IKSolver:
         The arguments are those of ``solve``, for one goal. Without limits, every solution comes once.
         """
         found = self.solve(np.asarray(goal, dtype=float)[None], free=free, limits=False)
-        rows = self._spread(found.of(0)) if found.merged[0] else found.of(0)
+        rows = self.spread(found.of(0)) if found.merged[0] else found.of(0)
         return all_turns(self.chain, rows) if limits else rows
 
-    def _spread(self, rows: Floats, at: Floats | None = None) -> Floats:
+    def spread(self, rows: Floats, at: Floats | None = None) -> Floats:
         """Add to solutions in which two joints turn about one line other angles of these."""
         if self.task is not Task.TRANSFORM or not len(rows):
             return rows
         extra = [redundancy.spread(self.chain, row, at) for row in redundancy.singular_rows(self.chain, rows)]
         return np.vstack([rows, *extra]) if extra else rows
 
-    def nearest(
-        self,
-        goal: ArrayLike,
-        seed: Floats,
-        *,
-        weights: Floats | None = None,
-        accept: Callable[[Floats], bool] | None = None,
-    ) -> Floats | None:
+    def nearest(self, goal: ArrayLike, seed: Floats, *, weights: Floats | None = None) -> Floats | None:
         """Return the solution within the limits that is nearest to a configuration.
 
         Free joints come first: the value nearest to theirs in the configuration with any solution ends the search. In
@@ -163,7 +152,6 @@ class IKSolver:
             goal: A pose (4, 4), or what else the task asks for.
             seed: The configuration, shape (n,).
             weights: What a radian or a metre of each joint counts, shape (n,); all the same if None.
-            accept: Says whether a solution is good, for example free of collisions; the nearest ones are asked first.
 
         Returns:
             Joint values, shape (n,), or None.
@@ -173,47 +161,36 @@ class IKSolver:
         """
         pose = goal_poses(self.chain, self.task, goal)
         if self.closed is None:
-            found = self.numeric.solve(pose, seed)
-            return found if found is None or accept is None or accept(found) else None
+            return self.numeric.solve(pose, seed)
         if not self.free:
             solutions = self.closed.solve(pose[None], limits=True)
-            more = self._descent(pose, seed) if solutions.merged[0] or not solutions.valid.any() else None
-            return self._best(solutions, 0, seed, weights, accept, more)
+            more = self.descent(pose, seed) if solutions.merged[0] or not solutions.valid.any() else None
+            return self._best(solutions, 0, seed, weights, more)
         values = self.free_samples(seed[list(self.free)])
-        for part in np.split(values, range(_FIRST, len(values), _NEXT)):
+        for part in np.split(values, range(FIRST, len(values), NEXT)):
             solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part, limits=True)
             inside = nearest_turns(self.chain, solutions.values, seed)[1] | solutions.merged[:, None]
             for index in np.nonzero((inside & solutions.valid).any(axis=1))[0]:
-                best = self._best(solutions, int(index), seed, weights, accept)
+                best = self._best(solutions, int(index), seed, weights)
                 if best is not None:
                     return best
-        found = self.numeric.solve(pose, seed, starts=_STARTS)
-        return None if found is None or (accept is not None and not accept(found)) else found
+        return self.numeric.solve(pose, seed, starts=_STARTS)
 
-    def _descent(self, pose: Floats, seed: Floats) -> Floats:
+    def descent(self, pose: Floats, seed: Floats) -> Floats:
         """Return the solution below a configuration, shape (1, n), or none, shape (0, n)."""
         found = self.numeric.descend(pose, seed)
         return found.values[None][: int(found.error < ACCURATE)]
 
     def _best(
-        self,
-        solutions: Solutions,
-        index: int,
-        seed: Floats,
-        weights: Floats | None,
-        accept: Callable[[Floats], bool] | None,
-        more: Floats | None = None,
+        self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None
     ) -> Floats | None:
-        """Return the solution for one pose, or of some more, that is nearest, within the limits and accepted."""
+        """Return the solution for one pose, or of some more, that is nearest and within the limits."""
         rows = solutions.of(index)
-        rows = self._spread(rows, seed) if solutions.merged[index] else rows
+        rows = self.spread(rows, seed) if solutions.merged[index] else rows
         rows = rows if more is None else np.vstack([rows, more])
         moved, inside = nearest_turns(self.chain, rows, seed)
         moved = moved[inside]
-        for row in moved[np.argsort(distances(self.chain, moved, seed, weights), kind="stable")]:
-            if accept is None or accept(row):
-                return row
-        return None
+        return moved[np.argmin(distances(self.chain, moved, seed, weights))] if len(moved) else None
 
 
 def make_solver(
@@ -222,7 +199,6 @@ def make_solver(
     *,
     free: Sequence[int] | None = None,
     steps: Sequence[float] | None = None,
-    kinematics: Callable[[Chain], Kinematics] = CompiledKinematics,
 ) -> IKSolver:
     """Find out how an arm is solved: by the first family that proves itself, else by a search.
 
@@ -231,7 +207,6 @@ def make_solver(
         task: What is asked for.
         free: Joints to sample; None: as few as are too many, in the order of ``redundancy.choices``.
         steps: A step for each free joint [rad or m]; 0.1 rad and a hundredth of the reach if None.
-        kinematics: Makes what computes poses and Jacobians for the search.
 
     Raises:
         ValueError: a free joint that the arm does not have, or a step that is not above 0.
@@ -240,7 +215,7 @@ def make_solver(
     for joints in chosen:
         if any(not 0 <= joint < chain.dof for joint in joints):
             raise ValueError(f"free joints {joints}: the arm has joints 0 to {chain.dof - 1}")
-    numeric = NumericSolver(chain, task, kinematics=kinematics)
+    numeric = NumericSolver(chain, task)
     for general, joints in itertools.product((False, True), chosen):
         derived = derive_reduced(chain, task, joints, general=general) or derive(chain, task, joints, general=general)
         if derived is not None:

@@ -30,15 +30,9 @@ def normalized(turn: Floats, least: float = TINY) -> Floats:
 
 
 def turn_between(joint: Screw, start: Floats, end: Floats) -> Floats:
-    """Return the turns of a joint that carry a direction nearest to another (subproblem 1).
+    """Return the turns (2, B, N) of a joint that carry a direction (3, B, N) nearest to another (subproblem 1).
 
-    Args:
-        joint: The joint; for points, they are relative to its own.
-        start: Vectors, shape (3, B, N).
-        end: Vectors, of such a shape.
-
-    Returns:
-        Turns, shape (2, B, N); the turn by 0 where a vector is along the axis.
+    Points are relative to the joint's own. It is the turn by 0 where a vector is along the axis.
     """
     _, across, later = joint.split(end)
     start = joint.across(start)  # else the rounding of what is along the axis counts, where that is most

@@ -135,6 +135,7 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
     )
     from ravemj.rave.manipulator import Manipulator
     from ravemj.rave.module import Module
+    from ravemj.rave.modules import RaveCreateModule, RaveCreateProblem
     from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
     from ravemj.rave.planning import (
         Planner,
@@ -143,12 +144,6 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
         PlanningError,
         RaveCreatePlanner,
     )
-    from ravemj.rave.plugins import (
-        RaveCreateModule,
-        RaveCreateProblem,
-        RaveCreateViewer,
-        RaveGetLoadedInterfaces,
-    )
     from ravemj.rave.readables import Readable, ReadableInterface, SerializableData, stringreaders, xmlreaders
     from ravemj.rave.registry import (
         ManageData,
@@ -156,6 +151,8 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
         RaveClone,
         RaveCreateInterface,
         RaveCreateSensorSystem,
+        RaveCreateViewer,
+        RaveGetLoadedInterfaces,
         RaveHasInterface,
         SensorSystem,
     )

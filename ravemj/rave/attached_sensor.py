@@ -38,11 +38,7 @@ class AttachedSensor(ApiObject):
 
     @property
     def description(self) -> scene.AttachedSensor:
-        """What the robot says about the sensor.
-
-        Raises:
-            RavemjError: the robot has no such sensor any more.
-        """
+        """The sensor in the description of the robot; an error where the robot no longer has it."""
         found = next((one for one in self._state.scene.sensors if one.name == self._name), None)
         if found is None:
             raise RavemjError(f"'{self._robot.GetName()}' has no sensor '{self._name}' any more")
@@ -78,19 +74,11 @@ class AttachedSensor(ApiObject):
         return None if self.description.link is None else Link(self._robot, self._state, self.description.link)
 
     def GetRelativeTransform(self) -> Floats:
-        """Return the pose in the link.
-
-        Returns:
-            ``T_link_sensor``, shape (4, 4).
-        """
+        """Return ``T_link_sensor``, the pose in the link, shape (4, 4)."""
         return self.description.T_link_sensor.matrix()
 
     def SetRelativeTransform(self, transform: ArrayLike) -> None:
-        """Move the sensor on its link.
-
-        Args:
-            transform: ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
-        """
+        """Move the sensor on its link to ``transform``, ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
         self.edit(T_link_sensor=pose_of(checked_transform(transform, "SetRelativeTransform: transform")))
 
     def GetTransformPose(self) -> Floats:
@@ -109,10 +97,9 @@ class AttachedSensor(ApiObject):
         return sensor.GetSensorData()
 
     def GetTransform(self) -> Floats:
-        """Return the pose in the world as the links stand now.
+        """Return ``T_world_sensor``, shape (4, 4); without a link, the relative pose.
 
-        Returns:
-            ``T_world_sensor``, shape (4, 4); a camera looks along z, with y down. Without a link, the relative pose.
+        A camera looks along z, with y down.
         """
         link = self.GetAttachingLink()
         return self.GetRelativeTransform() if link is None else link.GetTransform() @ self.GetRelativeTransform()
@@ -126,20 +113,12 @@ class AttachedSensor(ApiObject):
         return AttachedSensorInfo.of(self._state.scene, self.description)
 
     def UpdateAndGetInfo(self, type: SensorType | None = None) -> AttachedSensorInfo:  # OpenRAVE's name
-        """Return ``GetInfo()``.
-
-        Args:
-            type: Not used.
-        """
+        """Return ``GetInfo()``. ``type`` is not used."""
         del type
         return self.GetInfo()
 
     def UpdateInfo(self, type: SensorType | None = None) -> None:  # OpenRAVE's name
-        """Do nothing: ``GetInfo`` always gives the present state.
-
-        Args:
-            type: Not used.
-        """
+        """Do nothing, since ``GetInfo`` always returns the current state. ``type`` is not used."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()

@@ -22,10 +22,9 @@ from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.collision_extras import CheckerExtras
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.geometry_groups import GeometryGroups
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Part
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -54,26 +53,15 @@ class CollisionChecker(CheckerExtras):
     _internal = ("answer", "groups", "ray_targets")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._name = name
+        super().__init__(env, name)
         self._simulation = env.simulation
         self._options = 0
         self._wanted = Wanted()
         self._tolerance = 0.0
         self.groups = GeometryGroups(env.simulation)
 
-    def GetXMLId(self) -> str:
-        """Return the name that the checker was made by."""
-        return self._name
-
     def Clone(self, ref: "CollisionChecker", cloningoptions: int = 0) -> None:
-        """Take over the options, the description and the data of users from another checker.
-
-        Args:
-            ref: The other checker.
-            cloningoptions: Not used.
-        """
+        """Copy the options, the description and the user data of ``ref``. ``cloningoptions`` are not used."""
         super().Clone(ref, cloningoptions)
         self._tolerance = ref.GetTolerance()
         self.SetCollisionOptions(ref.GetCollisionOptions())
@@ -87,13 +75,9 @@ class CollisionChecker(CheckerExtras):
         """Do nothing; OpenRAVE's checkers free memory here."""
 
     def SetCollisionOptions(self, collisionoptions: int) -> bool:
-        """Set the options: what is tested and reported.
+        """Set ``collisionoptions``, ``CollisionOptions`` combined with ``|``.
 
-        Args:
-            collisionoptions: ``CollisionOptions`` combined with ``|``.
-
-        Returns:
-            False, and nothing changes, if there is an option among them that is not known.
+        Return False, and change nothing, if there is an unknown one among them.
         """
         if not 0 <= int(collisionoptions) < 2 * CollisionOptions.IgnoreCallbacks:
             return False
@@ -117,11 +101,7 @@ class CollisionChecker(CheckerExtras):
         return self._options
 
     def SetTolerance(self, tolerance: float) -> None:
-        """Set the distance [m] of ``CollisionOptions.UseTolerance``.
-
-        Args:
-            tolerance: The distance [m].
-        """
+        """Set the distance ``tolerance`` [m] of ``CollisionOptions.UseTolerance``."""
         self._tolerance = float(tolerance)
         self._choose()
 
@@ -145,11 +125,9 @@ class CollisionChecker(CheckerExtras):
             return self.answer(world, self._pairs(world, arguments), report)
 
     def CheckSelfCollision(self, linkbody: "BodyCollision | Link", report: CollisionReport | None = None) -> bool:
-        """Return whether a body collides with itself; see ``body.CheckSelfCollision``.
+        """Return whether ``linkbody``, a body or a link of it, collides with the rest; see ``body.CheckSelfCollision``.
 
-        Args:
-            linkbody: The body, or one link that is tested against the others.
-            report: Filled with what is found.
+        ``report`` receives the collisions.
         """
         if report is not None:
             checked_kind(report, CollisionReport, "CheckSelfCollision: report")
@@ -275,7 +253,7 @@ class CollisionChecker(CheckerExtras):
     def __repr__(self) -> str:
         if self._env.GetCollisionChecker() is self:
             return f"{self._env!r}.GetCollisionChecker()"
-        return f"RaveCreateCollisionChecker({self._env!r}, {self._name!r})"
+        return f"RaveCreateCollisionChecker({self._env!r}, {self._xmlid!r})"
 
 
 class NoCollisionChecker(CollisionChecker):
@@ -346,12 +324,12 @@ def RaveCreateCollisionChecker(env: "Environment", name: str) -> CollisionChecke
     Returns:
         The checker; None for an unknown name.
     """
-    checked_environment(env, "RaveCreateCollisionChecker")
-    kind = name.lower()
+    word = asked_for(env, name, "RaveCreateCollisionChecker")[0]
+    kind = word.lower()
     if kind in _OTHERS and kind not in _told:
         _told.add(kind)
-        _LOG.warning("there is no collision checker '%s'; the one over MuJoCo takes its place", name)
-    return CollisionChecker(env, name) if kind in _OTHERS or kind == "mujoco" else None
+        _LOG.warning("there is no collision checker '%s'; the one over MuJoCo takes its place", word)
+    return CollisionChecker(env, word) if kind in _OTHERS or kind == "mujoco" else None
 
 
 def _state(body: object) -> BodyState:

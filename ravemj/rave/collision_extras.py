@@ -108,30 +108,19 @@ class CheckerExtras(Interface):
     ) -> tuple[NDArray[np.bool_], Floats]:
         """Return which rays hit something, shape (n,), and where, shape (n, 6); see ``env.CheckCollisionRays``.
 
-        Args:
-            rays: As there.
-            body: As there.
-            front_facing_only: As there.
-            checkPreemptFn: Not used: the rays are cast at once.
+        That takes ``rays``, ``body`` and ``front_facing_only``, too. ``checkPreemptFn`` is not used, since all rays are
+        cast at once.
         """
         del checkPreemptFn
         return self._env.CheckCollisionRays(rays, body, front_facing_only)
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; nothing needs to be prepared.
-
-        Args:
-            body: The body.
-        """
+        """Return True: ``body`` needs no preparation."""
         del body
         return True
 
     def RemoveKinBody(self, body: "KinBody") -> None:
-        """Do nothing; OpenRAVE's checkers free memory here.
-
-        Args:
-            body: The body.
-        """
+        """Do nothing about ``body``; OpenRAVE's checkers free memory here."""
 
     def SetGeometryGroup(self, groupname: str) -> None:
         """Take a group of geometries in place of those that links have, for all bodies.
@@ -149,14 +138,10 @@ class CheckerExtras(Interface):
         return self.groups.default
 
     def SetBodyGeometryGroup(self, body: "KinBody", groupname: str) -> bool:
-        """Take a group of geometries for one body; see ``SetGeometryGroup``, which sets it for all of them again.
+        """Use the group ``groupname`` for ``body``, until ``SetGeometryGroup`` sets it for all bodies.
 
-        Args:
-            body: The body.
-            groupname: The group; empty: the geometries that links have.
-
-        Returns:
-            Whether a link of the body has such a group. If not, nothing changes.
+        With an empty name, use the geometries that its links have. Return whether a link of the body has such a group;
+        if not, nothing changes.
         """
         state = body.simulation_state
         found = has_group(state.scene, checked_kind(groupname, str, "SetBodyGeometryGroup: groupname", "a text"))
@@ -165,9 +150,5 @@ class CheckerExtras(Interface):
         return found
 
     def GetBodyGeometryGroup(self, body: "KinBody") -> str:
-        """Return the group that is taken for a body; empty: the geometries that its links have.
-
-        Args:
-            body: The body.
-        """
+        """Return the group of geometries that is used for ``body``; empty: the geometries that its links have."""
         return self.groups.of(body.simulation_state)

@@ -114,20 +114,14 @@ class ConfigurationData(ApiObject):
         return None if pose is None else pose.matrix()
 
     def ExtractDeltaTime(self, data: ArrayLike) -> float | None:
-        """Return the time since the last waypoint [s], or None where the configuration has none.
-
-        Args:
-            data: Numbers of one configuration, shape (dof,).
-        """
+        """Return the time since the last waypoint [s] in the configuration ``data``, shape (dof,), or None."""
         column = extraction.time_column(self._groups)
         return None if column is None else float(self._checked(data)[column])
 
     def InsertDeltaTime(self, data: MutableSequence[float] | Floats, deltatime: float) -> bool:
-        """Write the time since the last waypoint [s] into a configuration; return whether it has a place for it.
+        """Write ``deltatime``, the time since the last waypoint [s], into ``data``, shape (dof,).
 
-        Args:
-            data: The configuration; it is changed. Shape (dof,).
-            deltatime: Seconds since the configuration before.
+        Return whether the layout has a place for it.
         """
         column = extraction.time_column(self._groups)
         if column is None:
@@ -137,21 +131,13 @@ class ConfigurationData(ApiObject):
         return True
 
     def ExtractUsedBodies(self, env: "Environment") -> "list[KinBody]":
-        """Return the bodies of an environment whose values there are.
-
-        Args:
-            env: Where the bodies are.
-        """
+        """Return the bodies of ``env`` whose values the configuration has."""
         bodies = (env.GetKinBody(name) for name in extraction.used_bodies(self._groups))
         return [body for body in bodies if body is not None]
 
     @also_named(env="body")
     def ExtractUsedIndices(self, body: "KinBody") -> tuple[Ints, Ints]:
-        """Return the DOF indices of a body that there are, and where in the configuration.
-
-        Args:
-            body: The body.
-        """
+        """Return the DOF indices of ``body`` in the configuration, and the columns of their values."""
         indices, places = extraction.used_indices(self._groups, body.GetName())
         return np.array(indices, dtype=np.int_), np.array(places, dtype=np.int_)
 

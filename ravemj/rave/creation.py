@@ -3,7 +3,7 @@
 from ravemj.model.scene import KinBody as SceneBody
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.environment import Environment
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import KIND, Trajectory
@@ -26,7 +26,7 @@ def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
         >>> body.SetName("box")
         >>> env.Add(body)
     """
-    return _empty(env, is_robot=False) if name == "" else None
+    return None if asked_for(env, name, "RaveCreateKinBody")[0] else _empty(env, is_robot=False)
 
 
 def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
@@ -39,12 +39,12 @@ def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
     Returns:
         The robot; None for an unknown kind.
     """
-    robot = _empty(env, is_robot=True) if name.lower() in {"", "genericrobot"} else None
+    kind = asked_for(env, name, "RaveCreateRobot")[0].lower()
+    robot = _empty(env, is_robot=True) if kind in {"", "genericrobot"} else None
     return robot if isinstance(robot, Robot) else None
 
 
 def _empty(env: Environment, *, is_robot: bool) -> KinBody:
-    checked_environment(env, "RaveCreateRobot" if is_robot else "RaveCreateKinBody")
     scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
     return env.wrap(env.simulation.create(scene))
 
@@ -63,6 +63,5 @@ def RaveCreateTrajectory(env: Environment, name: str = "") -> Trajectory | None:
         >>> trajectory = RaveCreateTrajectory(env, "")
         >>> trajectory.Init(robot.GetConfigurationSpecification("linear"))
     """
-    checked_environment(env, "RaveCreateTrajectory")
-    xmlid = next(iter(name.split()), KIND)
+    xmlid = asked_for(env, name, "RaveCreateTrajectory")[0] or KIND
     return Trajectory(env, xmlid) if xmlid.lower() == KIND.lower() else None

@@ -10,11 +10,7 @@ if TYPE_CHECKING:
 
 
 class Devices:
-    """One sensor object for each attached sensor of a robot, made when it is first used.
-
-    Args:
-        robot: The robot.
-    """
+    """One sensor object for each attached sensor of a robot, made when it is first used."""
 
     def __init__(self, robot: "Robot") -> None:
         self._robot = robot

@@ -70,11 +70,7 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
         return self._number
 
     def SetDebugLevel(self, level: int) -> None:
-        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``.
-
-        Args:
-            level: A ``DebugLevel``.
-        """
+        """Set the ``level`` of the log of all environments, a ``DebugLevel``; see ``RaveSetDebugLevel``."""
         RaveSetDebugLevel(level)
 
     def GetDebugLevel(self) -> int:
@@ -233,20 +229,12 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
 
 
 def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the argument
-    """Return the environment of that number, as ``repr(env)`` shows it, or None.
-
-    Args:
-        id: The number.
-    """
+    """Return the environment of the number ``id``, as ``repr(env)`` shows it, or None."""
     return _environments.get(id)
 
 
 def RaveGetEnvironmentId(env: Environment) -> int:
-    """Return the environment's number, as ``RaveGetEnvironment`` takes it.
-
-    Args:
-        env: The environment.
-    """
+    """Return the number of ``env``, as ``RaveGetEnvironment`` takes it."""
     return checked_environment(env, "RaveGetEnvironmentId").GetId()
 
 

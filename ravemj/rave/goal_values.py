@@ -76,11 +76,7 @@ class GoalValues(ApiObject):
         return self._values.copy()
 
     def SetTransform6D(self, transform: ArrayLike) -> None:
-        """Set the goal to a pose.
-
-        Args:
-            transform: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
-        """
+        """Set the goal to a pose ``transform``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
         self._set(_Type.Transform6D, transform)
 
     def GetTransform6D(self) -> Floats:
@@ -92,11 +88,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Transform6D)
 
     def SetRotation3D(self, quat: ArrayLike) -> None:
-        """Set the goal to a rotation.
-
-        Args:
-            quat: [w, x, y, z], shape (4,); kept as it is.
-        """
+        """Set the goal to the rotation ``quat``, [w, x, y, z], shape (4,), which is kept as it is."""
         self._set(_Type.Rotation3D, quat)
 
     def GetRotation3D(self) -> Floats:
@@ -104,11 +96,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Rotation3D)
 
     def SetTranslation3D(self, pos: ArrayLike) -> None:
-        """Set the goal to a point.
-
-        Args:
-            pos: The point [m], shape (3,).
-        """
+        """Set the goal to the point ``pos`` [m], shape (3,)."""
         self._set(_Type.Translation3D, pos)
 
     def GetTranslation3D(self) -> Floats:
@@ -116,11 +104,7 @@ class GoalValues(ApiObject):
         return self._values[-3:].copy() if has_point(self._type) else self._of(_Type.Translation3D)
 
     def SetDirection3D(self, dir: ArrayLike) -> None:
-        """Set the goal to a direction.
-
-        Args:
-            dir: A unit vector, shape (3,).
-        """
+        """Set the goal to the direction ``dir``, a unit vector, shape (3,)."""
         self._set(_Type.Direction3D, dir)
 
     def GetDirection3D(self) -> Floats:
@@ -128,11 +112,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Direction3D)
 
     def SetLookat3D(self, pos: ArrayLike) -> None:
-        """Set the goal to a point to look at.
-
-        Args:
-            pos: The point [m], shape (3,).
-        """
+        """Set the goal to the point ``pos`` to look at [m], shape (3,)."""
         self._set(_Type.Lookat3D, pos)
 
     def GetLookat3D(self) -> Floats:
@@ -140,11 +120,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Lookat3D)
 
     def SetRay4D(self, quat: Ray) -> None:
-        """Set the goal to a ray that the tool lies on, anywhere.
-
-        Args:
-            quat: The ray; its direction is a unit vector.
-        """
+        """Set the goal to a ray ``quat`` that the tool lies on, anywhere; its direction is a unit vector."""
         self._set(_Type.Ray4D, quat)
 
     def GetRay4D(self) -> Ray:
@@ -152,11 +128,7 @@ class GoalValues(ApiObject):
         return goal_ray(self._of(_Type.Ray4D))
 
     def SetTranslationDirection5D(self, quat: Ray) -> None:
-        """Set the goal to a point and a direction.
-
-        Args:
-            quat: The tool's position and direction, a unit vector.
-        """
+        """Set the goal to the point and the direction, a unit vector, of the ray ``quat``."""
         self._set(_Type.TranslationDirection5D, quat)
 
     def GetTranslationDirection5D(self) -> Ray:
@@ -164,11 +136,7 @@ class GoalValues(ApiObject):
         return goal_ray(self._of(_Type.TranslationDirection5D))
 
     def SetTranslationXY2D(self, pos: ArrayLike) -> None:
-        """Set the goal to a place in the plane of x and y.
-
-        Args:
-            pos: x and y [m], shape (2,).
-        """
+        """Set the goal to ``pos``, x and y [m], shape (2,)."""
         self._set(_Type.TranslationXY2D, pos)
 
     def GetTranslationXY2D(self) -> Floats:
@@ -176,11 +144,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.TranslationXY2D)
 
     def SetTranslationXYOrientation3D(self, posangle: ArrayLike) -> None:
-        """Set the goal to a place in the plane of x and y, and a heading of the tool's direction there.
-
-        Args:
-            posangle: x, y [m] and heading [rad], shape (3,).
-        """
+        """Set the goal to ``posangle``: x, y [m] and the heading of the tool's direction [rad], shape (3,)."""
         self._set(_Type.TranslationXYOrientation3D, posangle)
 
     def GetTranslationXYOrientation3D(self) -> Floats:
@@ -188,12 +152,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.TranslationXYOrientation3D)
 
     def SetTranslationLocalGlobal6D(self, localpos: ArrayLike, pos: ArrayLike) -> None:
-        """Set the goal to a point of the tool and where it shall be.
-
-        Args:
-            localpos: The point in the frame of the tool [m], shape (3,).
-            pos: Where it shall be [m], shape (3,).
-        """
+        """Set the goal that the point ``localpos`` in the tool frame is at ``pos`` [m], shape (3,) each."""
         self._set(_Type.TranslationLocalGlobal6D, [localpos, pos])
 
     def GetTranslationLocalGlobal6D(self) -> tuple[Floats, Floats]:

@@ -33,9 +33,5 @@ class GraphHandle(Handle):
         self._drawing.place(checked_transform(transform, "SetTransform: transform"))
 
     def SetShow(self, show: bool) -> None:
-        """Show the drawing, or hide it for a while.
-
-        Args:
-            show: False hides it.
-        """
+        """Show the drawing, or hide it if ``show`` is False."""
         self._drawing.show(bool(show))

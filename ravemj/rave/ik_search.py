@@ -16,7 +16,6 @@ from ravemj.rave.ik_validation import CHECK_ENV, IGNORE_FILTERS, IGNORE_LIMITS, 
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
 from ravemj.rave.interface import Interface
 from ravemj.rave.specification import IkParameterization
-from ravemj.rave.user_data import Annotations
 
 # Half of what ravemj takes to be imported would be for inverse kinematics, which most scripts do without.
 # ruff: noqa: PLC0415
@@ -82,9 +81,7 @@ class IkSearch(Interface):
         free: Sequence[int] | None = None,
         steps: Sequence[float] | None = None,
     ) -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._name = name
+        super().__init__(env, name)
         self.kind = kind
         from ravemj.ik.arms import ArmSolver
 
@@ -104,7 +101,7 @@ class IkSearch(Interface):
             ValueError: the arm is none that can be solved; the message says why.
         """
         if robot.GetEnv() is not self._env:
-            raise ArgumentError(f"SetIkSolver: the solver '{self._name}' was made for another environment")
+            raise ArgumentError(f"SetIkSolver: the solver '{self._xmlid}' was made for another environment")
         description = next(one for one in robot.simulation_state.scene.manipulators if one.name == arm)
         self.arm_solver.of(robot.simulation_state.scene, description)
         self._robot, self._arm_name = robot, arm
@@ -115,7 +112,7 @@ class IkSearch(Interface):
 
     def _owner(self) -> "Robot":
         if self._robot is None:
-            raise RavemjError(f"the solver '{self._name}' has no arm; manip.SetIkSolver(solver) gives it one")
+            raise RavemjError(f"the solver '{self._xmlid}' has no arm; manip.SetIkSolver(solver) gives it one")
         return self._robot
 
     @property
@@ -128,7 +125,7 @@ class IkSearch(Interface):
         for arm in self._owner().simulation_state.scene.manipulators:
             if arm.name == self._arm_name:
                 return arm
-        raise RavemjError(f"the arm '{self._arm_name}' of the solver '{self._name}' was removed")
+        raise RavemjError(f"the arm '{self._arm_name}' of the solver '{self._xmlid}' was removed")
 
     def derived(self) -> "IKSolver":
         """Return what computes, for the arm as it is now."""

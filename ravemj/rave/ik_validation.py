@@ -39,11 +39,9 @@ FilterFunction = Callable[[Floats, "Manipulator", IkParameterization], FilterAns
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """A function of a user's that is asked about each solution.
+    """A function of a user's that is asked about each solution: those of higher priority first.
 
-    Attributes:
-        priority: Higher ones are asked first; those above 0 before collisions are tested.
-        function: The function.
+    Those of a priority above 0 are asked before collisions are tested.
     """
 
     priority: int

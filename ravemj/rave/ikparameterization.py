@@ -59,19 +59,11 @@ class IkParameterizationData(GoalValues):
         return self._name
 
     def GetDOF(self, type: int | None = None) -> int:
-        """Return how many degrees of freedom the goal takes away.
-
-        Args:
-            type: Another type, whose goals are meant.
-        """
+        """Return the number of degrees of freedom that the goal, or a goal of ``type``, fixes."""
         return self.GetDOFFromType(self._type if type is None else type)
 
     def GetNumberOfValues(self, type: int | None = None) -> int:
-        """Return how many numbers the goal has.
-
-        Args:
-            type: Another type, whose goals are meant.
-        """
+        """Return how many numbers the goal, or a goal of ``type``, has."""
         return self.GetNumberOfValuesFromType(self._type if type is None else type)
 
     @staticmethod
@@ -95,12 +87,7 @@ class IkParameterizationData(GoalValues):
         return self._values.copy()
 
     def SetValues(self, values: ArrayLike, type: int) -> None:
-        """Set the numbers of the goal.
-
-        Args:
-            values: As many as the type has.
-            type: The type.
-        """
+        """Set the ``type`` of the goal and its ``values``, as many as the type has."""
         kind = _Type(type)
         self._values = checked_vector(values, self.GetNumberOfValuesFromType(kind), "values")
         self._type = kind
@@ -108,11 +95,7 @@ class IkParameterizationData(GoalValues):
     # Transforms and distances
 
     def MultiplyTransform(self, transform: ArrayLike) -> None:
-        """Move the goal itself, as ``transform * goal`` does.
-
-        Args:
-            transform: 4x4, or [w, x, y, z, tx, ty, tz].
-        """
+        """Move the goal itself by ``transform`` (4x4 or [w, x, y, z, tx, ty, tz]), as ``transform * goal`` does."""
         pose = pose_of(checked_transform(transform, "transform"))
         custom = {name: moved_custom_values(name, numbers, pose) for name, numbers in self._custom.items()}
         self._values = moved_goal(self._type, self._values, pose)
@@ -148,10 +131,9 @@ class IkParameterizationData(GoalValues):
         return moved
 
     def ComputeDistanceSqr(self, other: "IkParameterizationData") -> float:
-        """Return the squared distance to another goal of the same type; angles count in radians, and less for poses.
+        """Return the squared distance to ``other``, a goal of the same type.
 
-        Args:
-            other: Another goal of the same type.
+        Angles count in radians, and less for poses.
         """
         if self._type != other._type:
             message = f"ComputeDistanceSqr: other is of type {other._type.name}, and should be {self._type.name}"
@@ -173,12 +155,7 @@ class IkParameterizationData(GoalValues):
         self._custom[name] = checked_numbers(values, "values")
 
     def SetCustomValue(self, name: str, value: float) -> None:
-        """Attach one number under a name; see ``SetCustomValues``.
-
-        Args:
-            name: The name.
-            value: The number.
-        """
+        """Attach the number ``value`` under ``name``; see ``SetCustomValues``."""
         self.SetCustomValues(name, [value])
 
     def GetCustomValues(self, name: str) -> Floats | None:
@@ -201,8 +178,7 @@ class IkParameterizationData(GoalValues):
     def SerializeJSON(self, unitScale: float = 1.0) -> dict[str, Any]:
         """Return the goal as dicts, lists, numbers and texts.
 
-        Args:
-            unitScale: Factor for lengths; those in data of users stay as they are.
+        ``unitScale`` is a factor for lengths, but not for those in data of users.
         """
         scales = length_scales(self._type, unitScale)
         written: dict[str, Any] = {"type": int(self._type), "values": (self._values * scales).tolist()}

@@ -44,19 +44,14 @@ class IkReturn(ApiObject):
         return self._solution.copy()
 
     def SetSolution(self, solution: ArrayLike) -> None:
-        """Set the joint values; what a filter sets replaces the solution that it was asked about, unchecked.
+        """Set the ``solution``, joint values [rad or m], shape (n,).
 
-        Args:
-            solution: Joint values [rad or m], shape (n,).
+        A filter's replaces the one that it was asked about, unchecked.
         """
         self._solution = checked_numbers(solution, "SetSolution: solution")
 
     def GetMapData(self, key: str) -> Floats | None:
-        """Return the numbers under a name, shape (k,), or None.
-
-        Args:
-            key: The name.
-        """
+        """Return the numbers under the name ``key``, shape (k,), or None."""
         return self._map[key].copy() if key in self._map else None
 
     def GetMapDataDict(self) -> dict[str, Floats]:
@@ -64,12 +59,7 @@ class IkReturn(ApiObject):
         return {key: numbers.copy() for key, numbers in self._map.items()}
 
     def SetMapKeyValue(self, key: str, value: ArrayLike) -> None:
-        """Attach numbers under a name.
-
-        Args:
-            key: The name.
-            value: The numbers, shape (k,).
-        """
+        """Attach the numbers ``value``, shape (k,), under the name ``key``."""
         self._map[key] = checked_numbers(value, "SetMapKeyValue: value")
 
     def GetUserData(self) -> Any:  # noqa: ANN401 - any object of the user's
@@ -77,11 +67,7 @@ class IkReturn(ApiObject):
         return self._user_data
 
     def SetUserData(self, data: Any) -> None:  # noqa: ANN401 - any object of the user's
-        """Attach an object of your own.
-
-        Args:
-            data: The object.
-        """
+        """Attach an object ``data`` of your own."""
         self._user_data = data
 
     def GetIkFailureInfoIndices(self) -> list[int]:

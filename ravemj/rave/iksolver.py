@@ -18,7 +18,7 @@ from ravemj.rave.enums import InterfaceType
 from ravemj.rave.ik_search import IkSearch
 from ravemj.rave.ik_validation import Filter, FilterFunction, solution
 from ravemj.rave.ikreturn import IkReturn
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.specification import IkParameterization
 
 if TYPE_CHECKING:
@@ -39,21 +39,13 @@ class IkSolver(IkSearch):
     _interface_type = InterfaceType.iksolver
     _internal = ("copy_for",)
 
-    def GetXMLId(self) -> str:
-        """Return the name that the solver was made by."""
-        return self._name
-
     def Supports(self, iktype: IkParameterizationType) -> bool:
-        """Return whether the solver answers goals of a type.
-
-        Args:
-            iktype: The type.
-        """
+        """Return whether the solver answers goals of the type ``iktype``."""
         return iktype == self.kind
 
     def copy_for(self, robot: "Robot") -> "IkSolver":
         """Return a solver for the same arm of another robot like this, with the default steps of free joints."""
-        copy = IkSolver(robot.GetEnv(), self._name, self.kind, self.arm_solver.free)
+        copy = IkSolver(robot.GetEnv(), self._xmlid, self.kind, self.arm_solver.free)
         copy.arm_solver = self.arm_solver.copy()
         copy.attach(robot, self._arm_name)
         return copy
@@ -150,7 +142,7 @@ class IkSolver(IkSearch):
             return self.find_all(goal, free, options)
 
     def __repr__(self) -> str:
-        return f"RaveCreateIkSolver({self._env!r}, {self._name!r})"
+        return f"RaveCreateIkSolver({self._env!r}, {self._xmlid!r})"
 
 
 def _remove(filters: list[Filter], entry: Filter) -> None:
@@ -163,13 +155,7 @@ _OPTIONS = "filteroptions"
 def split_options(
     caller: str, arguments: Sequence[object], named: Mapping[str, object], free_name: str = "freeparameters"
 ) -> tuple[ArrayLike | None, int]:
-    """Return values of free joints, or None, and ``IkFilterOptions`` of a call.
-
-    Args:
-        caller: The name of the method.
-        arguments: ``filteroptions``, or values of free joints and these.
-        named: The same by name.
-        free_name: What the values of free joints are called.
+    """Return values of free joints, or None, and ``IkFilterOptions`` of a call: ``([freeparameters,] filteroptions)``.
 
     Raises:
         TypeError: the options are missing, or there is something else.
@@ -208,8 +194,7 @@ def RaveCreateIkSolver(env: "Environment", name: str) -> IkSolver | None:
         >>> manip.SetIkSolver(solver)
         True
     """
-    checked_environment(env, "RaveCreateIkSolver")
-    words = checked_kind(name, str, "RaveCreateIkSolver: name", "a text").split()
+    words = asked_for(env, name, "RaveCreateIkSolver")
     if len(words) > 1 and words[0].lower() == "ikfast":
         kind = next((one for one in GOAL_TYPES if one.name in words[1].split(".")), None)
         steps = _numbers_in(words[2:])

@@ -35,12 +35,7 @@ if TYPE_CHECKING:
 
 
 class Place(NamedTuple):
-    """Where a sensor is.
-
-    Attributes:
-        T_world_sensor: Its pose, shape (4, 4).
-        carrier: The body that carries it and the index of its link; None for a sensor without a robot.
-    """
+    """Where a sensor is: ``T_world_sensor``, and the body and index of the link that carry it; None without a robot."""
 
     T_world_sensor: Floats
     carrier: tuple[BodyState, int] | None
@@ -106,15 +101,10 @@ class Instrument:
         return spun(device, place.T_world_sensor, self.spin_angle)
 
     def measured(self, device: scene.Device, place: Place, stamp: int) -> SensorData:
-        """Return what a device measures now.
-
-        Args:
-            device: The device, which has no problem.
-            place: Where it is.
-            stamp: The time [microseconds].
+        """Return what a device without a problem measures at a place and time [microseconds].
 
         Raises:
-            RavemjError: it feels forces, and the environment has no physics; or it follows a body that is not there.
+            RavemjError: it measures forces, and the environment has no physics; or it follows a body that is not there.
         """
         return _MEASURES[type(device)](self, device, place, stamp)
 

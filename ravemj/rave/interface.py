@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.readables import ReadableInterface
@@ -27,10 +27,14 @@ class Interface(ReadableInterface):
     """
 
     _internal = ("annotations",)
-    annotations: Annotations
-    _env: "Environment"
     _interface_type: InterfaceType
+    _xmlid = ""
     _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {}
+
+    def __init__(self, env: "Environment", xmlid: str) -> None:
+        self._env = env
+        self._xmlid = xmlid
+        self.annotations = Annotations()
 
     def GetEnv(self) -> "Environment":
         """Return the environment that the object was made for, also before it is added.
@@ -46,8 +50,8 @@ class Interface(ReadableInterface):
         return self._interface_type
 
     def GetXMLId(self) -> str:
-        """Return OpenRAVE's name of the implementation, as it was spelt when the object was made."""
-        return ""
+        """Return OpenRAVE's name of the implementation, as it was spelled when the object was made."""
+        return self._xmlid
 
     def GetPluginName(self) -> str:
         """Return where the implementation comes from."""
@@ -58,11 +62,7 @@ class Interface(ReadableInterface):
         return self.annotations.description
 
     def SetDescription(self, description: str) -> None:
-        """Attach a text.
-
-        Args:
-            description: The text.
-        """
+        """Set ``description``, a text for people."""
         self.annotations.description = str(description)
 
     SetUserData = SetUserData
@@ -86,11 +86,7 @@ class Interface(ReadableInterface):
         self._readables = ref.GetReadableInterfaces()
 
     def SupportsJSONCommand(self, cmd: str) -> bool:
-        """Return whether ``SendJSONCommand`` knows a command: none.
-
-        Args:
-            cmd: The name of the command.
-        """
+        """Return False: ``SendJSONCommand`` knows no command ``cmd``."""
         del cmd
         return False
 
@@ -110,11 +106,7 @@ class Interface(ReadableInterface):
         raise RavemjError(message, ErrorCode.CommandNotSupported)
 
     def SupportsCommand(self, cmd: str) -> bool:
-        """Return whether ``SendCommand`` knows a command.
-
-        Args:
-            cmd: The name of the command; upper and lower case are the same.
-        """
+        """Return whether ``SendCommand`` knows the command ``cmd``, in any letter case."""
         return cmd.lower() in {"help", *map(str.lower, self._known_commands())}
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
@@ -151,6 +143,26 @@ class Interface(ReadableInterface):
 
     def _help(self) -> str:
         return "\n".join(["help", *self._commands])
+
+
+def asked_for(env: "Environment", name: str, caller: str, missing: Mapping[str, str] = {}) -> list[str]:
+    """Return the words of the name of what a function ``RaveCreate…`` should make: its kind, then arguments of that.
+
+    Args:
+        env: The environment.
+        name: The name; without any word, the kind is an empty word.
+        caller: The function.
+        missing: The kinds of OpenRAVE that ravemj lacks, in lower case, and the missing feature.
+
+    Raises:
+        ArgumentError: the environment is none, or the name is not a text.
+        UnsupportedError: the kind is missing.
+    """
+    checked_environment(env, caller)
+    words = checked_kind(name, str, f"{caller}: name", "a text").split() or [""]
+    if words[0].lower() in missing:
+        raise UnsupportedError(f"{caller.removeprefix('RaveCreate').lower()} '{words[0]}'", missing[words[0].lower()])
+    return words
 
 
 def checked_environment(env: "Environment", caller: str) -> "Environment":

@@ -49,14 +49,13 @@ _NAMES = {
     """,
     "ravemj.rave.manipulator": "Manipulator",
     "ravemj.rave.module": "Module",
+    "ravemj.rave.modules": "RaveCreateModule RaveCreateProblem",
     "ravemj.rave.physics": "PhysicsEngine RaveCreatePhysicsEngine",
     "ravemj.rave.planning": "Planner PlannerProgress PlannerStatus PlanningError RaveCreatePlanner",
-    "ravemj.rave.plugins": """
-        RaveCreateModule RaveCreateProblem RaveCreateViewer RaveGetLoadedInterfaces
-    """,
     "ravemj.rave.readables": "Readable ReadableInterface SerializableData stringreaders xmlreaders",
     "ravemj.rave.registry": """
-        ManageData PluginInfo RaveClone RaveCreateInterface RaveCreateSensorSystem RaveHasInterface SensorSystem
+        ManageData PluginInfo RaveClone RaveCreateInterface RaveCreateSensorSystem RaveCreateViewer
+        RaveGetLoadedInterfaces RaveHasInterface SensorSystem
     """,
     "ravemj.rave.report": "CollisionPairInfo CollisionReport Contact",
     "ravemj.rave.robot": "Robot",

@@ -11,25 +11,10 @@ from ravemj.rave.enums import DebugLevel
 
 _LOG = logging.getLogger("ravemj")
 
-_PLUGINS = frozenset(
-    [
-        "basecontrollers",
-        "basesamplers",
-        "basesensors",
-        "bulletrave",
-        "configurationcache",
-        "fclrave",
-        "grasper",
-        "ikfastsolvers",
-        "logging",
-        "oderave",
-        "pqprave",
-        "qtcoinrave",
-        "qtosgrave",
-        "rmanipulation",
-        "rplanners",
-    ]
-)
+_PLUGINS = """
+    basecontrollers basesamplers basesensors bulletrave configurationcache fclrave grasper ikfastsolvers logging oderave
+    pqprave qtcoinrave qtosgrave rmanipulation rplanners
+"""
 """The plugins that come with OpenRAVE and have a counterpart here: what they provide is there from the start."""
 
 
@@ -64,7 +49,7 @@ def RaveLoadPlugin(filename: str) -> bool:
         True for the plugins that come with OpenRAVE, whose interfaces are part of ravemj as far as ravemj has them.
         False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
     """
-    if Path(filename).name.split(".")[0].removeprefix("lib") in _PLUGINS:
+    if Path(filename).name.split(".")[0].removeprefix("lib") in _PLUGINS.split():
         return True
     _LOG.warning("RaveLoadPlugin: native plugins cannot be loaded, and %s is not", filename)
     return False
@@ -118,11 +103,7 @@ def RaveGetDataAccess() -> int:
 
 
 def RaveInvertFileLookup(filename: str) -> str:
-    """Return the path of a file relative to the folder of ``OPENRAVE_DATA`` that it is in; empty: in none.
-
-    Args:
-        filename: The path.
-    """
+    """Return the path of ``filename`` relative to the folder of ``OPENRAVE_DATA`` that it is in; empty: in none."""
     return name_in_data_folders(filename)
 
 

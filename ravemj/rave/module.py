@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Command, Interface
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -34,15 +33,9 @@ class Module(Interface):
     def __init__(
         self, env: "Environment", xmlid: str, start: Callable[[str], None], commands: Mapping[str, Command]
     ) -> None:
-        self._env = env
-        self._xmlid = xmlid
-        self.annotations = Annotations()
+        super().__init__(env, xmlid)
         self.start = start
         self._by_name = commands
-
-    def GetXMLId(self) -> str:
-        """Return the name of the module, spelled as the caller of ``RaveCreateModule`` spelled it."""
-        return self._xmlid
 
     def Destroy(self) -> None:
         """Remove the module from the environment."""
@@ -52,14 +45,7 @@ class Module(Interface):
         """End the work of the module. The environment calls this when it removes the module."""
 
     def SimulationStep(self, timeelapsed: float) -> bool:
-        """Advance the module by a step of simulation time. ``env.StepSimulation`` calls this for added modules.
-
-        Args:
-            timeelapsed: The duration of the step [s].
-
-        Returns:
-            Whether the module did anything.
-        """
+        """Advance by ``timeelapsed`` [s] and return whether anything was done; ``env.StepSimulation`` calls this."""
         del timeelapsed
         return False
 

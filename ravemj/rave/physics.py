@@ -10,8 +10,7 @@ from ravemj.core.transforms import ZERO, Floats, Vec3
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PhysicsEngineOptions
-from ravemj.rave.interface import Interface, checked_environment
-from ravemj.rave.user_data import Annotations
+from ravemj.rave.interface import Interface, asked_for
 
 if TYPE_CHECKING:
     from ravemj.engine.physics import Loads, Physics
@@ -21,38 +20,42 @@ if TYPE_CHECKING:
     from ravemj.rave.link import Link
 
 
+_WITHOUT_DYNAMICS = "genericphysicsengine"
+_WITH_DYNAMICS = ("ode", "bullet", "mujoco")
+
+
 class PhysicsEngine(Interface):
     """A physics engine: it has gravity and advances bodies in time. ``env.GetPhysicsEngine()`` returns it.
 
-    This class is OpenRAVE's ``GenericPhysicsEngine``, which every environment has from the start: bodies stay in place,
-    and forces have no effect. ``RaveCreatePhysicsEngine`` makes other engines.
+    With OpenRAVE's ``GenericPhysicsEngine``, which every environment has from the start, bodies stay in place, and
+    forces have no effect. The other engines of ``RaveCreatePhysicsEngine`` simulate with MuJoCo: masses, joints,
+    contacts and forces. Bodies without a static link then fall. Those with one stay in place, and gravity and contacts
+    move their joints. Poses and velocities can be set at any time. An ``IdealController`` still places its robot
+    exactly.
+
+    Example:
+        >>> env.SetPhysicsEngine(RaveCreatePhysicsEngine(env, "ode"))
+        True
+        >>> env.GetPhysicsEngine().SetGravity([0, 0, -9.81])
+        >>> env.StepSimulation(0.1)
     """
 
     _interface_type = InterfaceType.physicsengine
-    _internal = ("attach", "detach", "dynamics", "is_simulated", "loads")
-    is_simulated = False
-    """Whether the engine simulates dynamics, so that bodies fall and collide."""
+    _internal = ("attach", "detach", "dynamics", "loads")
     dynamics: "Physics | None" = None
-    """The simulation of the dynamics, or None."""
+    """The simulation of the dynamics; None where nothing is simulated."""
 
-    def __init__(self, env: "Environment", xml_id: str, gravity: Vec3 = ZERO) -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._xml_id = xml_id
+    def __init__(self, env: "Environment", xmlid: str, gravity: Vec3 = ZERO) -> None:
+        super().__init__(env, xmlid)
         self._gravity = gravity
         self._is_attached = False
+        if xmlid.lower() in _WITH_DYNAMICS:
+            from ravemj.engine.physics import Physics  # noqa: PLC0415 - slow to import
 
-    def GetXMLId(self) -> str:
-        """Return the name of the engine, spelled as the caller of ``RaveCreatePhysicsEngine`` spelled it."""
-        return self._xml_id
+            self.dynamics = Physics(env.simulation)
 
     def Clone(self, ref: "PhysicsEngine", cloningoptions: int = 0) -> None:
-        """Copy gravity, the description and the user data of another engine.
-
-        Args:
-            ref: The other engine.
-            cloningoptions: Not used.
-        """
+        """Copy gravity, the description and the user data of ``ref``. ``cloningoptions`` are not used."""
         super().Clone(ref, cloningoptions)
         self.SetGravity(ref.GetGravity())
 
@@ -83,24 +86,26 @@ class PhysicsEngine(Interface):
         return np.array(self._env.simulation.gravity if self._is_attached else self._gravity)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set which collisions the simulation handles, and return whether the engine has options.
+        """Set whether links of one body collide, and return whether the engine has options.
 
-        Args:
-            physicsoptions: ``PhysicsEngineOptions`` combined with ``|``.
+        ``physicsoptions`` is ``PhysicsEngineOptions.SelfCollisions``; with 0 they do not.
         """
-        del physicsoptions
-        return False
+        if self.dynamics is None:
+            return False
+        with self._env.simulation.lock:
+            self.dynamics.self_collisions = bool(physicsoptions & PhysicsEngineOptions.SelfCollisions)
+        return True
 
     def GetPhysicsOptions(self) -> PhysicsEngineOptions:
         """Return which collisions the simulation handles."""
-        return PhysicsEngineOptions(0)
+        return PhysicsEngineOptions(int(self.dynamics is not None and self.dynamics.self_collisions))
 
     def SimulateStep(self, timestep: float) -> None:
-        """Advance the bodies by a time step; ``StepSimulation`` calls this.
-
-        Args:
-            timestep: The duration of the step [s].
-        """
+        """Advance the bodies by ``timestep`` [s]; ``StepSimulation`` calls this."""
+        checked = checked_number(timestep, "SimulateStep: timestep", 0, " s")
+        if self.dynamics is not None:
+            with self._env.simulation.lock:
+                self.dynamics.step(checked)
 
     def InitEnvironment(self) -> bool:
         """Return True; the engine needs no preparation."""
@@ -110,58 +115,32 @@ class PhysicsEngine(Interface):
         """Do nothing. OpenRAVE's engines free their memory here."""
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; the engine needs no preparation.
-
-        Args:
-            body: The body.
-        """
+        """Return True: ``body`` needs no preparation."""
         del body
         return True
 
     def GetLinkVelocity(self, link: "Link") -> tuple[Floats, Floats]:
-        """Return the velocity of a link, in world axes.
+        """Return the velocity of the origin of ``link`` [m/s] and the angular velocity [rad/s] in the world.
 
-        Args:
-            link: The link.
-
-        Returns:
-            The velocity of the link's origin [m/s] and the angular velocity [rad/s], each of shape (3,).
+        Both have shape (3,).
         """
         velocity = link.GetVelocity()
         return velocity[:3], velocity[3:]
 
     def SetLinkVelocity(self, link: "Link", linearvel: ArrayLike, angularvel: ArrayLike) -> bool:
-        """Set the velocity of one link; see ``link.SetVelocity``.
+        """Set the velocity of ``link`` in world axes, and return True; see ``link.SetVelocity``.
 
-        Args:
-            link: The link.
-            linearvel: The velocity of the link's origin in world axes [m/s], shape (3,).
-            angularvel: The angular velocity in world axes [rad/s], shape (3,).
-
-        Returns:
-            True.
+        ``linearvel`` is that of its origin [m/s], ``angularvel`` its angular velocity [rad/s], shape (3,) each.
         """
         link.SetVelocity(linearvel, angularvel)
         return True
 
     def GetLinkVelocities(self, body: "KinBody") -> Floats:
-        """Return the velocities of all links of a body, shape (links, 6); see ``body.GetLinkVelocities``.
-
-        Args:
-            body: The body.
-        """
+        """Return the velocities of all links of ``body``, shape (links, 6); see ``body.GetLinkVelocities``."""
         return body.GetLinkVelocities()
 
     def SetLinkVelocities(self, body: "KinBody", velocities: ArrayLike) -> bool:
-        """Set the velocities of all links of a body; see ``body.SetLinkVelocities``.
-
-        Args:
-            body: The body.
-            velocities: Shape (links, 6).
-
-        Returns:
-            True.
-        """
+        """Set the ``velocities`` of all links of ``body``, shape (links, 6), and return True."""
         body.SetLinkVelocities(velocities)
         return True
 
@@ -170,20 +149,25 @@ class PhysicsEngine(Interface):
 
         Returns:
             The force on the child link [N], and the torque about the joint's anchor [N m], each of shape (3,), in
-            world axes; zero without physics.
+            world axes; zero without physics, and before the first step.
         """
-        del joint
-        return np.zeros(3), np.zeros(3)
+        if self.dynamics is None:
+            return np.zeros(3), np.zeros(3)
+        state, child = joint.GetParent().simulation_state, joint.GetHierarchyChildLink()
+        with self._env.simulation.lock:
+            return self.dynamics.joint_wrench(state, child.GetIndex(), joint.GetAnchor())
 
     def GetLinkForceTorque(self, link: "Link") -> tuple[Floats, Floats]:
         """Return the force and torque of joints and contacts on a link, without gravity and forces of users.
 
         Returns:
             The force [N], and the torque about the link's centre of mass [N m], each of shape (3,), in world axes;
-            zero without physics.
+            zero without physics, and before the first step.
         """
-        del link
-        return np.zeros(3), np.zeros(3)
+        if self.dynamics is None:
+            return np.zeros(3), np.zeros(3)
+        with self._env.simulation.lock:
+            return self.dynamics.link_wrench(link.GetParent().simulation_state, link.GetIndex())
 
     def SetBodyForce(self, link: "Link", force: ArrayLike, position: ArrayLike, add: bool) -> bool:
         """Apply a force to a link during the next step, as ``link.SetForce`` does.
@@ -258,90 +242,12 @@ class PhysicsEngine(Interface):
 
     def loads(self, state: BodyState) -> "Loads | None":
         """Return the loads on a body in the next step, which callers change; None without simulated dynamics."""
-        del state
-        return None
+        return None if self.dynamics is None else self.dynamics.loads(state)
 
     def __repr__(self) -> str:
         if self._is_attached:
             return f"{self._env!r}.GetPhysicsEngine()"
-        return f"RaveCreatePhysicsEngine({self._env!r}, {self._xml_id!r})"
-
-
-class SimulatedEngine(PhysicsEngine):
-    """Simulates the dynamics of bodies with MuJoCo: masses, joints, contacts and forces.
-
-    Bodies without a static link fall. Bodies with a static link stay in place, and gravity and contacts move their
-    joints. Poses and velocities can be set at any time. An ``IdealController`` still places its robot exactly.
-
-    Example:
-        >>> env.SetPhysicsEngine(RaveCreatePhysicsEngine(env, "ode"))
-        True
-        >>> env.GetPhysicsEngine().SetGravity([0, 0, -9.81])
-        >>> env.StepSimulation(0.1)
-    """
-
-    is_simulated = True
-
-    def __init__(self, env: "Environment", xml_id: str) -> None:
-        super().__init__(env, xml_id)
-        from ravemj.engine.physics import Physics  # noqa: PLC0415 - slow to import
-
-        self.dynamics = self._physics = Physics(env.simulation)
-
-    def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set which collisions the simulation handles.
-
-        Args:
-            physicsoptions: ``PhysicsEngineOptions.SelfCollisions``; with 0, links of one body do not collide.
-
-        Returns:
-            True.
-        """
-        with self._env.simulation.lock:
-            self._physics.self_collisions = bool(physicsoptions & PhysicsEngineOptions.SelfCollisions)
-        return True
-
-    def GetPhysicsOptions(self) -> PhysicsEngineOptions:
-        """Return which collisions count."""
-        return PhysicsEngineOptions(int(self._physics.self_collisions))
-
-    def SimulateStep(self, timestep: float) -> None:
-        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this."""
-        with self._env.simulation.lock:
-            self._physics.step(checked_number(timestep, "SimulateStep: timestep", 0, " s"))
-
-    def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
-        """Return the force and torque that a joint transmits to its child link.
-
-        Returns:
-            The force on the child link [N], and the torque about the joint's anchor [N m], each of shape (3,), in
-            world axes; zero before the first step.
-        """
-        state, child = joint.GetParent().simulation_state, joint.GetHierarchyChildLink()
-        with self._env.simulation.lock:
-            return self._physics.joint_wrench(state, child.GetIndex(), joint.GetAnchor())
-
-    def GetLinkForceTorque(self, link: "Link") -> tuple[Floats, Floats]:
-        """Return the force and torque of joints and contacts on a link, without gravity and forces of users.
-
-        Returns:
-            The force [N], and the torque about the link's centre of mass [N m], each of shape (3,), in world axes;
-            zero before the first step.
-        """
-        with self._env.simulation.lock:
-            return self._physics.link_wrench(link.GetParent().simulation_state, link.GetIndex())
-
-    def loads(self, state: BodyState) -> "Loads":
-        """Return the loads on a body in the next step, which callers change."""
-        return self._physics.loads(state)
-
-
-_KINDS: dict[str, type[PhysicsEngine]] = {
-    "genericphysicsengine": PhysicsEngine,
-    "ode": SimulatedEngine,
-    "bullet": SimulatedEngine,
-    "mujoco": SimulatedEngine,
-}
+        return f"RaveCreatePhysicsEngine({self._env!r}, {self._xmlid!r})"
 
 
 def RaveCreatePhysicsEngine(env: "Environment", name: str) -> PhysicsEngine | None:
@@ -361,6 +267,5 @@ def RaveCreatePhysicsEngine(env: "Environment", name: str) -> PhysicsEngine | No
         >>> env.SetPhysicsEngine(engine)
         True
     """
-    checked_environment(env, "RaveCreatePhysicsEngine")
-    kind = _KINDS.get(name.lower())
-    return None if kind is None else kind(env, name)
+    word = asked_for(env, name, "RaveCreatePhysicsEngine")[0]
+    return PhysicsEngine(env, word) if word.lower() in {_WITHOUT_DYNAMICS, *_WITH_DYNAMICS} else None

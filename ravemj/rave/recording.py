@@ -23,14 +23,7 @@ _POSES_FOR_THE_VIEW = 17  # configurations along a motion that the camera has to
 
 
 class Shot(NamedTuple):
-    """The settings of a video.
-
-    Attributes:
-        camera: The camera.
-        background: The background colour: red, green, blue from 0 to 1.
-        form: The size and quality of the frames.
-        fps: Frames per second.
-    """
+    """The settings of a video: camera, background, size and quality of the frames, and frames per second."""
 
     camera: Camera
     background: tuple[float, float, float]
@@ -139,14 +132,7 @@ def within_limits(body: "KinBody", motion: Motion) -> Motion:
 
 
 def camera_for_motion(env: "Environment", body: "KinBody", motion: Motion, aspect: float) -> Camera:
-    """Return the viewer's camera, else the file's, else one that sees the whole motion.
-
-    Args:
-        env: The environment.
-        body: The body that moves; afterwards it is back in its configuration.
-        motion: The motion of the body.
-        aspect: The width of the picture divided by its height.
-    """
+    """Return the viewer's camera, else the file's, else one that sees the whole motion of a body."""
     chosen = env.renderer.file_camera() if env.GetViewer() is None else env.default_camera()
     if chosen is not None:
         return chosen

@@ -1,5 +1,6 @@
 """Makes, lists and copies interfaces by kind and name."""
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from ravemj.core.api_object import ApiObject
@@ -10,18 +11,16 @@ from ravemj.rave.controllers import RaveCreateController
 from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot, RaveCreateTrajectory
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.iksolver import RaveCreateIkSolver
-from ravemj.rave.interface import Interface
+from ravemj.rave.interface import Interface, asked_for
+from ravemj.rave.modules import MODULES, RaveCreateModule
 from ravemj.rave.physics import RaveCreatePhysicsEngine
 from ravemj.rave.planning import RaveCreatePlanner
-from ravemj.rave.plugins import (
-    RaveCreateModule,
-    RaveCreateViewer,
-    RaveGetLoadedInterfaces,
-)
-from ravemj.rave.samplers import RaveCreateSpaceSampler
-from ravemj.rave.sensors import RaveCreateSensor
+from ravemj.rave.planning.names import PLANNERS
+from ravemj.rave.samplers import SAMPLERS, RaveCreateSpaceSampler
+from ravemj.rave.sensors import KIND_NAMES, RaveCreateSensor
 
 if TYPE_CHECKING:
+    from ravemj.gui.viewers import Viewer
     from ravemj.rave.environment import Environment
 
 SENSOR_SYSTEMS = "sensor systems"
@@ -55,35 +54,13 @@ class ManageData(ApiObject):
         raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
 
     def GetSystem(self) -> NoReturn:
-        """Refuse to return the sensor system, as there is no sensor system."""
-        raise UnsupportedError("ManageData.GetSystem", SENSOR_SYSTEMS)
+        """Refuse to return anything, since there is no sensor system."""
+        raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
 
-    def GetData(self) -> NoReturn:
-        """Refuse to return what was measured, as there is no sensor system."""
-        raise UnsupportedError("ManageData.GetData", SENSOR_SYSTEMS)
-
-    def GetOffsetLink(self) -> NoReturn:
-        """Refuse to return the link that is measured, as there is no sensor system."""
-        raise UnsupportedError("ManageData.GetOffsetLink", SENSOR_SYSTEMS)
-
-    def IsPresent(self) -> NoReturn:
-        """Refuse to return whether the body is seen, as there is no sensor system."""
-        raise UnsupportedError("ManageData.IsPresent", SENSOR_SYSTEMS)
-
-    def IsEnabled(self) -> NoReturn:
-        """Refuse to return whether the body is followed, as there is no sensor system."""
-        raise UnsupportedError("ManageData.IsEnabled", SENSOR_SYSTEMS)
-
-    def IsLocked(self) -> NoReturn:
-        """Refuse to return whether the body is kept, as there is no sensor system."""
-        raise UnsupportedError("ManageData.IsLocked", SENSOR_SYSTEMS)
+    GetData = GetOffsetLink = IsPresent = IsEnabled = IsLocked = GetSystem
 
     def Lock(self, dolock: bool) -> NoReturn:
-        """Refuse to return whether the body is kept now, as there is no sensor system.
-
-        Args:
-            dolock: Whether to keep it.
-        """
+        """Refuse to return anything, since there is no sensor system; ``dolock`` is not used."""
         raise UnsupportedError("ManageData.Lock", SENSOR_SYSTEMS)
 
 
@@ -100,30 +77,52 @@ def RaveCreateSensorSystem(env: "Environment", name: str) -> None:
     raise UnsupportedError(f"sensor system '{name}'", SENSOR_SYSTEMS)
 
 
-_MAKERS = {
-    InterfaceType.collisionchecker: RaveCreateCollisionChecker,
-    InterfaceType.controller: RaveCreateController,
-    InterfaceType.iksolver: RaveCreateIkSolver,
-    InterfaceType.kinbody: RaveCreateKinBody,
-    InterfaceType.module: RaveCreateModule,
-    InterfaceType.physicsengine: RaveCreatePhysicsEngine,
-    InterfaceType.planner: RaveCreatePlanner,
-    InterfaceType.robot: RaveCreateRobot,
-    InterfaceType.sensor: RaveCreateSensor,
-    InterfaceType.sensorsystem: RaveCreateSensorSystem,
-    InterfaceType.spacesampler: RaveCreateSpaceSampler,
-    InterfaceType.trajectory: RaveCreateTrajectory,
-    InterfaceType.viewer: RaveCreateViewer,
+def RaveCreateViewer(env: "Environment", name: str) -> "Viewer | None":
+    """Attach another viewer to the environment; ``env.Remove`` closes it.
+
+    Args:
+        env: The environment.
+        name: A name of ``env.SetViewer``.
+
+    Returns:
+        The viewer; None for an unknown name.
+    """
+    kind = asked_for(env, name, "RaveCreateViewer")[0].lower()
+    return env.open_viewer(kind, show=True) if kind in _viewer_names() else None
+
+
+def _viewer_names() -> list[str]:
+    from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
+
+    return list(VIEWERS)
+
+
+_MAKERS: dict[InterfaceType, tuple[Callable[["Environment", str], object], Sequence[str]]] = {
+    InterfaceType.collisionchecker: (RaveCreateCollisionChecker, ("ode", "bullet", "fcl_", "pqp")),
+    InterfaceType.controller: (RaveCreateController, ("IdealController", "IdealVelocityController", "odevelocity")),
+    InterfaceType.iksolver: (RaveCreateIkSolver, ("ikfast",)),
+    InterfaceType.kinbody: (RaveCreateKinBody, ("",)),
+    InterfaceType.module: (RaveCreateModule, MODULES),
+    InterfaceType.physicsengine: (RaveCreatePhysicsEngine, ("GenericPhysicsEngine", "ode", "bullet", "mujoco")),
+    InterfaceType.planner: (RaveCreatePlanner, tuple(PLANNERS)),
+    InterfaceType.robot: (RaveCreateRobot, ("GenericRobot",)),
+    InterfaceType.sensor: (RaveCreateSensor, KIND_NAMES),
+    InterfaceType.sensorsystem: (RaveCreateSensorSystem, ()),
+    InterfaceType.spacesampler: (RaveCreateSpaceSampler, SAMPLERS),
+    InterfaceType.trajectory: (RaveCreateTrajectory, ("GenericTrajectory",)),
+    InterfaceType.viewer: (RaveCreateViewer, ()),
 }
+"""The function that makes each kind of interface, and the names that it knows; viewers are asked for theirs."""
+
+
+def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
+    """Return the names that the ``RaveCreate…`` function of each kind of interface knows."""
+    names = {kind: list(known) for kind, (_, known) in _MAKERS.items()}
+    return {kind: names.get(kind, []) for kind in InterfaceType} | {InterfaceType.viewer: _viewer_names()}
 
 
 def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's names of the arguments
-    """Return whether ``RaveCreateInterface`` makes something of a kind and name.
-
-    Args:
-        type: The kind.
-        name: The name; letter case does not matter.
-    """
+    """Return whether ``RaveCreateInterface`` knows a kind ``type`` and ``name``, in any letter case."""
     known = RaveGetLoadedInterfaces()[InterfaceType(type)]
     return checked_kind(name, str, "RaveHasInterface: name", "a text").lower() in {one.lower() for one in known}
 
@@ -142,7 +141,7 @@ def RaveCreateInterface(env: "Environment", type: InterfaceType, name: str) -> A
     Example:
         >>> trajectory = ravemj.RaveCreateInterface(env, ravemj.InterfaceType.trajectory, "")
     """
-    return _MAKERS[InterfaceType(type)](env, name)
+    return _MAKERS[InterfaceType(type)][0](env, name)
 
 
 def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | None" = None) -> Any:  # noqa: ANN401 - of the same kind

@@ -122,11 +122,7 @@ class CollisionReport(ApiObject):
         self.Reset()
 
     def Reset(self, coloptions: int = 0) -> None:
-        """Clear the report, unless ``nKeepPrevious`` is set.
-
-        Args:
-            coloptions: The options of the next check.
-        """
+        """Clear the report, unless ``nKeepPrevious`` is set; ``coloptions`` are the options of the next check."""
         self.options = int(coloptions)
         if not self.nKeepPrevious:
             self.collisionInfos: list[CollisionPairInfo] = []

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj.core.arguments import also_named, checked_kind
+from ravemj.core.arguments import also_named
 from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.sequences import halton
 from ravemj.rave.enums import InterfaceType, Interval
-from ravemj.rave.interface import Interface, checked_environment
-from ravemj.rave.user_data import Annotations
+from ravemj.rave.interface import Interface, asked_for
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -43,29 +42,18 @@ class SpaceSampler(Interface):
     _interface_type = InterfaceType.spacesampler
 
     def __init__(self, env: "Environment", name: str, sequence: "_Random") -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._name = name
+        super().__init__(env, name)
         self._sequence = sequence
 
-    def GetXMLId(self) -> str:
-        """Return the name of the sampler, spelled as the caller of ``RaveCreateSpaceSampler`` spelled it."""
-        return self._name
-
     def SetSeed(self, seed: int) -> None:
-        """Restart the sequence.
+        """Restart the sequence: equal values of ``seed`` give equal sequences, though not those of OpenRAVE.
 
-        Args:
-            seed: Equal seeds give equal sequences, though not those of OpenRAVE. For Halton's sequence, the index of
-                the next point.
+        For Halton's sequence, it is the index of the next point.
         """
         self._sequence.start(int(seed))
 
     def SetSpaceDOF(self, dof: int) -> None:
-        """Set the number of dimensions.
-
-        Args:
-            dof: The number of dimensions, at least 1.
+        """Set the number of dimensions, ``dof``.
 
         Raises:
             openrave_exception: the number is less than 1, or differs from the DOFs of the sampled body.
@@ -82,34 +70,19 @@ class SpaceSampler(Interface):
 
     @also_named(seed="type")
     def Supports(self, type: SampleDataType) -> bool:
-        """Return whether the sampler returns this kind of numbers.
-
-        Args:
-            type: A ``SampleDataType``.
-        """
+        """Return whether the sampler returns numbers of ``type``, a ``SampleDataType``."""
         return SampleDataType(type) in self._sequence.kinds
 
     @also_named(seed="type")
     def GetLimits(self, type: SampleDataType) -> tuple[Floats, Floats]:
-        """Return the smallest and the greatest values, shape (dof,) each.
-
-        Args:
-            type: A ``SampleDataType``.
-        """
+        """Return the smallest and the greatest values of ``type``, a ``SampleDataType``, shape (dof,) each."""
         self._check(type, "GetLimits")
         return self._sequence.limits()
 
     def SampleSequence(
         self, type: SampleDataType, num: int, interval: int = Interval.Closed
     ) -> "Floats | NDArray[np.uint32]":
-        """Return the next points of the sequence in one row, shape (num * dof,).
-
-        Args:
-            type: The kind of numbers, a ``SampleDataType``.
-            num: The number of points.
-            interval: Which of the limits belong to the space, an ``Interval``; not used, since samples hardly ever hit
-                a limit.
-        """
+        """Return the next points in one row, shape (num * dof,); ``type`` and ``interval`` as for the next method."""
         return self.SampleSequence2D(type, num, interval).ravel()
 
     def SampleSequence2D(
@@ -134,10 +107,7 @@ class SpaceSampler(Interface):
         return self._sequence.integers(int(num)) if whole else self._sequence.reals(int(num))
 
     def SampleSequenceOneReal(self, interval: int = Interval.Closed) -> float:
-        """Return the next number of a one-dimensional sequence.
-
-        Args:
-            interval: As of ``SampleSequence``.
+        """Return the next number of a one-dimensional sequence; ``interval`` is not used.
 
         Raises:
             openrave_exception: the sequence has more than one dimension (``InvalidState``).
@@ -150,28 +120,25 @@ class SpaceSampler(Interface):
 
     def _one(self, type: SampleDataType, interval: int) -> float:
         if self.GetDOF() != 1 or isinstance(self._sequence, _Halton):
-            message = f"'{self._name}' gives points of {self.GetDOF()} dimensions; call SampleSequence2D"
+            message = f"'{self._xmlid}' gives points of {self.GetDOF()} dimensions; call SampleSequence2D"
             raise RavemjError(message, ErrorCode.InvalidState)
         return self.SampleSequence(type, 1, interval)[0]
 
     def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
-        """Raise an error: no sampler of OpenRAVE returns points, shape (num, dof), that cover its space completely.
+        """Raise an error: no sampler of OpenRAVE returns ``num`` points, shape (num, dof), that cover its space.
 
-        Args:
-            type: The kind of numbers, a ``SampleDataType``.
-            num: The number of points.
-            interval: As of ``SampleSequence``.
+        ``type`` and ``interval`` are as for ``SampleSequence2D``.
 
         Raises:
             openrave_exception: always (``NotImplemented``).
         """
-        raise RavemjError(f"'{self._name}' has no complete samples", ErrorCode.NotImplemented)
+        raise RavemjError(f"'{self._xmlid}' has no complete samples", ErrorCode.NotImplemented)
 
     SampleComplete2D = SampleComplete
 
     def _check(self, type: SampleDataType, caller: str) -> None:
         if not self.Supports(type):
-            message = f"{caller}: '{self._name}' gives no numbers of type {SampleDataType(type).name}"
+            message = f"{caller}: '{self._xmlid}' gives no numbers of type {SampleDataType(type).name}"
             raise RavemjError(message, ErrorCode.NotImplemented)
 
 
@@ -266,8 +233,7 @@ def RaveCreateSpaceSampler(env: "Environment", name: str) -> SpaceSampler | None
     Raises:
         openrave_exception: there is no such body or robot.
     """
-    checked_environment(env, "RaveCreateSpaceSampler")
-    kind, *arguments = checked_kind(name, str, "RaveCreateSpaceSampler: name", "a text").split() or [""]
+    kind, *arguments = asked_for(env, name, "RaveCreateSpaceSampler")
     match kind.lower():
         case "mt19937":
             return SpaceSampler(env, kind, _Random())

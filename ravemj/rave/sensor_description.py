@@ -15,7 +15,6 @@ from ravemj.rave.infos.sensor import SensorGeometry
 from ravemj.rave.infos.sensor_devices import device_of, geometry_of, sensor_type
 from ravemj.rave.interface import Interface
 from ravemj.rave.sensor_data import DATA, SensorData
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.attached_sensor import AttachedSensor
@@ -35,8 +34,7 @@ class DescribedSensor(Interface):
     def __init__(
         self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None"
     ) -> None:
-        self._env = env
-        self.annotations = Annotations()
+        super().__init__(env, description.type or "")
         self._own = description
         self.attached = attached
 
@@ -88,10 +86,7 @@ class DescribedSensor(Interface):
         return f"{self.attached.GetRobot().GetName()}:{self.attached.GetName()}"
 
     def SetName(self, name: str) -> None:
-        """Set the name of a sensor without a robot.
-
-        Args:
-            name: The name.
+        """Set the ``name`` of a sensor without a robot.
 
         Raises:
             openrave_exception: a robot carries the sensor, or the environment has another one of that name.
@@ -119,10 +114,7 @@ class DescribedSensor(Interface):
         return pose_of(self.GetTransform()).numbers()
 
     def SetTransform(self, transform: ArrayLike) -> None:
-        """Move a sensor without a robot.
-
-        Args:
-            transform: ``T_world_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+        """Move a sensor without a robot to ``transform``, ``T_world_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
 
         Raises:
             openrave_exception: a robot carries the sensor; ``attached.SetRelativeTransform`` moves it on its link.
@@ -179,10 +171,9 @@ class DescribedSensor(Interface):
             self.take_state(other)
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
-        """Return the constant properties of the sensor; None if it has none of the requested kind.
+        """Return the constant properties of the sensor.
 
-        Args:
-            type: The kind of geometry; by default the sensor's own.
+        None if it has none of the kind ``type``, which by default is its own.
         """
         device = self.description.device
         geometry = None if device is None else geometry_of(device)
@@ -190,10 +181,7 @@ class DescribedSensor(Interface):
         return geometry if is_meant else None
 
     def CreateSensorData(self, type: SensorType | None = None) -> SensorData:  # OpenRAVE's name
-        """Return an empty measurement.
-
-        Args:
-            type: The kind of data; by default the sensor's own.
+        """Return an empty measurement of ``type``, by default of the sensor's own.
 
         Raises:
             openrave_exception: the sensor does not measure this kind of data.
@@ -201,11 +189,7 @@ class DescribedSensor(Interface):
         return DATA[self._checked_type(type, "CreateSensorData")]()
 
     def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
-        """Return whether the sensor measures this kind of data.
-
-        Args:
-            type: A ``Sensor.Type``.
-        """
+        """Return whether the sensor measures data of ``type``, a ``Sensor.Type``."""
         device = self.description.device
         return device is not None and type == sensor_type(device)
 

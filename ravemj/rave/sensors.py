@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_number
 from ravemj.core.transforms import Ints, Pose
 from ravemj.errors import ArgumentError, RavemjError
@@ -18,7 +17,7 @@ from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.infos.sensor import CameraIntrinsics
 from ravemj.rave.instruments import Instrument, Place
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.sensor_data import (
     ActuatorSensorData,
     CameraSensorData,
@@ -194,22 +193,13 @@ class Sensor(DescribedSensor):
             self._restart()
 
     def SimulationStep(self, timeelapsed: float) -> None:
-        """Advance this sensor alone by a time step; ``env.StepSimulation`` advances all sensors.
-
-        Args:
-            timeelapsed: The duration of the step [s].
-        """
+        """Advance this sensor alone by ``timeelapsed`` [s]; ``env.StepSimulation`` advances all sensors."""
         checked = checked_number(timeelapsed, "SimulationStep: timeelapsed", 0)
         with self._env.simulation.lock:
             self.advance(checked, self._env.clock.now)
 
     def advance(self, timestep: float, stamp: int) -> None:
-        """Advance the sensor by a time step, and measure if a measurement is due.
-
-        Args:
-            timestep: The duration of the step [s].
-            stamp: The time at the end of the step [microseconds].
-        """
+        """Advance by ``timestep`` [s], which ends at ``stamp`` [microseconds], and measure if a measurement is due."""
         if self._switched[SensorCommand.PowerOn]:
             device = self.device
             self._instrument.advance(device, self._place(), timestep)
@@ -327,11 +317,7 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw the geometry of the sensor if that is switched on.
-
-        Args:
-            anew: Whether the geometry may have changed since it was drawn.
-        """
+        """Draw the geometry of the sensor if that is on; ``anew``: it may have changed since it was drawn."""
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
         device = self.device
@@ -374,13 +360,12 @@ def RaveCreateSensor(env: "Environment", name: str) -> Sensor | None:
         >>> laser.SetTransform([1, 0, 0, 0, 0.5, 0, 0.3])
         >>> env.Add(laser)
     """
-    checked_environment(env, "RaveCreateSensor")
-    words = checked_kind(name, str, "RaveCreateSensor: name", "a text").split() or [""]
-    kind = scene.SENSOR_KINDS.get(words[0].lower())
+    word = asked_for(env, name, "RaveCreateSensor")[0]
+    kind = scene.SENSOR_KINDS.get(word.lower())
     if kind is None:
         _LOG.warning("there is no sensor '%s'; there are %s", name, ", ".join(KIND_NAMES))
         return None
     description = scene.AttachedSensor(
-        name="", link=None, T_link_sensor=Pose(), type=words[0], device=kind.device, source=FROM_SCRIPT
+        name="", link=None, T_link_sensor=Pose(), type=word, device=kind.device, source=FROM_SCRIPT
     )
     return Sensor(env, description)

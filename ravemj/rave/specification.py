@@ -36,11 +36,7 @@ class ConfigurationSpecification(ConfigurationData):
 
     @also_named(pyspec="spec", group="spec", xmldata="spec")
     def __init__(self, spec: "ConfigurationSpecification | Group | str | None" = None) -> None:
-        """Make a specification.
-
-        Args:
-            spec: A specification to copy, a group, or XML text, as ``repr`` shows it. By default there are no groups.
-        """
+        """Copy ``spec``, a specification, a group or XML text, as ``repr`` shows it; by default there are no groups."""
         if isinstance(spec, str):
             self._groups = read_layout(spec)
         elif isinstance(spec, Group):
@@ -92,28 +88,23 @@ class ConfigurationSpecification(ConfigurationData):
     def FindCompatibleGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
         """Return a copy of the group with values of the same kind and body, or None.
 
-        Args:
-            name: The name of a group or the beginning of one, for instance ``joint_values arm``.
-            exactmatch: Whether the names have to be equal.
+        ``name`` is the name of a group or the beginning of one, such as ``joint_values arm``; with ``exactmatch`` the
+        names have to be equal.
         """
         found = layout.find_compatible(self._groups, name if isinstance(name, str) else name.name, exactmatch)
         return None if found is None else layout.copied([found])[0]
 
     def FindTimeDerivativeGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return a copy of the group with the time derivative of another, or None. See ``FindCompatibleGroup``.
+        """Return a copy of the group with the time derivative of ``name``, a group or its name, or None.
 
-        Args:
-            name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be the same, too.
+        With ``exactmatch``, the rest of the name has to be the same, too.
         """
         return self._shifted(name, 1, exactmatch)
 
     def FindTimeIntegralGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return a copy of the group whose time derivative another group is, or None. See ``FindCompatibleGroup``.
+        """Return a copy of the group whose time derivative ``name`` is, a group or its name, or None.
 
-        Args:
-            name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be the same, too.
+        With ``exactmatch``, the rest of the name has to be the same, too.
         """
         return self._shifted(name, -1, exactmatch)
 
@@ -151,11 +142,9 @@ class ConfigurationSpecification(ConfigurationData):
         return self.AddGroup(DELTATIME, 1)
 
     def AddDerivativeGroups(self, deriv: int, adddeltatime: bool = False) -> None:
-        """Append time derivatives of all positions, with the interpolations that fit those of the positions.
+        """Append the time derivatives of order ``deriv`` of all positions, with interpolations that fit.
 
-        Args:
-            deriv: 1 for velocities, 2 for accelerations and so on.
-            adddeltatime: Whether to append the time since the last waypoint as well.
+        With ``adddeltatime``, append the time since the last waypoint, too.
         """
         self._groups = layout.with_derivatives(self._groups, checked_order(deriv, "deriv"), adddeltatime)
 
@@ -164,14 +153,9 @@ class ConfigurationSpecification(ConfigurationData):
         self.AddDerivativeGroups(1, adddeltatime)
 
     def RemoveGroups(self, groupname: str, exactmatch: bool = True) -> int:
-        """Remove groups, and close the gaps.
+        """Remove the group ``groupname``, close the gap, and return how many groups were removed.
 
-        Args:
-            groupname: The name of a group.
-            exactmatch: False also removes groups whose names begin with it.
-
-        Returns:
-            The number of removed groups.
+        Without ``exactmatch``, groups whose names begin with it are removed, too.
         """
         before = len(self._groups)
         self._groups = layout.without(self._groups, groupname, exactmatch)
@@ -186,18 +170,16 @@ class ConfigurationSpecification(ConfigurationData):
         return self.ConvertToDerivativeSpecification(1)
 
     def ConvertToDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
-        """Return a specification with time derivatives in place of positions.
+        """Return a specification with derivatives in place of positions.
 
-        Args:
-            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
+        ``timederivative`` is their order: 1 for velocities, 2 for accelerations.
         """
         return self.of(layout.derived(self._groups, checked_order(timederivative)))
 
     def GetTimeDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
-        """Return the groups of a time derivative alone: 0 for positions, 1 for velocities and so on.
+        """Return the groups of a derivative alone.
 
-        Args:
-            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
+        ``timederivative`` is its order: 0 for positions, 1 for velocities, 2 for accelerations.
         """
         return self.of(layout.of_order(self._groups, checked_order(timederivative)))
 
@@ -228,11 +210,7 @@ class ConfigurationSpecification(ConfigurationData):
         return {"groups": [dict(vars(group)) for group in sorted(self._groups, key=lambda group: group.offset)]}
 
     def DeserializeJSON(self, obj: dict[str, list[dict[str, Any]]]) -> None:
-        """Replace the groups by those that ``SerializeJSON`` returned.
-
-        Args:
-            obj: A result of ``SerializeJSON``.
-        """
+        """Replace the groups by those of ``obj``, a result of ``SerializeJSON``."""
         self._groups = [Group(**group) for group in obj["groups"]]
 
     def __eq__(self, other: object) -> bool:

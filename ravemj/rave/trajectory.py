@@ -17,7 +17,6 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Interface
 from ravemj.rave.specification import ConfigurationSpecification
-from ravemj.rave.user_data import Annotations
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints
@@ -47,14 +46,8 @@ class Trajectory(Interface):
     _internal = ("waypoints",)
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
-        self._env = env
-        self._xmlid = xmlid
-        self.annotations = Annotations()
+        super().__init__(env, xmlid)
         self._waypoints: Waypoints | None = None
-
-    def GetXMLId(self) -> str:
-        """Return the name of the type, spelled as the caller of ``RaveCreateTrajectory`` spelled it."""
-        return self._xmlid
 
     @also_named(group="spec")
     def Init(self, spec: Spec) -> None:
@@ -152,12 +145,9 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def GetWaypoints(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
-        """Return the waypoints from ``startindex`` to before ``endindex``, one after the other, shape (n * dof,).
+        """Return the waypoints from ``startindex`` to before ``endindex`` in one row, shape (n * dof,).
 
-        Args:
-            startindex: The first waypoint.
-            endindex: The index after the last waypoint.
-            spec: The layout of the result; by default that of the trajectory.
+        ``spec`` is the layout of the result, by default that of the trajectory.
         """
         return self.GetWaypoints2D(startindex, endindex, spec).ravel()
 
@@ -165,20 +155,13 @@ class Trajectory(Interface):
     def GetWaypoints2D(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
         """Return a copy of the waypoints from ``startindex`` to before ``endindex``, shape (n, dof).
 
-        Args:
-            startindex: The first waypoint.
-            endindex: The index after the last waypoint.
-            spec: The layout of the result; by default that of the trajectory.
+        ``spec`` is the layout of the result, by default that of the trajectory.
         """
         return self._as(self.waypoints.rows(startindex, endindex), spec)
 
     @also_named(group="spec")
     def GetAllWaypoints2D(self, spec: Spec | None = None) -> Floats:
-        """Return a copy of all waypoints, shape (n, dof).
-
-        Args:
-            spec: The layout of the result; by default that of the trajectory.
-        """
+        """Return a copy of all waypoints, shape (n, dof), in the layout ``spec``, by default that of the trajectory."""
         return self.GetWaypoints2D(0, len(self.waypoints), spec)
 
     def _as(self, rows: Floats, spec: Spec | None) -> Floats:
@@ -189,10 +172,9 @@ class Trajectory(Interface):
         return self.waypoints.duration()
 
     def GetFirstWaypointIndexAfterTime(self, time: float) -> int:
-        """Return the index of the first waypoint at a time or later, or the number of waypoints after the last one.
+        """Return the index of the first waypoint at a ``time`` [s] or later.
 
-        Args:
-            time: The time since the start [s].
+        After the last waypoint, it is the number of waypoints.
 
         Raises:
             ArgumentError: the trajectory has no group ``deltatime``.
@@ -224,12 +206,9 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
-        """Return the configuration at a time, with ``data`` for values that the trajectory lacks. See ``Sample``.
+        """Return the configuration at a ``time`` [s], shape (dof,); see ``Sample``.
 
-        Args:
-            data: A configuration, shape (dof,).
-            time: The time since the start [s].
-            spec: The layout of the data and of the result.
+        ``data`` has the values that the trajectory lacks; ``spec`` is its layout and that of the result.
         """
         source = self.waypoints.sample(time, restamped=False, find_body=self._env.simulation.body)
         target = ConfigurationSpecification(spec)
@@ -237,27 +216,16 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SamplePoints2D(self, times: ArrayLike, spec: Spec | None = None) -> Floats:
-        """Return the configurations at several times, shape (n, dof). See ``Sample``.
-
-        Args:
-            times: The times since the start [s], shape (n,).
-            spec: The layout of the result; by default that of the trajectory.
-        """
+        """Return the configurations at ``times`` [s], shape (n, dof); ``spec`` is as for ``Sample``."""
         rows = [self.Sample(float(time), spec) for time in checked_numbers(times, "times").ravel()]
         dof = (self.GetConfigurationSpecification() if spec is None else ConfigurationSpecification(spec)).GetDOF()
         return np.array(rows).reshape(len(rows), dof)
 
     @also_named(group="spec")
     def SamplePointsSameDeltaTime2D(self, deltatime: float, ensurelastpoint: bool, spec: Spec | None = None) -> Floats:
-        """Return configurations at regular times.
+        """Return configurations every ``deltatime`` [s], shape (n, dof).
 
-        Args:
-            deltatime: The time between two configurations [s].
-            ensurelastpoint: Whether to append the end of the trajectory.
-            spec: As for ``Sample``.
-
-        Returns:
-            Shape (n, dof).
+        With ``ensurelastpoint``, the end of the trajectory is appended. ``spec`` is as for ``Sample``.
         """
         return self.SampleRangeSameDeltaTime2D(deltatime, 0.0, self.GetDuration(), ensurelastpoint, spec)
 
@@ -286,44 +254,22 @@ class Trajectory(Interface):
         return self.SamplePoints2D(times, spec)
 
     def Clone(self, ref: "Trajectory", cloningoptions: int = 0) -> None:
-        """Copy the layout, the waypoints, the description and the user data of another trajectory.
-
-        Args:
-            ref: The other trajectory.
-            cloningoptions: Not used.
-        """
+        """Copy layout, waypoints, description and user data of ``ref``. ``cloningoptions`` are not used."""
         super().Clone(ref, cloningoptions)
         known = ref._waypoints
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
 
     def Swap(self, traj: "Trajectory") -> None:
-        """Exchange layout and waypoints with another trajectory.
-
-        Args:
-            traj: The other trajectory.
-        """
+        """Exchange layout and waypoints with the trajectory ``traj``."""
         self._waypoints, traj._waypoints = traj._waypoints, self._waypoints
 
     def serialize(self, options: int | None = 0) -> bytes:
-        """Return the trajectory in OpenRAVE's format.
-
-        Args:
-            options: 0x8000 for XML.
-
-        Returns:
-            Bytes, in UTF-8 for XML.
-        """
+        """Return the trajectory in OpenRAVE's format: binary, or XML in UTF-8 if ``options`` are 0x8000."""
         stored = Stored(self.waypoints, self.GetDescription())
         return to_text(stored, self._xmlid).encode() if (options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:
-        """Replace this trajectory by one that ``serialize`` returned.
-
-        Args:
-            data: A result of ``serialize``, binary or XML.
-
-        Returns:
-            The trajectory itself.
+        """Replace this trajectory by ``data``, which ``serialize`` returned, and return it.
 
         Raises:
             ArgumentError: the data is not a trajectory; this one stays as it is.
@@ -333,11 +279,7 @@ class Trajectory(Interface):
         return self
 
     def SaveToFile(self, filename: AnyPath, options: int | None = 0) -> None:
-        """Write the trajectory to a file, in the format of ``serialize``.
-
-        Args:
-            filename: The file.
-            options: 0x8000 for XML; otherwise the file is binary.
+        """Write the trajectory to the file ``filename``: binary, or XML if ``options`` are 0x8000.
 
         Raises:
             OutputError: the file cannot be written.
@@ -347,10 +289,7 @@ class Trajectory(Interface):
             path.write_bytes(content)
 
     def LoadFromFile(self, filename: AnyPath) -> None:
-        """Replace this trajectory by the one in a file, binary or XML.
-
-        Args:
-            filename: The file.
+        """Replace this trajectory by the one in the file ``filename``, binary or XML.
 
         Raises:
             openrave_exception: the file cannot be read, or is not a trajectory.

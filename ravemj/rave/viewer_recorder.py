@@ -61,14 +61,7 @@ class ViewerRecorder(Module):
         self._began = 0.0
 
     def SimulationStep(self, timeelapsed: float) -> bool:
-        """Draw the frames that are due.
-
-        Args:
-            timeelapsed: The duration of the step [s].
-
-        Returns:
-            Whether a frame was drawn.
-        """
+        """Draw the frames that are due after ``timeelapsed`` [s], and return whether there were any."""
         if self._order is None:
             return False
         self._passed += timeelapsed

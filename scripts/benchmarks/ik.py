@@ -14,7 +14,7 @@ from ravemj.core.transforms import Floats
 from ravemj.formats.readers import read_file
 from ravemj.ik import Chain, NumericSolver, make_solver
 from ravemj.ik.arms import chain_of
-from ravemj.ik.compiled import CompiledKinematics
+from ravemj.ik.numeric import CompiledKinematics
 
 MANY = 20000
 POSES = 200

@@ -10,7 +10,8 @@ import pytest
 
 import ravemj
 from ravemj.compat import alias, legacy, metaclass, names
-from ravemj.rave import environment, library, plugins
+from ravemj.rave import environment, library
+from ravemj.rave.modules import MISSING as MISSING_MODULES
 from ravemj.rave.planning.names import MISSING as MISSING_PLANNERS
 
 
@@ -173,18 +174,12 @@ def test_native_plugins_and_unknown_things_fail_softly(env, caplog):
     ("kind", "name", "capability"),
     [
         (kind, name, capability)
-        for kind, names in {**plugins.MISSING, ravemj.InterfaceType.planner: MISSING_PLANNERS}.items()
+        for kind, names in (("module", MISSING_MODULES), ("planner", MISSING_PLANNERS))
         for name, capability in names.items()
     ],
 )
 def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
-    create = {
-        "planner": ravemj.RaveCreatePlanner,
-        "module": ravemj.RaveCreateModule,
-        "iksolver": ravemj.RaveCreateIkSolver,
-        "sensor": ravemj.RaveCreateSensor,
-        "spacesampler": ravemj.RaveCreateSpaceSampler,
-    }[kind.name]
+    create = {"planner": ravemj.RaveCreatePlanner, "module": ravemj.RaveCreateModule}[kind]
     with pytest.raises(NotImplementedError, match=capability) as caught:
         create(env, name.upper() + " with arguments")
     assert caught.value.capability == capability

@@ -13,9 +13,10 @@ from ik_arms import PANDA, PUMA, UR5, WAM, arm
 from ravemj.formats.readers import read_file
 from ravemj.ik import Chain, NumericSolver, Task, make_solver
 from ravemj.ik.arms import chain_of
-from ravemj.ik.compiled import CompiledKinematics
+from ravemj.ik.candidates import nearest_first
 from ravemj.ik.derive import random_values
 from ravemj.ik.limits import all_turns, distances, nearest_turns
+from ravemj.ik.numeric import CompiledKinematics
 from ravemj.ik.redundancy import samples
 from ravemj.ik.tasks import goal_poses
 
@@ -129,19 +130,12 @@ class TestNearest:
             every = distances(LIMITED, solver.solve_one(T), seed, weights)
             assert distances(LIMITED, found, seed, weights) == pytest.approx(every.min(), abs=1e-9)
 
-    def test_what_is_not_accepted_is_left_out(self):
+    def test_all_come_the_nearest_first(self):
         solver, seed = make_solver(LIMITED), np.zeros(6)
         T = LIMITED.forward(limited_values(LIMITED, 1)[0])
-        asked = []
-
-        def second(row):
-            asked.append(row)
-            return len(asked) == 2
-
-        found = solver.nearest(T, seed, accept=second)
         order = distances(LIMITED, solver.solve_one(T), seed)
-        assert distances(LIMITED, found, seed) == pytest.approx(np.sort(order)[1])
-        assert solver.nearest(T, seed, accept=lambda row: False) is None
+        found = [distances(LIMITED, row, seed) for row in nearest_first(solver, T, seed)]
+        assert found == pytest.approx(np.sort(order))
 
     def test_a_panda_finds_a_solution_for_nearly_every_pose(self):
         solver = make_solver(PANDA_LIMITED)

@@ -8,7 +8,7 @@ from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_dof
 from ravemj.ik.arms import chain_of
 from ravemj.ik.chain import Chain
-from ravemj.ik.free_joints import default_free, default_steps
+from ravemj.ik.redundancy import default_free, default_steps
 from ravemj.model.manipulators import chain as joints_between
 from ravemj.rave.iksolver import IkSolver
 from ravemj.rave.library import RaveFindDatabaseFile

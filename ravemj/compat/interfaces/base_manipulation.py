@@ -15,7 +15,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
 from ravemj.rave.modules import base_module
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH
-from ravemj.rave.modules.commands import search_options, straight, unsync
+from ravemj.rave.modules.commands import search_options
 from ravemj.rave.modules.motions import SearchOptions
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
@@ -235,9 +235,8 @@ class BaseManipulation(TrajectoryText):
         traj = self._base.move_to_hand_position(
             goals,
             search_options(options, HAND_SEARCH),
-            **given(
-                first=whole(seedik, "seedik"), samples=samples, probability=number(goalsampleprob, "goalsampleprob")
-            ),
+            **given(seedik=whole(seedik, "seedik"), goalsamples=samples),
+            **given(goalsampleprob=number(goalsampleprob, "goalsampleprob")),
             starts=_rows("initialconfigs", None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,
         )
@@ -287,8 +286,8 @@ class BaseManipulation(TrajectoryText):
         options = given(minsteps=whole(minsteps, "minsteps"), maxsteps=whole(maxsteps, "maxsteps"), starteematrix=start)
         options |= given(stepsize=number(stepsize, "stepsize"))
         options |= given(ignorefirstcollision=number(ignorefirstcollision, "ignorefirstcollision"))
-        options["direction"] = checked_vector(direction, 3, "direction")
-        return self._done(straight(self._base, options), execute, outputtraj, outputtrajobj)
+        traj = self._base.move_hand_straight(checked_vector(direction, 3, "direction"), **options)
+        return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveUnsyncJoints(
         self,
@@ -328,7 +327,8 @@ class BaseManipulation(TrajectoryText):
         options = given(
             maxtries=whole(maxtries, "maxtries"), maxdivision=whole(maxdivision, "maxdivision"), planner=planner
         )
-        return self._done(unsync(self._base, values, indices, options), execute, outputtraj, outputtrajobj)
+        traj = self._base.move_unsync_joints(values, indices, **options)
+        return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def JitterActive(
         self,
@@ -355,7 +355,7 @@ class BaseManipulation(TrajectoryText):
         Raises:
             PlanningError: there is no such configuration.
         """
-        found = self._base.jitter_active(**given(tries=whole(maxiter, "maxiter"), jitter=number(jitter, "jitter")))
+        found = self._base.jitter_active(**given(maxiter=whole(maxiter, "maxiter"), jitter=number(jitter, "jitter")))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
     def FindIKWithFilters(

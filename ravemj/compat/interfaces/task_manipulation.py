@@ -242,8 +242,8 @@ class TaskManipulation(Helper):
         rows = np.atleast_2d(np.asarray(gmodel.grasps if grasps is None and gmodel else grasps, dtype=float))
         body = checked_kind(target or getattr(gmodel, "target", None), KinBody, "GraspPlanning: target")
         columns = graspindices or getattr(gmodel, "graspindices", {})
-        options = given(seed_grasps=seedgrasps, seed_places=seeddests, seed_ik=seedik, iterations=maxiter)
-        options |= given(random_grasps=randomgrasps, random_places=randomdests)
+        options = given(seedgrasps=seedgrasps, seeddests=seeddests, seedik=seedik, maxiter=maxiter)
+        options |= given(randomgrasps=randomgrasps, randomdests=randomdests)
         places = [checked_transform(one, "destposes") for one in (() if destposes is None else destposes)]
         plan = self._task.plan_grasp(GraspQuery(body, rows, columns, approachoffset, places, **options))
         return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj) or None

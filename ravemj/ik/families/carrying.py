@@ -81,12 +81,9 @@ class CarryPoint:
         return _names(self.pair)
 
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
-        """Return the values of the three joints, turns (2, B, N) or distances (1, B, N).
+        """Return the values of the joints, turns (2, B, N) or distances (1, B, N), that carry points (3, B, N).
 
-        Args:
-            screws: The joints; those that are shared by all poses are the ones of the examples.
-            start: Points, shape (3, B, N).
-            goal: Where they have to be, of such a shape.
+        Joints that are shared by all poses are the ones of the examples.
         """
         first, middle, third = screws
         one, three = self.pair.solve(*self._sides(screws, start, goal))

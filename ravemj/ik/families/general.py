@@ -43,12 +43,7 @@ class General:
     coupled, shared, equations = True, False, "an eigenvalue problem of 24 rows"
 
     def __init__(self, arm: Arm, shift: int, *, backward: bool) -> None:
-        """Prepare the solution.
-
-        Args:
-            arm: The arm.
-            shift: How many joints are moved from the start of the circle to its end.
-            backward: Whether the circle is walked from the tool to the base.
+        """Take the joints in a circle from one of them on, backward from the tool to the base.
 
         Raises:
             NoFamilyError: other joints than six revolute ones, or locked ones between them.
@@ -131,9 +126,8 @@ def _numbers(line: Floats, point: Floats) -> Floats:
 def _eigen(matrix: Floats) -> list[Floats]:
     """Return the half-angle tangents of joints 3, 4 and 5, each (16, N), for which M(t3) times monomials is 0.
 
-    Args:
-        matrix: For powers 0, 1, 2 of the first tangent six equations in monomials x^i y^j, i and j from 0 to 2, shape
-            (N, 3, 6, 9).
+    ``matrix`` has for powers 0, 1, 2 of the first tangent six equations in monomials x^i y^j, i and j up to 2, shape
+    (N, 3, 6, 9).
     """
     count = len(matrix)
     whole = np.zeros((count, 3, 12, 12))

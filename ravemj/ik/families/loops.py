@@ -6,7 +6,7 @@ the circle leaves three joints, some of them seen from elsewhere (E(axis) X = X 
 block's point or plane. Joints that are locked at a value are constant motions in that circle.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -133,6 +133,10 @@ def _moved(transform: Transform | None, points: Floats) -> Floats:
     return points if transform is None else transform.moved(points)
 
 
+Step = Callable[[Screw, Floats, Floats], Floats]
+"""A method of ``Screw`` that moves vectors by a joint value."""
+
+
 class _Around:
     """The joints around a block with their values: B⁻¹ = W⁻¹ F1 F2 F3 K."""
 
@@ -144,36 +148,33 @@ class _Around:
 
     def needed(self) -> Motion:
         """Return B = K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W."""
-        back = None if self._rest is None else self._rest.inverse()
-
-        def turned(vectors: Floats) -> Floats:
-            vectors = tile(_turned(self._goal, vectors), self._count)
-            for screw, value in self._pairs:
-                vectors = screw.turned_back(value, vectors)
-            return _turned(back, vectors)
-
-        def moved(points: Floats) -> Floats:
-            points = tile(_moved(self._goal, points), self._count)
-            for screw, value in self._pairs:
-                points = screw.moved_back(value, points)
-            return _moved(back, points)
-
-        return Motion(turned, moved)
+        return self._motion(self._goal, self._rest, self._pairs, Screw.turned_back, Screw.moved_back)
 
     def opposite(self) -> Motion:
         """Return B⁻¹."""
-        back = None if self._goal is None else self._goal.inverse()
+        return self._motion(self._rest, self._goal, self._pairs[::-1], Screw.turned, Screw.moved)
+
+    def _motion(
+        self,
+        first: Transform | None,
+        last: Transform | None,
+        pairs: Sequence[tuple[Screw, Floats]],
+        turn: Step,
+        move: Step,
+    ) -> Motion:
+        """Return the motion by a transform, then by joints, then by the inverse of another transform."""
+        back = None if last is None else last.inverse()
 
         def turned(vectors: Floats) -> Floats:
-            vectors = tile(_turned(self._rest, vectors), self._count)
-            for screw, value in reversed(self._pairs):
-                vectors = screw.turned(value, vectors)
+            vectors = tile(_turned(first, vectors), self._count)
+            for screw, value in pairs:
+                vectors = turn(screw, value, vectors)
             return _turned(back, vectors)
 
         def moved(points: Floats) -> Floats:
-            points = tile(_moved(self._rest, points), self._count)
-            for screw, value in reversed(self._pairs):
-                points = screw.moved(value, points)
+            points = tile(_moved(first, points), self._count)
+            for screw, value in pairs:
+                points = move(screw, value, points)
             return _moved(back, points)
 
         return Motion(turned, moved)

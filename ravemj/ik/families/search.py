@@ -26,12 +26,9 @@ _SEED = 20
 
 
 def families(nominal: Chain, task: Task, locked: Sequence[int]) -> Iterator[Family]:
-    """Return ways to solve an arm, the fastest first where several are known without trying.
+    """Return ways to solve an arm whose geometry is exact, in units of its reach.
 
-    Args:
-        nominal: The arm, with exact geometry and lengths in units of its reach.
-        task: What is asked for.
-        locked: Joints whose values are given.
+    The fastest come first where several are known without trying.
     """
     arm = _arm(nominal, locked)
     free = nominal.dof - len(locked)

@@ -6,7 +6,7 @@ from ravemj.rave.controllers.base import Controller
 from ravemj.rave.controllers.ideal import IdealController
 from ravemj.rave.controllers.multi import MultiController
 from ravemj.rave.controllers.velocity import VelocityController
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -44,8 +44,7 @@ def RaveCreateController(env: "Environment", name: str) -> Controller | None:
         >>> robot.SetController(controller, [0, 1], 0)
         True
     """
-    checked_environment(env, "RaveCreateController")
-    word = name.split(maxsplit=1)[0] if name.strip() else ""
+    word = asked_for(env, name, "RaveCreateController")[0]
     kind = _KINDS.get(word.lower())
     return None if kind is None else kind(env, word)
 
@@ -60,6 +59,5 @@ def RaveCreateMultiController(env: "Environment", name: str = "") -> MultiContro
     Returns:
         The controller; None for an unknown name.
     """
-    checked_environment(env, "RaveCreateMultiController")
-    word = name.strip() or "GenericMultiController"
+    word = asked_for(env, name, "RaveCreateMultiController")[0] or "GenericMultiController"
     return MultiController(env, word) if _KINDS.get(word.lower()) is MultiController else None

@@ -11,7 +11,6 @@ from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Interface
 from ravemj.rave.trajectory import Trajectory
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -23,19 +22,13 @@ class Controller(Interface):
 
     _interface_type = InterfaceType.controller
 
-    def __init__(self, env: "Environment", xml_id: str) -> None:
-        self._env = env
-        self.annotations = Annotations()
-        self._xml_id = xml_id
+    def __init__(self, env: "Environment", xmlid: str) -> None:
+        super().__init__(env, xmlid)
         self._attached_robot: Robot | None = None
         self._dofs: Ints | None = None
         self._moves_base = False
         self._is_done = True
         self._time = 0.0
-
-    def GetXMLId(self) -> str:
-        """Return the name of the controller, spelled as the caller of ``RaveCreateController`` spelled it."""
-        return self._xml_id
 
     def Init(self, robot: "Robot", dofindices: ArrayLike | None = None, controltransform: int = 1) -> bool:
         """Set the robot and the DOFs that the controller moves; ``robot.SetController`` calls this.
@@ -89,11 +82,7 @@ class Controller(Interface):
         return self._time
 
     def Reset(self, options: int = 0) -> None:
-        """Cancel the current command. The robot stays in place, and the controller is done.
-
-        Args:
-            options: Not used.
-        """
+        """Cancel the current command; the robot stays in place. ``options`` are not used."""
         del options
         self._is_done = True
 
@@ -123,20 +112,12 @@ class Controller(Interface):
         raise self._cannot("take single values")
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory in simulation time from its first waypoint on, and return True.
-
-        Args:
-            traj: The trajectory; it is copied.
-        """
+        """Play a copy of the trajectory ``traj`` in simulation time from its first waypoint on, and return True."""
         del traj
         raise self._cannot("play paths")
 
     def SimulationStep(self, timestep: float) -> None:
-        """Advance the controller by a time step; ``StepSimulation`` and the thread of simulation time call this.
-
-        Args:
-            timestep: The duration of the step [s].
-        """
+        """Advance the controller by ``timestep`` [s]; each step of simulation time calls this."""
 
     def GetVelocity(self) -> Floats:
         """Return the current velocities of the DOFs that the controller moves [rad/s or m/s], shape (n,)."""
@@ -147,11 +128,7 @@ class Controller(Interface):
         return np.zeros(len(self._robot_dofs()))
 
     def _robot_dofs(self) -> Ints:
-        """Return the DOF indices that the controller moves.
-
-        Raises:
-            RavemjError: the controller has no robot.
-        """
+        """Return the DOF indices that the controller moves; an error where it has no robot."""
         assert self._robot is not None
         return self.GetControlDOFIndices()
 
@@ -162,4 +139,4 @@ class Controller(Interface):
         robot = self._attached_robot
         if robot is not None and robot.GetController() is self:
             return f"{robot!r}.GetController()"
-        return f"RaveCreateController({self._env!r}, {self._xml_id!r})"
+        return f"RaveCreateController({self._env!r}, {self._xmlid!r})"

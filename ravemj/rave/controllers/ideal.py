@@ -1,6 +1,7 @@
 """A controller that sets the commanded joint values exactly."""
 
 import logging
+from collections.abc import Callable
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -39,6 +40,16 @@ class _Path(NamedTuple):
     grabs: list[GrabChange]
 
 
+def _switch(command: str, attribute: str) -> Callable[["IdealController", str], str]:
+    """Return what runs a command that switches something on or off."""
+
+    def run(controller: "IdealController", arguments: str) -> str:
+        setattr(controller, attribute, checked_flag(arguments, command))
+        return ""
+
+    return run
+
+
 class IdealController(Controller):
     """The controller that robots have from the start: it sets the commanded values at once and exactly.
 
@@ -71,11 +82,7 @@ class IdealController(Controller):
     _logs = False
 
     def Reset(self, options: int = 0) -> None:
-        """Cancel the current command. The robot stays in place, and the controller is done.
-
-        Args:
-            options: Not used.
-        """
+        """Cancel the current command; the robot stays in place. ``options`` are not used."""
         with self._env.simulation.lock:
             self._path = self._desired = None
             super().Reset(options)
@@ -137,11 +144,7 @@ class IdealController(Controller):
         return _Path(copy, columns, dofs, has_base and self._moves_base, grab_changes(copy.waypoints, name))
 
     def SimulationStep(self, timestep: float) -> None:
-        """Advance the controller by a time step; ``StepSimulation`` and the thread of simulation time call this.
-
-        Args:
-            timestep: The duration of the step [s].
-        """
+        """Advance the controller by ``timestep`` [s]; each step of simulation time calls this."""
         if self._is_paused:
             return
         if self._path is not None:
@@ -189,13 +192,9 @@ class IdealController(Controller):
         self._place(path.dofs, point[path.columns], T_world_base, elapsed)
 
     def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
-        """Set joint values and the pose of the base, with all velocities zero.
+        """Set joint values and the pose of the base, if there is one, with all velocities zero.
 
-        Args:
-            dofs: The DOF indices.
-            values: The joint values [rad or m].
-            T_world_base: The pose of the base; None leaves it in place.
-            elapsed: The duration of the motion, for the velocity limits [s]; 0 allows any speed.
+        ``elapsed`` is the duration of the motion, for the velocity limits [s]; 0 allows any speed.
         """
         robot = self._robot
         if len(dofs):
@@ -240,25 +239,9 @@ class IdealController(Controller):
             _LOG.warning("%s", message)
         self._has_problem = True
 
-    def _set_throw_exceptions(self, arguments: str) -> str:
-        self._throws_exceptions = checked_flag(arguments, "SetThrowExceptions")
-        return ""
-
-    def _set_check_collisions(self, arguments: str) -> str:
-        self._checks_collisions = checked_flag(arguments, "SetCheckCollisions")
-        return ""
-
-    def _pause(self, arguments: str) -> str:
-        self._is_paused = checked_flag(arguments, "Pause")
-        return ""
-
-    def _set_enable_logging(self, arguments: str) -> str:
-        self._logs = checked_flag(arguments, "SetEnableLogging")
-        return ""
-
     _commands: ClassVar = {
-        "Pause": _pause,
-        "SetEnableLogging": _set_enable_logging,
-        "SetThrowExceptions": _set_throw_exceptions,
-        "SetCheckCollisions": _set_check_collisions,
+        "Pause": _switch("Pause", "_is_paused"),
+        "SetEnableLogging": _switch("SetEnableLogging", "_logs"),
+        "SetThrowExceptions": _switch("SetThrowExceptions", "_throws_exceptions"),
+        "SetCheckCollisions": _switch("SetCheckCollisions", "_checks_collisions"),
     }

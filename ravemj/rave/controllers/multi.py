@@ -13,12 +13,7 @@ from ravemj.rave.trajectory import Trajectory
 
 
 class _Part(NamedTuple):
-    """One of the other controllers.
-
-    Attributes:
-        controller: The controller.
-        places: The indices of its values among those of the ``MultiController``.
-    """
+    """One of the other controllers, and the indices of its values among those of the ``MultiController``."""
 
     controller: Controller
     places: Ints
@@ -70,37 +65,21 @@ class MultiController(Controller):
         return True
 
     def RemoveController(self, controller: Controller) -> None:
-        """Remove a controller. Its DOFs then have none.
-
-        Args:
-            controller: The controller.
-        """
+        """Remove ``controller``. Its DOFs then have none."""
         self._parts = tuple(part for part in self._parts if part.controller is not controller)
 
     def GetController(self, dof: int) -> Controller | None:
-        """Return the controller of a DOF, or None.
-
-        Args:
-            dof: Index of the DOF.
-        """
+        """Return the controller of the DOF with the index ``dof``, or None."""
         owners = (part.controller for part in self._parts if dof in part.controller.GetControlDOFIndices())
         return next(owners, None)
 
     def Reset(self, options: int = 0) -> None:
-        """Reset all controllers.
-
-        Args:
-            options: Passed to each controller.
-        """
+        """Reset all controllers, each with ``options``."""
         for part in self._parts:
             part.controller.Reset(options)
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Have each controller play its part of a trajectory, and return True. See ``IdealController.SetPath``.
-
-        Args:
-            traj: The trajectory; it is copied.
-        """
+        """Have each controller play its part of ``traj``, and return True; see ``IdealController.SetPath``."""
         return all([part.controller.SetPath(traj) for part in self._parts])
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
@@ -108,11 +87,7 @@ class MultiController(Controller):
             part.controller.SetDesired(values[part.places], T_world_base)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Advance all controllers by a time step.
-
-        Args:
-            timestep: The duration of the step [s].
-        """
+        """Advance all controllers by ``timestep`` [s]."""
         for part in self._parts:
             part.controller.SimulationStep(timestep)
 

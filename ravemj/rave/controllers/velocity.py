@@ -28,11 +28,7 @@ class VelocityController(Controller):
     _velocities: Floats | None = None
 
     def Reset(self, options: int = 0) -> None:
-        """Stop driving the joints.
-
-        Args:
-            options: Not used.
-        """
+        """Stop driving the joints. ``options`` are not used."""
         with self._env.simulation.lock:
             super().Reset(options)
             self._drive(None)
@@ -53,14 +49,10 @@ class VelocityController(Controller):
                 loads.motor = None if velocities is None else Motor(self._robot_dofs(), velocities)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Move the joints by a time step, unless physics moves them.
-
-        Args:
-            timestep: The duration of the step [s].
-        """
+        """Move the joints by ``timestep`` [s], unless physics moves them."""
         if self._velocities is None:
             return
-        if self._env.GetPhysicsEngine().is_simulated:
+        if self._env.GetPhysicsEngine().dynamics is not None:
             self._drive(self._velocities)
             return
         robot, dofs = self._robot, self._robot_dofs()

@@ -23,11 +23,7 @@ class EnvironmentPart(ApiObject):
         self._is_destroyed = False
 
     def _check_alive(self) -> None:
-        """Check that the environment has not been destroyed.
-
-        Raises:
-            RavemjError: the environment has been destroyed.
-        """
+        """Raise an error if the environment has been destroyed."""
         if self._is_destroyed:
             raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)
 

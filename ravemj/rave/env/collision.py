@@ -1,6 +1,6 @@
 """Collision checks of an environment, and its geometries as triangles."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,14 +9,17 @@ from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
+from ravemj.model.scene import Mesh
+from ravemj.model.triangles import links_triangles
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
 from ravemj.rave.enums import TriangulateOptions
 from ravemj.rave.env.contents import Contents
-from ravemj.rave.env.triangulation import chosen, triangles
+from ravemj.rave.env.selection import selects
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
-from ravemj.rave.trimesh import TriMesh
+from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
 """A function of a report of one collision, and of whether physics has found it; it returns a ``CollisionAction``."""
@@ -157,14 +160,10 @@ class Collision(Contents):
         return bool(self.collision_callbacks)
 
     def Triangulate(self, body: KinBody) -> TriMesh:
-        """Return all geometries of a body as triangles, in the world and at its current pose.
-
-        Args:
-            body: The body. Grabbed bodies are not included.
-        """
+        """Return all geometries of ``body``, without those of grabbed bodies, as triangles in the world."""
         checked_kind(body, KinBody, "Triangulate: body")
         with self._simulation.lock:
-            return triangles([body.simulation_state])
+            return _triangles([body.simulation_state])
 
     def TriangulateScene(self, options: int = TriangulateOptions.Everything, name: str = "") -> TriMesh:
         """Return the geometries of several bodies as triangles, in the world and at their current poses.
@@ -174,4 +173,8 @@ class Collision(Contents):
             name: The name of the body, for ``Body`` and ``AllExceptBody``.
         """
         with self._simulation.lock:
-            return triangles(chosen(self._simulation.bodies, TriangulateOptions(options), name))
+            return _triangles([body for body in self._simulation.bodies if selects(options, [name], body.scene)])
+
+
+def _triangles(bodies: Sequence[BodyState]) -> TriMesh:
+    return trimesh_of(Mesh.merged([links_triangles(body.scene.links, body.link_transforms()) for body in bodies]))

@@ -62,11 +62,7 @@ class Description(Simulating):
         return self.annotations.description
 
     def SetDescription(self, sceneDescription: str) -> None:
-        """Set a description for people.
-
-        Args:
-            sceneDescription: The text.
-        """
+        """Set ``sceneDescription``, a text for people."""
         self.annotations.description = str(sceneDescription)
 
     SetUserData = SetUserData
@@ -78,11 +74,7 @@ class Description(Simulating):
         return list(self._keywords)
 
     def SetKeywords(self, sceneKeywords: Iterable[str]) -> None:
-        """Set keywords.
-
-        Args:
-            sceneKeywords: The keywords.
-        """
+        """Set the keywords ``sceneKeywords``."""
         self._keywords = [str(word) for word in sceneKeywords]
 
     def GetRevision(self) -> int:
@@ -90,29 +82,15 @@ class Description(Simulating):
         return 0
 
     def GetUInt64Parameter(self, parameterName: str, defaultValue: int) -> int:
-        """Return an integer that ``SetUInt64Parameter`` set.
-
-        Args:
-            parameterName: The name.
-            defaultValue: The result if there is no integer of that name.
-        """
+        """Return the integer that was set under ``parameterName``, or ``defaultValue`` without one."""
         return self._numbers.get(parameterName, int(defaultValue))
 
     def SetUInt64Parameter(self, parameterName: str, value: int) -> None:
-        """Set an integer under a name.
-
-        Args:
-            parameterName: The name.
-            value: The number.
-        """
+        """Set the integer ``value`` under ``parameterName``."""
         self._numbers[str(parameterName)] = int(value)
 
     def RemoveUInt64Parameter(self, parameterName: str) -> bool:
-        """Remove the integer of a name, and return whether there was one.
-
-        Args:
-            parameterName: The name.
-        """
+        """Remove the integer of ``parameterName``, and return whether there was one."""
         return self._numbers.pop(parameterName, None) is not None
 
     def GetHomeDirectory(self) -> str:

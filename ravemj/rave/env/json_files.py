@@ -29,18 +29,13 @@ def is_json(path: str) -> bool:
 
 
 def save_json(info: EnvironmentBaseInfo, path: str, content: scene.Scene, skipped: Sequence[str]) -> None:
-    """Write bodies and the properties of their environment to a file.
+    """Write bodies and the properties of their environment to a file; ``skipped`` are words of ``skipwrite``.
 
-    JSON has no place for the view and for sensors that no robot carries; warnings say that they are left out.
-
-    Args:
-        info: The description of the environment; it is changed.
-        path: The file.
-        content: The bodies, the view and the sensors to save.
-        skipped: The parts to leave out, words of ``skipwrite``.
+    The info is changed. JSON has no place for the view and for sensors that no robot carries; warnings say that they
+    are left out.
 
     Raises:
-        OutputError: The file cannot be written, or a number is not finite. An existing file stays as it is.
+        OutputError: the file cannot be written, or a number is not finite. An existing file stays as it is.
     """
     names = {body.name for body in content.bodies}
     info._vBodyInfos = [body for body in info._vBodyInfos if body._name in names]
@@ -92,11 +87,7 @@ def read_json(path: str) -> tuple[str, dict[str, Any]]:
 
 
 def _parsed(path: str) -> dict[str, Any]:
-    """Return the JSON object in a file.
-
-    Raises:
-        SourceError: The file cannot be read, or does not contain an object with a list of bodies.
-    """
+    """Return the JSON object in a file, which has a list of bodies."""
     try:
         with open(path, encoding="utf-8-sig") as file:
             content = json.load(file, parse_constant=_refuse)

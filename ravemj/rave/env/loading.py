@@ -125,11 +125,7 @@ class Loading(Description):
         return ""
 
     def _try_elsewhere(self, path: str) -> None:
-        """Load a file of JSON into another environment, for a moment.
-
-        Raises:
-            RavemjError: it is missing or broken, or MuJoCo refuses the bodies.
-        """
+        """Load a file of JSON into another environment, for a moment; errors as of ``_load_json``."""
         trial = type(self)()
         try:
             trial._load_json(path)
@@ -147,11 +143,7 @@ class Loading(Description):
         return True
 
     def _load_json(self, path: str) -> None:
-        """Take over the environment of a file; see ``LoadJSON``.
-
-        Raises:
-            SourceError: The file is missing or broken; what was read before is there.
-        """
+        """Take over the environment of a file; see ``LoadJSON``. After an error, what was read before is there."""
         self._check_alive()
         with placed_errors(path):
             self.LoadJSON(self._json_content(path))
@@ -296,11 +288,7 @@ class Loading(Description):
             return None
 
     def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file, which is not added; ``into`` is a body to make anew, or None.
-
-        Raises:
-            SourceError: The file is missing or broken, or has no body.
-        """
+        """Return the first body of a file, which is not added; ``into`` is a body to make anew, or None."""
         content = self._json_content(path)
         info = EnvironmentBaseInfo()
         with placed_errors(path):

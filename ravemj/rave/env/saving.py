@@ -17,6 +17,7 @@ from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import SelectionOptions
 from ravemj.rave.env.description import Description
 from ravemj.rave.env.json_files import is_json, save_json
+from ravemj.rave.env.selection import selects
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.geom_writer import MeshFormat
@@ -25,13 +26,6 @@ if TYPE_CHECKING:
 SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
 """The argument ``atts`` of ``Save``: the name of a body, or texts by name; in pairs a name may occur twice."""
 
-_CHOICES: dict[SelectionOptions, Callable[[KinBody, Sequence[str]], bool]] = {
-    SelectionOptions.NoRobots: lambda body, targets: not body.is_robot,
-    SelectionOptions.Robots: lambda body, targets: body.is_robot,
-    SelectionOptions.Everything: lambda body, targets: True,
-    SelectionOptions.Body: lambda body, targets: body.name in targets,
-    SelectionOptions.AllExceptBody: lambda body, targets: body.name not in targets,
-}
 _WITH_SENSORS = (SelectionOptions.Everything, SelectionOptions.AllExceptBody)
 """Selections that the sensors belong to which no robot carries."""
 
@@ -69,8 +63,6 @@ _VALUES = {
 
 class Saving(Description):
     """The methods that save models."""
-
-    SelectionOptions = SelectionOptions
 
     def Save(
         self,
@@ -173,11 +165,7 @@ class Saving(Description):
 
 
 def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
-    """Return the arguments as pairs.
-
-    Raises:
-        ArgumentError: One of them is unknown.
-    """
+    """Return the arguments as pairs of texts."""
     if isinstance(atts, str):
         return [("target", atts)]
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())
@@ -203,11 +191,7 @@ def _check_words(name: str, value: str) -> None:
 
 
 def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) -> set[str]:
-    """Return the names of the bodies that the option ``externalref`` names.
-
-    Raises:
-        ArgumentError: No body of a name is saved.
-    """
+    """Return the names of the bodies that the option ``externalref`` names."""
     asked = {word for name, value in given if name == "externalref" for word in value.split()}
     missing = sorted(asked - {"*", *names})
     if missing:
@@ -216,18 +200,13 @@ def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) ->
 
 
 def _chosen(bodies: Sequence[KinBody], options: int, targets: Sequence[str]) -> list[KinBody]:
-    """Return the bodies that are selected.
-
-    Raises:
-        ArgumentError: There is no such selection, or no body of a name.
-    """
-    if options not in _CHOICES:
+    """Return the bodies that are selected."""
+    if options not in set(SelectionOptions):
         raise ArgumentError(f"Save: options: {options!r} is no SelectionOptions")
     names = [body.name for body in bodies]
     missing = [target for target in targets if target not in names]
     if missing:
         raise ArgumentError(f"Save: atts: there is no body '{missing[0]}'; there are {', '.join(names) or 'none'}")
-    selection = SelectionOptions(options)
-    if selection == SelectionOptions.Body and not targets:
+    if options == SelectionOptions.Body and not targets:
         raise ArgumentError("Save: atts: SelectionOptions.Body needs the name of a body")
-    return [body for body in bodies if _CHOICES[selection](body, targets)]
+    return [body for body in bodies if selects(options, targets, body)]

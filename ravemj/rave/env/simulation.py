@@ -47,10 +47,9 @@ class Simulating(Contents):
         self._clock.start(checked_number(timestep, "StartSimulation: timestep", 1e-6, " s"), realtime=realtime)
 
     def StopSimulation(self, shutdownthread: int = 1) -> None:
-        """Stop simulation time until ``StartSimulation``. ``StepSimulation`` still works.
+        """Stop simulation time until ``StartSimulation``.
 
-        Args:
-            shutdownthread: Whether to wait for the end of a running step.
+        ``StepSimulation`` still works. With ``shutdownthread``, wait for the end of a running step.
         """
         self._clock.stop(wait=bool(shutdownthread))
 
@@ -152,30 +151,21 @@ class Simulating(Contents):
         return [dict(state) for state in self._published]
 
     def GetPublishedBody(self, name: str, timeout: float = 0.0) -> State | None:
-        """Return the published state of one body, as in ``GetPublishedBodies``, or None.
-
-        Args:
-            name: The name of the body.
-            timeout: Not used.
-        """
+        """Return the state of the body ``name`` in ``GetPublishedBodies``, or None. ``timeout`` is not used."""
         return next((state for state in self.GetPublishedBodies(timeout) if state["name"] == name), None)
 
     def GetPublishedBodyJointValues(self, name: str, timeout: float = 0.0) -> Any:  # noqa: ANN401 - an array or None
-        """Return the published joint values of one body [rad or m], shape (dof,), or None.
+        """Return the published joint values of the body ``name`` [rad or m], shape (dof,), or None.
 
-        Args:
-            name: The name of the body.
-            timeout: Not used.
+        ``timeout`` is not used.
         """
         state = self.GetPublishedBody(name, timeout)
         return None if state is None else state["jointvalues"]
 
     def GetPublishedBodyTransformsMatchingPrefix(self, prefix: str, timeout: float = 0.0) -> dict[str, Any]:
-        """Return the published ``T_world_body`` of all bodies whose names begin with a prefix, by name.
+        """Return by name ``T_world_body`` of all published bodies whose names begin with ``prefix``.
 
-        Args:
-            prefix: The beginning of the names.
-            timeout: Not used.
+        ``timeout`` is not used.
         """
         states = (state for state in self.GetPublishedBodies(timeout) if state["name"].startswith(prefix))
         return {state["name"]: state["linktransforms"][0] for state in states if state["linktransforms"]}

@@ -242,10 +242,9 @@ class Viewing(EnvironmentPart):
         return page.save(path)
 
     def default_camera(self, aspect: float = 4 / 3) -> Camera:
-        """Return the default camera of pictures: the viewer's, else the file's, else one that shows the whole scene.
+        """Return the default camera for pictures of an ``aspect`` of width to height.
 
-        Args:
-            aspect: The width of the picture divided by its height.
+        It is the viewer's, else the file's, else one that shows the whole scene.
         """
         return self._renderer.camera_for_stills(aspect) if self._viewer is None else self._viewer.camera
 

@@ -5,13 +5,13 @@ of these names. ``commands`` offers them as text commands, which ``tokens`` pars
 """
 
 import logging
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ravemj.core.arguments import checked_kind
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.module import Command, Module
 from ravemj.rave.modules.base_manipulation import BaseManipulation
-from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
+from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, commands_of
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.modules.scene_saver import scene_module
 from ravemj.rave.modules.task_manipulation import TaskManipulation
@@ -20,38 +20,72 @@ from ravemj.rave.modules.tokens import Tokens
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
-__all__ = ["MODULES", "Module", "base_module", "made_module", "task_module"]
+__all__ = ["MODULES", "Module", "RaveCreateModule", "RaveCreateProblem", "base_module", "task_module"]
 
 _LOG = logging.getLogger("ravemj")
 
 MODULES = ("BaseManipulation", "TaskManipulation", "logging", "viewerrecorder")
 """Names of the modules."""
 
+MISSING: Mapping[str, str] = {
+    "grasper": "planning of grasps",
+    "ikfast": "compiling of solvers of inverse kinematics",
+    "taskcaging": "caging of handles",
+    "visualfeedback": "visual feedback",
+}
+"""Modules of OpenRAVE that ravemj lacks: their names in lower case, and the missing feature."""
+
 
 def base_module(env: "Environment", xmlid: str = "BaseManipulation") -> tuple[Module, BaseManipulation]:
     """Make a module that moves arms; return it, and the object that plans its motions."""
     manipulation = BaseManipulation(env)
-    return _module(env, xmlid, manipulation, answering(BaseCommands(manipulation).named())), manipulation
+    return _module(env, xmlid, manipulation, commands_of(manipulation, BASE_COMMANDS)), manipulation
 
 
 def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Module, TaskManipulation]:
     """Make a module that moves grippers; return it, and the object that plans its motions."""
     manipulation = TaskManipulation(env)
-    return _module(env, xmlid, manipulation, answering(TaskCommands(manipulation).named())), manipulation
+    return _module(env, xmlid, manipulation, commands_of(manipulation, TASK_COMMANDS)), manipulation
 
 
-def made_module(env: "Environment", name: str) -> Module | None:
-    """Return a new module of a name, in any letter case, or None."""
-    checked_environment(env, "RaveCreateModule")
-    word = next(iter(checked_kind(name, str, "RaveCreateModule: name", "a text").split()), "")
-    if word.lower() == "viewerrecorder":
-        from ravemj.rave.viewer_recorder import ViewerRecorder  # noqa: PLC0415 - rarely wanted
+def RaveCreateModule(env: "Environment", name: str) -> Module | None:
+    """Make a module, an object that executes commands; ``env.Add`` adds it to the environment.
 
-        return ViewerRecorder(env, word)
-    if word.lower() == "logging":
-        return scene_module(env, word)
-    make = {"basemanipulation": base_module, "taskmanipulation": task_module}.get(word.lower())
-    return None if make is None else make(env, word)[0]
+    Args:
+        env: The environment.
+        name: ``BaseManipulation``, ``TaskManipulation``, ``viewerrecorder``, which writes videos, or ``logging``, which
+            saves scenes; in any letter case.
+
+    Returns:
+        The module; None with a logged warning if no plugin of OpenRAVE has a module of that name.
+
+    Raises:
+        UnsupportedError: OpenRAVE has this module, and ravemj does not.
+
+    Example:
+        >>> module = RaveCreateModule(env, "BaseManipulation")
+        >>> env.Add(module, True, robot.GetName())
+        >>> RaveCreateModule(env, "urdf") is None
+        True
+    """
+    word = asked_for(env, name, "RaveCreateModule", MISSING)[0]
+    match word.lower():
+        case "basemanipulation":
+            return base_module(env, word)[0]
+        case "taskmanipulation":
+            return task_module(env, word)[0]
+        case "logging":
+            return scene_module(env, word)
+        case "viewerrecorder":
+            from ravemj.rave.viewer_recorder import ViewerRecorder  # noqa: PLC0415 - rarely wanted
+
+            return ViewerRecorder(env, word)
+        case _:
+            _LOG.warning("there is no module '%s'", name)
+            return None
+
+
+RaveCreateProblem = RaveCreateModule
 
 
 def _module(env: "Environment", xmlid: str, manipulation: Manipulation, commands: dict[str, Command]) -> Module:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from itertools import islice
-from typing import Any
 
 import numpy as np
 
@@ -23,49 +22,15 @@ from ravemj.rave.trajectory import Trajectory
 _LARGEST_JUMP = 0.5
 """The largest step of a joint [rad or m] in one step of the tool along a line; a larger one is another IK branch."""
 
-
-HAND_SEARCH = SearchOptions(tries=3, jitter=0.03)
+HAND_SEARCH = SearchOptions(maxtries=3, jitter=0.03)
 """OpenRAVE's defaults for motions to poses of the tool."""
 
 
 class BaseManipulation(Manipulation):
     """Plans motions of the active DOFs, of an arm, or of its tool."""
 
-    def move_active_joints(
-        self,
-        goals: Sequence[Floats],
-        search: SearchOptions,
-        *,
-        starts: Sequence[Floats] = (),
-        postprocessing: Postprocessing | None = None,
-        more: MoreGoals | None = None,
-    ) -> Trajectory:
-        """Return a motion of the active DOFs to one of several goals.
-
-        Args:
-            goals: The goals, each of shape (active dof,).
-            search: The effort of the search.
-            starts: The possible starts; by default the current configuration.
-            postprocessing: The smoother and its parameters; by default OpenRAVE's.
-            more: A source of further goals while the planner works.
-
-        Raises:
-            PlanningError: no motion was found.
-        """
-        dof = self.robot.GetActiveDOF()
-        if not len(goals):
-            raise PlanningError("there is no goal")
-        for one in [*goals, *starts]:
-            if len(one) != dof or not np.isfinite(one).all():
-                raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
-        return self.plan(goals, search, starts=starts, postprocessing=postprocessing, more=more)
-
     def move_manipulator(self, goals: Sequence[Floats], search: SearchOptions) -> Trajectory:
-        """Return a motion of the joints of the active manipulator's arm to one of several goals.
-
-        Args:
-            goals: The goals, each of shape (arm dof,).
-            search: The effort of the search.
+        """Return a motion of the active manipulator's arm to one of several goals, each of shape (arm dof,).
 
         Raises:
             PlanningError: no motion was found.
@@ -90,9 +55,9 @@ class BaseManipulation(Manipulation):
         goals: Sequence[IkParameterization],
         search: SearchOptions,
         *,
-        first: int = 8,
-        samples: int = 40,
-        probability: float = 0.1,
+        seedik: int = 8,
+        goalsamples: int = 40,
+        goalsampleprob: float = 0.1,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
     ) -> Trajectory:
@@ -101,9 +66,9 @@ class BaseManipulation(Manipulation):
         Args:
             goals: The goals of the tool.
             search: The effort of the search.
-            first: The number of IK solutions that are goals from the start.
-            samples: The largest number of IK solutions that are goals.
-            probability: The fraction of the iterations that ask for a further IK solution.
+            seedik: The number of IK solutions that are goals from the start.
+            goalsamples: The largest number of IK solutions that are goals.
+            goalsampleprob: The fraction of the iterations that ask for a further IK solution.
             starts: The possible starts of the arm; by default its current values.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
 
@@ -113,15 +78,15 @@ class BaseManipulation(Manipulation):
         """
         if not goals:
             raise PlanningError("there is no goal")
-        if min(first, samples) < 0:
-            raise ArgumentError(f"seedik is {first} and goalsamples {samples}, and both should be 0 or more")
+        if min(seedik, goalsamples) < 0:
+            raise ArgumentError(f"seedik is {seedik} and goalsamples {goalsamples}, and both should be 0 or more")
         manip = self._solvable()
         stream = (row for goal in goals for row in solutions(manip, goal, IkFilterOptions.CheckEnvCollisions))
-        found = list(islice(stream, min(first, samples)))
+        found = list(islice(stream, min(seedik, goalsamples)))
         if not found:
             raise PlanningError("inverse kinematics (IK) has no solution without collisions for any of the goals")
-        rest = islice(stream, samples - len(found))
-        more = MoreGoals(lambda: next(rest, None), probability)
+        rest = islice(stream, goalsamples - len(found))
+        more = MoreGoals(lambda: next(rest, None), goalsampleprob)
         with self.keeping_active():
             self.robot.SetActiveDOFs(manip.GetArmIndices())
             return self.move_active_joints(found, search, starts=starts, postprocessing=postprocessing, more=more)
@@ -136,55 +101,48 @@ class BaseManipulation(Manipulation):
         self,
         direction: Floats,
         *,
-        step: float = 0.01,
-        least: int = 0,
-        most: int = 10000,
-        start: Floats | None = None,
-        ignored: float = 0.1,
+        stepsize: float = 0.01,
+        minsteps: int = 0,
+        maxsteps: int = 10000,
+        starteematrix: Floats | None = None,
+        ignorefirstcollision: float = 0.1,
     ) -> Trajectory:
         """Return a motion of the arm that moves its tool along a straight line, as far as the arm can follow.
 
         Args:
             direction: The direction of the line in the world, of any length, shape (3,).
-            step: The distance between consecutive poses of the tool [m].
-            least: The smallest number of steps.
-            most: The largest number of steps.
-            start: ``T_world_tool`` at the start; by default the current pose.
-            ignored: The length of the line, from its start, in which collisions do not count [m].
+            stepsize: The distance between consecutive poses of the tool [m].
+            minsteps: The smallest number of steps.
+            maxsteps: The largest number of steps.
+            starteematrix: ``T_world_tool`` at the start; by default the current pose.
+            ignorefirstcollision: The length of the line, from its start, in which collisions do not count [m].
 
         Raises:
-            PlanningError: the arm can follow for less than ``least`` steps.
+            PlanningError: the arm can follow for less than ``minsteps`` steps.
         """
         length = float(np.linalg.norm(direction))
-        if not (np.isfinite(length) and length > 0 and step > 0):
-            raise ArgumentError(f"direction {direction.tolist()} and stepsize {step:g} should not be 0")
+        if not (np.isfinite(length) and length > 0 and stepsize > 0):
+            raise ArgumentError(f"direction {direction.tolist()} and stepsize {stepsize:g} should not be 0")
         manip = self._solvable()
-        T_world_tool = manip.GetTransform() if start is None else start.copy()
-        reached = 0
-        with self.keeping_active(), Bodies(self.env, self._arm_groups(manip)).kept():
+        T_world_tool = manip.GetTransform() if starteematrix is None else starteematrix
+        reached, check = 0, ignorefirstcollision < 0
+        groups = manip.GetArmConfigurationSpecification().GetGroups()
+        with self.keeping_active(), Bodies(self.env, groups).kept():
             present = manip.GetArmDOFValues()
             self.robot.SetActiveDOFs(manip.GetArmIndices())
-            first = [present] if start is None else self._nearest_first(manip, start, present, check=ignored < 0)
-            for row in first:
-                rows = self._along(manip, T_world_tool, direction / length * step, row, most, ignored)
+            is_here = starteematrix is None
+            for row in [present] if is_here else self._nearest_first(manip, T_world_tool, present, check=check):
+                step = direction / length * stepsize
+                rows = self._along(manip, T_world_tool, step, row, maxsteps, ignorefirstcollision)
                 reached = max(reached, len(rows) - 1)
-                if reached >= max(least, 1):
+                if reached >= max(minsteps, 1):
                     return self.straight(np.array(rows))
-        raise PlanningError(f"the tool gets {reached} steps far, and should get {max(least, 1)}")
+        raise PlanningError(f"the tool gets {reached} steps far, and should get {max(minsteps, 1)}")
 
     def _along(
         self, manip: Manipulator, T_world_tool: Floats, step: Floats, first: Floats, most: int, ignored: float
     ) -> list[Floats]:
-        """Return the arm's values in steps of the tool along a line, from its first values as far as it goes.
-
-        Args:
-            manip: The manipulator.
-            T_world_tool: The first pose of the tool, shape (4, 4).
-            step: The motion of the tool in one step, shape (3,) [m].
-            first: The first values of the arm.
-            most: The maximum number of steps.
-            ignored: The distance from the start in which collisions do not count [m].
-        """
+        """Return the arm's values in steps [m] of the tool along a line, from its first values as far as it goes."""
         rows = [first]
         for number in range(1, most + 1):
             pose = T_world_tool.copy()
@@ -195,9 +153,6 @@ class BaseManipulation(Manipulation):
                 break
             rows.append(row)
         return rows
-
-    def _arm_groups(self, manip: Manipulator) -> Any:  # noqa: ANN401 - groups
-        return manip.GetArmConfigurationSpecification().GetGroups()
 
     def next_solution(self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool) -> Floats | None:
         """Return the IK solution nearest to joint values, or None if none is near them and free of collisions."""
@@ -212,7 +167,13 @@ class BaseManipulation(Manipulation):
         return sorted(found, key=lambda row: float(np.abs(row - before).max()))
 
     def move_unsync_joints(
-        self, hand: Floats, indices: Sequence[int], *, tries: int = 1, divisions: int = 10, planner: str = "BasicRRT"
+        self,
+        hand: Floats,
+        indices: Sequence[int],
+        *,
+        maxtries: int = 1,
+        maxdivision: int = 10,
+        planner: str = "BasicRRT",
     ) -> Trajectory:
         """Return a motion of the active DOFs to a place where other joints can reach given values without collisions.
 
@@ -221,16 +182,16 @@ class BaseManipulation(Manipulation):
         Args:
             hand: The values for the other joints.
             indices: The DOF indices of the other joints.
-            tries: The number of attempts.
-            divisions: The number of steps in which the motion of the other joints is tested.
+            maxtries: The number of attempts.
+            maxdivision: The number of steps in which the motion of the other joints is tested.
             planner: The name of the planner.
 
         Raises:
             PlanningError: no motion was found.
         """
         robot = self.robot
-        if not np.isfinite(hand).all() or divisions < 1:
-            message = f"jointvalues are {hand.tolist()} in {divisions} divisions"
+        if not np.isfinite(hand).all() or maxdivision < 1:
+            message = f"jointvalues are {hand.tolist()} in {maxdivision} divisions"
             raise ArgumentError(f"{message}, and should be finite numbers in 1 at least")
         params = PlannerParameters()
         params.SetRobotActiveJoints(robot)
@@ -244,13 +205,13 @@ class BaseManipulation(Manipulation):
             if not test(active):
                 return False
             try:
-                parts = np.linspace(0.0, 1.0, divisions + 1)[1:]
+                parts = np.linspace(0.0, 1.0, maxdivision + 1)[1:]
                 return all(_free(moving, before + part * (hand - before)) for part in parts)
             finally:
                 moving.move(before)
 
         farthest = float((space.upper - space.lower).max())
-        for attempt in range(tries):
+        for attempt in range(maxtries):
             with values.bodies.kept(), moving.kept():
                 random = np.random.default_rng(attempt)
                 goal = nearby(space, here, hand_can_move, 1000, farthest, random)
@@ -272,15 +233,11 @@ class BaseManipulation(Manipulation):
         finally:
             self.planner = old
 
-    def jitter_active(self, tries: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
-        """Return a nearby configuration of the active DOFs without collisions, and the straight motion to it.
-
-        Args:
-            tries: The number of random configurations to test.
-            jitter: The largest change of each value [rad or m].
+    def jitter_active(self, maxiter: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
+        """Return a free configuration of the active DOFs within ``jitter`` [rad or m], and the straight motion to it.
 
         Raises:
-            PlanningError: no tested configuration is free of collisions.
+            PlanningError: none of ``maxiter`` random configurations is free of collisions.
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
@@ -289,9 +246,9 @@ class BaseManipulation(Manipulation):
         assert values.bodies is not None
         with values.bodies.kept():
             random = np.random.default_rng(0)
-            found = nearby(values.space(), here, values.allowed(), tries, jitter, random)
+            found = nearby(values.space(), here, values.allowed(), maxiter, jitter, random)
         if found is None:
-            raise PlanningError(f"{tries} configurations within {jitter:g} are all in collision")
+            raise PlanningError(f"{maxiter} configurations within {jitter:g} are all in collision")
         return found, self.straight(here[None] if found is here else np.stack([here, found]))
 
 

@@ -40,27 +40,27 @@ class GraspQuery:
             12 numbers by columns) or ``grasptrans_nocol``, which has precedence; ``igraspdir`` (the approach direction
             of the hand in the target frame), ``imanipulatordirection`` (the same in the tool frame), ``igrasppreshape``
             (the values of the gripper).
-        offset: The distance from the grasp at which the motion ends [m].
+        approachoffset: The distance from the grasp at which the motion ends [m].
         places: ``T_world_target`` of places to put the target down; a grasp has to reach one of them.
-        seed_grasps: The number of reachable grasps that are goals of one plan.
-        seed_places: The number of places that are looked for with each grasp.
-        seed_ik: The number of IK solutions of each grasp that are goals; 0 for all.
-        iterations: The maximum number of iterations of the planner.
-        random_grasps: Whether to try the grasps in random order.
-        random_places: Whether to try the places in random order.
+        seedgrasps: The number of reachable grasps that are goals of one plan.
+        seeddests: The number of places that are looked for with each grasp.
+        seedik: The number of IK solutions of each grasp that are goals; 0 for all.
+        maxiter: The maximum number of iterations of the planner.
+        randomgrasps: Whether to try the grasps in random order.
+        randomdests: Whether to try the places in random order.
     """
 
     target: KinBody
     grasps: Floats
     indices: Mapping[str, int]
-    offset: float = 0.0
+    approachoffset: float = 0.0
     places: Sequence[Floats] = ()
-    seed_grasps: int = 20
-    seed_places: int = 5
-    seed_ik: int = 0
-    iterations: int = 4000
-    random_grasps: bool = True
-    random_places: bool = True
+    seedgrasps: int = 20
+    seeddests: int = 5
+    seedik: int = 0
+    maxiter: int = 4000
+    randomgrasps: bool = True
+    randomdests: bool = True
 
 
 class GraspPlan(NamedTuple):
@@ -81,14 +81,7 @@ class GraspPlan(NamedTuple):
 
 @dataclass
 class _Candidate:
-    """A reachable grasp.
-
-    Attributes:
-        index: The index of the grasp.
-        preshape: The values of the gripper.
-        rows: The values of the arm at the end of the motion.
-        goals: The goals of the tool at the places.
-    """
+    """A reachable grasp: its index, values of the gripper, of the arm there, and goals of the tool at the places."""
 
     index: int
     preshape: Floats
@@ -114,12 +107,12 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
         raise PlanningError(f"manipulator '{manip.GetName()}' has no solver of inverse kinematics (IK)")
     seconds, reachable, refused = 0.0, 0, "no grasp can be reached without collisions"
     found = _Candidates(base, manip, query).all()
-    while batch := _first(found, max(1, query.seed_grasps)):
+    while batch := _first(found, max(1, query.seedgrasps)):
         reachable += len(batch)
         begin = time.perf_counter()
         try:
             with robot.CreateRobotStateSaver(SaveParameters.ActiveDOF):
-                traj, chosen = _planned(base, manip, batch, query.iterations)
+                traj, chosen = _planned(base, manip, batch, query.maxiter)
         except PlanningError as error:
             refused = f"{reachable} grasps can be reached, and there is no way to them: {error}"
             continue
@@ -143,7 +136,7 @@ def _planned(
     robot.SetActiveDOFs([*manip.GetArmIndices().tolist(), *gripper[changed].tolist()])
     owners = [one for one in batch for _ in one.rows]
     goals = [np.append(row, one.preshape[changed]) for one in batch for row in one.rows]
-    traj = base.move_active_joints(goals, SearchOptions(tries=1, iterations=iterations, jitter=0.03))
+    traj = base.move_active_joints(goals, SearchOptions(maxtries=1, maxiter=iterations, jitter=0.03))
     last = traj.GetWaypoint(-1, robot.GetActiveConfigurationSpecification())
     return traj, owners[int(np.argmin([np.abs(goal - last).max() for goal in goals]))]
 
@@ -162,7 +155,7 @@ class _Candidates:
     def all(self) -> Iterator[_Candidate]:
         """Yield the reachable grasps. Between two of them, the robot and the target are in their original state."""
         count, query = len(self._query.grasps), self._query
-        for index in self._random.permutation(count).tolist() if query.random_grasps else range(count):
+        for index in self._random.permutation(count).tolist() if query.randomgrasps else range(count):
             with _kept(self._base.robot, query.target):
                 candidate = self._candidate(index)
             if candidate is not None:
@@ -218,23 +211,23 @@ class _Candidates:
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
         """Return the values of the arm before a grasp from which the tool reaches it along a straight line."""
         start = T_world_tool.copy()
-        start[:3, 3] -= self._query.offset * direction
+        start[:3, 3] -= self._query.approachoffset * direction
         rows: list[Floats] = []
         for row in solutions(self._manip, _goal(start), IkFilterOptions.CheckEnvCollisions):
             if self._gets_there(row, start, direction):
                 rows.append(row)
-            if len(rows) == self._query.seed_ik > 0:
+            if len(rows) == self._query.seedik > 0:
                 break
         return rows
 
     def _gets_there(self, row: Floats, start: Floats, direction: Floats) -> bool:
-        count = int(np.ceil(self._query.offset / _STEP))
+        count = int(np.ceil(self._query.approachoffset / _STEP))
         enabled = self._query.target.GetLinkEnableStates()
         self._query.target.Enable(False)  # the hand may touch the body that it is about to grasp
         try:
             for number in range(1, count + 1):
                 pose = start.copy()
-                pose[:3, 3] += direction * (self._query.offset * number / count)
+                pose[:3, 3] += direction * (self._query.approachoffset * number / count)
                 after = self._base.next_solution(self._manip, pose, row, check=True)
                 if after is None:
                     return False
@@ -247,12 +240,12 @@ class _Candidates:
         """Return the goals of the tool at the places where the target can be put down with a grasp."""
         query, found = self._query, list[IkParameterization]()
         count = len(query.places)
-        for place in self._random.permutation(count).tolist() if query.random_places else range(count):
+        for place in self._random.permutation(count).tolist() if query.randomdests else range(count):
             T_world_target = query.places[place]
             goal = _goal(T_world_target @ T_target_tool)
             if self._is_free(T_world_target) and self._is_reached(goal):
                 found.append(goal)
-            if len(found) == query.seed_places > 0:
+            if len(found) == query.seeddests > 0:
                 break
         return found
 

@@ -36,16 +36,16 @@ class SearchOptions(NamedTuple):
     """The effort of a search, and the constraint on its result.
 
     Attributes:
-        tries: The number of calls of the planner, with other random numbers each time.
-        iterations: The maximum number of iterations of each call.
+        maxtries: The number of calls of the planner, with other random numbers each time.
+        maxiter: The maximum number of iterations of each call.
         jitter: The largest change of each value of a start or goal in collision, to make it free [rad or m]. The
             motion between the two is not tested.
         constraint: The constraint of the tool along the whole motion; None for none. With a constraint, starts and
             goals are not changed, and the motion consists of short straight lines between configurations that keep it.
     """
 
-    tries: int = 2
-    iterations: int = 4000
+    maxtries: int = 2
+    maxiter: int = 4000
     jitter: float = 0.04
     constraint: ToolConstraint | None = None
 
@@ -91,7 +91,7 @@ class Manipulation:
         """Restore the active DOFs on leaving."""
         return self.robot.CreateRobotStateSaver(SaveParameters.ActiveDOF)
 
-    def plan(
+    def move_active_joints(
         self,
         goals: Sequence[Floats],
         search: SearchOptions,
@@ -103,18 +103,20 @@ class Manipulation:
         """Return a motion of the active DOFs to one of several goals.
 
         Args:
-            goals: The goals; values outside the limits are set to the limits.
-            search: The effort of the search; each try has other random numbers.
+            goals: The goals, each of shape (active dof,); values outside the limits are set to the limits.
+            search: The effort of the search.
             starts: The possible starts; by default the current configuration.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
             more: A source of further goals while the planner works.
 
         Raises:
             PlanningError: no motion was found; the message says why.
+            ArgumentError: a goal or start has another shape, or is not finite.
         """
+        self._check(goals, starts)
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
-        params.SetMaxIterations(search.iterations)
+        params.SetMaxIterations(search.maxiter)
         if postprocessing is not None:
             params.SetPostProcessing(*postprocessing)
         if more is not None:
@@ -133,7 +135,7 @@ class Manipulation:
         params.SetInitialConfig(np.array(moved[0]).ravel())
         params.SetGoalConfig(np.array(moved[1]).ravel())
         status = PlannerStatus("no attempt was allowed; give at least one try")
-        for attempt in range(search.tries):
+        for attempt in range(search.maxtries):
             params.SetRandomGeneratorSeed(attempt)
             planner = needed_planner(self.env, self.planner)
             traj = Trajectory(self.env, "")
@@ -143,6 +145,14 @@ class Manipulation:
                 self._join(traj, wanted, moved)
                 return traj
         raise PlanningError(status.description)
+
+    def _check(self, goals: Sequence[Floats], starts: Sequence[Floats]) -> None:
+        dof = self.robot.GetActiveDOF()
+        if not len(goals):
+            raise PlanningError("there is no goal")
+        for one in [*goals, *starts]:
+            if len(one) != dof or not np.isfinite(one).all():
+                raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
 
     def _jittered(self, values: Values, configurations: Sequence[Floats], jitter: float) -> list[Floats]:
         """Return configurations, each one in collision replaced by a free one nearby, if one is found."""
@@ -169,10 +179,7 @@ class Manipulation:
                 new.join(new.retimed(anchor, (1.0, 1.0), retimer, ""), anchor)
 
     def straight(self, points: Floats) -> Trajectory:
-        """Return the fastest motion of the active DOFs along straight lines.
-
-        Args:
-            points: The active values at the waypoints, shape (m, n).
+        """Return the fastest motion of the active DOFs along straight lines through points (m, n).
 
         Raises:
             PlanningError: the retimer finds no times.

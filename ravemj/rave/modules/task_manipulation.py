@@ -37,10 +37,7 @@ class TaskManipulation(Manipulation):
         self._base = BaseManipulation(env)
 
     def plan_grasp(self, query: GraspQuery) -> GraspPlan:
-        """Return a motion of the arm of the active manipulator to one of several grasps.
-
-        Args:
-            query: The grasps.
+        """Return a motion of the active manipulator's arm to one of several grasps.
 
         Raises:
             PlanningError: no grasp can be reached.
@@ -52,14 +49,9 @@ class TaskManipulation(Manipulation):
     def evaluate_constraints(
         self, constraint: ToolConstraint, configurations: Sequence[Floats]
     ) -> tuple[list[int], list[Floats]]:
-        """Project configurations of the arm onto a constraint.
+        """Project configurations of the active DOFs, those of the arm, onto a constraint.
 
-        Args:
-            constraint: The constraint.
-            configurations: Values of the active DOFs, which have to be those of the arm.
-
-        Returns:
-            The number of steps for each configuration, -1 if it does not reach the constraint, and the results.
+        Return the number of steps for each, -1 if it does not reach the constraint, and the results.
 
         Raises:
             ArgumentError: the active DOFs are not the joints of the arm, or the constraint has numbers of none.
@@ -97,12 +89,9 @@ class TaskManipulation(Manipulation):
     def release_fingers(
         self, directions: Floats | None = None, target: KinBody | None = None, step: float = _STEP
     ) -> tuple[Floats, Trajectory]:
-        """Open the gripper: return the last values of its joints, and the motion.
+        """Open the gripper, and let a target go: return the last values of its joints, and the motion.
 
-        Args:
-            directions: The sign of the motion of each joint; by default against the closing direction.
-            target: A grabbed body to release.
-            step: The step in which joints move between two collision tests [rad or m].
+        Each direction is the sign of the motion of a joint, by default against the closing direction.
 
         Raises:
             PlanningError: the robot has no gripper.
@@ -114,12 +103,7 @@ class TaskManipulation(Manipulation):
         return final, self._motion(dofs, final)
 
     def release_active(self, directions: Floats, step: float = _STEP) -> tuple[Floats, Trajectory]:
-        """Move the active joints to one side: return their last values, and the motion.
-
-        Args:
-            directions: The sign of the motion of each active joint.
-            step: The step in which joints move between two collision tests [rad or m].
-        """
+        """Move each active joint to the side of its sign in ``directions``; return the last values and the motion."""
         dofs = [int(dof) for dof in self.robot.GetActiveDOFIndices()]
         if len(directions) != len(dofs):
             raise ArgumentError(f"movingdir: has {len(directions)} numbers, and there are {len(dofs)} active joints")

@@ -81,11 +81,7 @@ Reader = Callable[[Tokens], Any]
 
 
 def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
-    """Return the options in the arguments of a command.
-
-    Args:
-        text: The names of options, each followed by the tokens that its reader takes.
-        readers: The readers, by the names of the options in lower case.
+    """Return the options in a text: names, each followed by the tokens that its reader takes.
 
     Raises:
         ArgumentError: an option is unknown, or is followed by wrong tokens.

@@ -87,11 +87,10 @@ class Bodies:
         self._free: set[KinBody] = set()  # whose joints stay as they are, and have no self-collision
 
     def numbers(self, name: str) -> Floats:
-        """Return one setting for every value of a configuration, shape (n,).
+        """Return one setting of each value, shape (n,).
 
-        Args:
-            name: The setting: ``lower``, ``upper``, ``max_velocity``, ``max_acceleration``, ``max_jerk``, ``weight`` or
-                ``resolution``.
+        Settings are ``lower``, ``upper``, ``max_velocity``, ``max_acceleration``, ``max_jerk``, ``weight`` and
+        ``resolution``.
         """
         result = np.zeros(self._dof)
         for part in self._parts:
@@ -244,14 +243,9 @@ def _numbers(part: _Part, name: str) -> Any:  # noqa: ANN401 - numbers
 
 
 def space_of(coordinates: Coordinates, lower: Floats, upper: Floats, weights: Floats, resolution: Floats) -> Space:
-    """Return the configuration space for planners. Circular values are bounded, because planners sample between limits.
+    """Return the configuration space for planners, from vectors of shape (n,); a resolution of 0 selects OpenRAVE's.
 
-    Args:
-        coordinates: The kinds of the values.
-        lower: Lower limits, shape (n,).
-        upper: Upper limits, shape (n,).
-        weights: Weights of the values in distances, shape (n,).
-        resolution: Steps for collision tests, shape (n,); 0 selects OpenRAVE's default.
+    Circular values are bounded, because planners sample between limits.
     """
     resolution = np.where(resolution > 0, resolution, _RESOLUTION)
     lower = np.where(coordinates.circular, -_ROUND, lower)

@@ -48,11 +48,7 @@ class EndWaypoint:
         self._velocities = checked_vector(velocities, dof, "dofvelocities")
 
     def anchor(self, index: int, replaced: int) -> int:
-        """Return the index of the existing waypoint that the new one is connected to.
-
-        Args:
-            index: The place of the new waypoint: 0, or the number of waypoints.
-            replaced: How many existing waypoints at that end the new one replaces.
+        """Return the index of the waypoint that the new one, which replaces some at its end, is connected to.
 
         Raises:
             ArgumentError: the index is not an end, or too few waypoints would be left.
@@ -88,13 +84,9 @@ class EndWaypoint:
         return way
 
     def retimed(self, anchor: int, factors: tuple[float, float], plannername: str, extra: str) -> Trajectory:
-        """Return the timed segment between the two waypoints.
+        """Return the timed segment between the two waypoints, with factors of the velocity and acceleration limits.
 
-        Args:
-            anchor: The index of the existing waypoint.
-            factors: Factors of the velocity and acceleration limits.
-            plannername: The retimer; empty selects the one that fits the interpolation of the trajectory.
-            extra: Further parameters of the retimer as XML text.
+        An empty name selects the retimer that fits the interpolation of the trajectory.
 
         Raises:
             RavemjError: the retimer finds no times.

@@ -76,14 +76,9 @@ class Hand:
     dof: int
 
     def motion(self, values: Floats) -> tuple[Floats, Floats]:
-        """Move the robot to a configuration, and return the pose of its tool and the Jacobian.
+        """Move the robot to a configuration (n,), and return ``T_world_tool`` and its Jacobian, shape (6, n).
 
-        Args:
-            values: A configuration, shape (n,).
-
-        Returns:
-            ``T_world_tool``, shape (4, 4), and its Jacobian in world axes, shape (6, n): three rows for the velocity of
-            the origin, then three for the angular velocity.
+        In world axes, its first rows are the velocity of the origin, its last the angular velocity.
         """
         self.bodies.move(values)
         jacobian = np.zeros((6, self.dof))
@@ -92,11 +87,7 @@ class Hand:
         return self.manip.GetTransform(), jacobian
 
     def to_pose(self, T_world_goal: Floats) -> Error:
-        """Return the error function of a goal pose: the translation [m], then the rotation vector [rad], that are left.
-
-        Args:
-            T_world_goal: The goal pose of the tool, shape (4, 4).
-        """
+        """Return the error function of a goal pose (4, 4): the translation and rotation vectors that are left."""
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
             T_world_tool, jacobian = self.motion(values)

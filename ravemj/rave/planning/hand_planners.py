@@ -16,7 +16,7 @@ from ravemj.planning.tracking import track
 from ravemj.rave.enums import PlannerStatusCode
 from ravemj.rave.planning.hand import Hand, hand_of
 from ravemj.rave.planning.parameter_text import CHAIN
-from ravemj.rave.planning.path_planners import PathPlanner
+from ravemj.rave.planning.path_planners import PathPlanner, Query
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import post_process
 from ravemj.rave.planning.retimers import flag
@@ -221,21 +221,14 @@ class GraspGradient(PathPlanner):
         T_world_target = target.GetTransform()
         return [T_world_target @ T_target_tool for T_target_tool in matrixFromPoses(np.reshape(numbers, (-1, 7)))]
 
-    def _search(
-        self,
-        edges: Edges,
-        starts: Sequence[Floats],
-        goals: Sequence[Floats],
-        budget: Budget,
-        random: np.random.Generator,
-        values: Values,
-    ) -> Search:
-        del goals
+    def _search(self, query: Query) -> Search:
+        values, start = query.values, query.starts[0]
         hand = hand_of(values)
         errors = [hand.to_pose(grasp) for grasp in self._grasps(values)]
-        far = [float(np.linalg.norm(error(starts[0])[0])) for error in errors]
+        far = [float(np.linalg.norm(error(start)[0])) for error in errors]
         order: list[int] = np.argsort(far).tolist()
         near = [place for place in order if far[place] <= values.tag("graspdistthresh", 1.4)]
         tries = int(values.tag("numgradsamples", 5))
-        found = descend(edges, starts[0], [errors[place] for place in near], _REACHED, budget, random, tries)
+        wanted = [errors[place] for place in near]
+        found = descend(query.edges, start, wanted, _REACHED, query.budget, query.random, tries)
         return replace(found, goal=near[found.goal] if found.path is not None else -1)

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.planning.retiming import topp_ra
-from ravemj.rave.interface import checked_environment
+from ravemj.rave.interface import asked_for
 from ravemj.rave.planning.hand_planners import GraspGradient, WorkspaceTrajectoryTracker
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
@@ -64,11 +63,7 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
     Example:
         >>> planner = RaveCreatePlanner(env, "birrt")
     """
-    checked_environment(env, "RaveCreatePlanner")
-    checked_kind(name, str, "RaveCreatePlanner: name", "a text")
-    word = next(iter(name.split()), "")
-    if word.lower() in MISSING:
-        raise UnsupportedError(f"planner '{word}'", MISSING[word.lower()])
+    word = asked_for(env, name, "RaveCreatePlanner", MISSING)[0]
     make = _maker(word)
     if make is None:
         _LOG.warning("there is no planner '%s'", name)
@@ -116,13 +111,9 @@ def run_planner(traj: Trajectory, params: PlannerParameters, name: str) -> Plann
 
 
 def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.0), extra: str = "") -> PlannerStatus:
-    """Run a retimer or a smoother on a trajectory of any bodies.
+    """Run a retimer or a smoother on a trajectory of any bodies, in place.
 
-    Args:
-        traj: The trajectory, changed in place.
-        name: The name of the retimer or smoother.
-        factors: Factors of the velocity limits and of the acceleration limits.
-        extra: Further parameters as XML text.
+    The factors are of the velocity and of the acceleration limits; ``extra`` are further parameters as XML text.
     """
     return run_planner(traj, of_bodies(traj, extra, *factors), name)
 
@@ -130,17 +121,7 @@ def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.
 def of_bodies(
     traj: Trajectory, extra: str = "", maxvelmult: float = 1.0, maxaccelmult: float = 1.0
 ) -> PlannerParameters:
-    """Return planner parameters for the joints and poses that a trajectory moves.
-
-    Raises:
-        ArgumentError: a factor is not a positive number.
-
-    Args:
-        traj: The trajectory.
-        extra: Further parameters as XML text.
-        maxvelmult: Factor of the velocity limits.
-        maxaccelmult: Factor of the acceleration limits.
-    """
+    """Return planner parameters for the joints and poses that a trajectory moves; see ``scaled``."""
     spec = ConfigurationSpecification.of(traj.GetConfigurationSpecification().GetGroups())
     for group in spec.GetGroups():
         if not is_position(group):

@@ -1,16 +1,11 @@
 """The planners of OMPL, under the names of OpenRAVE's plugin or_ompl: ``OMPL_RRTConnect`` and so on."""
 
 import logging
-from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from ravemj.core.transforms import Floats
-from ravemj.planning.edges import Edges
 from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
-from ravemj.planning.rrt import Budget, Search
-from ravemj.rave.planning.path_planners import PathPlanner
+from ravemj.planning.rrt import Search
+from ravemj.rave.planning.path_planners import PathPlanner, Query
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Values
 from ravemj.rave.trajectory import Trajectory
@@ -53,19 +48,12 @@ class OmplPlanner(PathPlanner):
     def _needs_goal(self, values: Values) -> bool:
         return True
 
-    def _search(
-        self,
-        edges: Edges,
-        starts: Sequence[Floats],
-        goals: Sequence[Floats],
-        budget: Budget,
-        random: np.random.Generator,
-        values: Values,
-    ) -> Search:
+    def _search(self, query: Query) -> Search:
         classes = planner_classes()
         assert classes is not None, "there would be no planner"
         planner = classes[self._xmlid.lower().removeprefix(PREFIX)]
-        if "time_limit" in values.tags:
-            budget = replace(budget, seconds=values.tag("time_limit", 0.0))
-        seed = int(random.integers(2**31))
-        return search_with_ompl(planner, edges, starts, goals, budget, seed, values.tags)
+        budget, tags = query.budget, query.values.tags
+        if "time_limit" in tags:
+            budget = replace(budget, seconds=query.values.tag("time_limit", 0.0))
+        seed = int(query.random.integers(2**31))
+        return search_with_ompl(planner, query.edges, query.starts, query.goals, budget, seed, tags)

@@ -65,15 +65,7 @@ def parameters_text(
     postprocessing: tuple[str, str],
     extra: str,
 ) -> str:
-    """Return planner parameters as the text of a ``<plannerparameters>`` element.
-
-    Args:
-        groups: The layout of a configuration.
-        vectors: Vectors, by the names of ``VECTORS``.
-        numbers: Scalars, by the names of ``NUMBERS``.
-        postprocessing: The planner that processes the path, and its parameters as XML text.
-        extra: Further elements as XML text.
-    """
+    """Return planner parameters as a ``<plannerparameters>`` element; ``extra`` are further elements as text."""
     planner, inner = postprocessing
     lines = [f"<{name}>{' '.join(repr(float(value)) for value in vectors[name])}</{name}>" for name in VECTORS]
     lines += [f"<{name}>{_number_text(numbers[name])}</{name}>" for name in NUMBERS]
@@ -86,46 +78,43 @@ def _number_text(number: float) -> str:
 
 
 def read_tags(text: str) -> Tags:
-    """Return the content of a text of planner parameters. A text that is not XML is empty, as in OpenRAVE.
+    """Return the content of a text of planner parameters. A text without elements is empty, as in OpenRAVE.
 
     Args:
         text: Elements, or a whole ``<plannerparameters>``.
 
     Raises:
-        ArgumentError: an element of numbers contains something else.
+        ArgumentError: the text is not well-formed XML, or an element of numbers contains something else.
     """
-    found = Tags({}, {}, None, None, {})
-    root = _parsed(text)
-    for element in root.children if root is not None else ():
-        found = _with(found, element, text)
-    return found
+    groups: list[Group] | None = None
+    postprocessing: tuple[str, str] | None = None
+    numbers, vectors, others = dict[str, float](), dict[str, Floats](), dict[str, str]()
+    for element in _elements(text):
+        name, content = element.tag, (element.text or "").strip()
+        if name in NUMBERS:
+            numbers[name] = _numbers(name, content, 1)[0]
+        elif name in VECTORS:
+            vectors[name] = np.array(_numbers(name, content))
+        elif name == "configuration":
+            groups = groups_of(element)
+        elif name == _POSTPROCESSING:
+            postprocessing = element.attributes.get("planner", ""), _inner(element)
+        else:
+            others[name] = _inner(element) if element.children else content
+    return Tags(numbers, vectors, groups, postprocessing, others)
 
 
-def _parsed(text: str) -> "Element | None":
+def _elements(text: str) -> "Sequence[Element]":
     from ravemj.formats.openrave_xml.tree import parse  # noqa: PLC0415 - slow to import
 
     stripped = text.strip()
     if "<" not in stripped:
-        return None
+        return ()
     try:
         root = parse(f"<all>{stripped}</all>".encode(), "planner parameters").root
-    except SourceError:
-        return None
-    inner = [child for child in root.children if child.tag == _ROOT]
-    return inner[0] if inner else root
-
-
-def _with(found: Tags, element: "Element", text: str) -> Tags:
-    name, content = element.tag, (element.text or "").strip()
-    if name in NUMBERS:
-        return found._replace(numbers={**found.numbers, name: _numbers(name, content, 1)[0]})
-    if name in VECTORS:
-        return found._replace(vectors={**found.vectors, name: np.array(_numbers(name, content))})
-    if name == "configuration":
-        return found._replace(groups=groups_of(element))
-    if name == _POSTPROCESSING:
-        return found._replace(postprocessing=(element.attributes.get("planner", ""), _inner(element)))
-    return found._replace(others={**found.others, name: _inner(element) if element.children else content})
+    except SourceError as error:
+        raise ArgumentError(f"planner parameters: {error.message}: {stripped!r}") from None
+    return next((child for child in root.children if child.tag == _ROOT), root).children
 
 
 def _inner(element: "Element") -> str:

@@ -102,67 +102,35 @@ class PlannerParameters(ApiObject):
         self.given.vectors[name] = checked_numbers(values, name).ravel()
 
     def SetGoalConfig(self, values: ArrayLike) -> None:
-        """Set the goal, or several goals one after the other.
-
-        Args:
-            values: The goal values [rad or m], shape (GetDOF(),) or a multiple of it.
-        """
+        """Set the goal ``values`` [rad or m], shape (GetDOF(),), or several goals one after the other."""
         self._set("_vgoalconfig", values)
 
     def SetInitialConfig(self, values: ArrayLike) -> None:
-        """Set the start, or several starts one after the other, in place of the robot's configuration.
-
-        Args:
-            values: The start values [rad or m], shape (GetDOF(),) or a multiple of it.
-        """
+        """Set the start ``values`` [rad or m], shape (GetDOF(),), or several starts one after the other."""
         self._set("_vinitialconfig", values)
 
     def SetInitialConfigVelocities(self, velocities: ArrayLike) -> None:
-        """Set the velocities at the start.
-
-        Args:
-            velocities: The velocities [rad/s or m/s], shape (GetDOF(),).
-        """
+        """Set the ``velocities`` at the start [rad/s or m/s], shape (GetDOF(),)."""
         self._set("_vinitialconfigvelocities", velocities)
 
     def SetGoalConfigVelocities(self, velocities: ArrayLike) -> None:
-        """Set the velocities at the goal.
-
-        Args:
-            velocities: The velocities [rad/s or m/s], shape (GetDOF(),).
-        """
+        """Set the ``velocities`` at the goal [rad/s or m/s], shape (GetDOF(),)."""
         self._set("_vgoalconfigvelocities", velocities)
 
     def SetConfigVelocityLimit(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits.
-
-        Args:
-            velocities: A limit for each value [rad/s or m/s], shape (GetDOF(),).
-        """
+        """Set the limits of ``velocities`` [rad/s or m/s], shape (GetDOF(),)."""
         self._set("_vconfigvelocitylimit", velocities)
 
     def SetConfigAccelerationLimit(self, accelerations: ArrayLike) -> None:
-        """Set the acceleration limits.
-
-        Args:
-            accelerations: A limit for each value [rad/s^2 or m/s^2], shape (GetDOF(),).
-        """
+        """Set the limits of ``accelerations`` [rad/s^2 or m/s^2], shape (GetDOF(),)."""
         self._set("_vconfigaccelerationlimit", accelerations)
 
     def SetConfigJerkLimit(self, jerks: ArrayLike) -> None:
-        """Set the jerk limits.
-
-        Args:
-            jerks: A limit for each value [rad/s^3 or m/s^3], shape (GetDOF(),).
-        """
+        """Set the limits of ``jerks`` [rad/s^3 or m/s^3], shape (GetDOF(),)."""
         self._set("_vconfigjerklimit", jerks)
 
     def SetConfigResolution(self, resolution: ArrayLike) -> None:
-        """Set the step in which planners test a line for collisions.
-
-        Args:
-            resolution: A step for each value [rad or m], shape (GetDOF(),).
-        """
+        """Set the ``resolution`` of collision tests of lines, a step for each value [rad or m], shape (GetDOF(),)."""
         self._set("_vconfigresolution", resolution)
 
     def GetConfigVelocityLimit(self) -> Floats:
@@ -182,35 +150,22 @@ class PlannerParameters(ApiObject):
         return self.given.vectors["_vconfigresolution"].copy()
 
     def SetMaxIterations(self, nMaxIterations: int) -> None:
-        """Set the maximum number of iterations of the planner.
-
-        Args:
-            nMaxIterations: The number; 0 selects the planner's own.
-        """
+        """Set the maximum number of iterations, ``nMaxIterations``; 0 selects the planner's own."""
         self.given.numbers["_nmaxiterations"] = int(checked_vector([nMaxIterations], 1, "nMaxIterations").item())
 
     def SetMaxPlanningTime(self, nMaxPlanningTime: int) -> None:
-        """Set the maximum time of the planner.
-
-        Args:
-            nMaxPlanningTime: The time [ms]; 0 sets no limit.
-        """
+        """Set the maximum time of the planner, ``nMaxPlanningTime`` [ms]; 0 sets no limit."""
         self.given.numbers["_nmaxplanningtime"] = int(checked_vector([nMaxPlanningTime], 1, "nMaxPlanningTime").item())
 
     def SetStepLength(self, fStepLength: float) -> None:
-        """Set the step length. Retimers round all times up to multiples of it.
+        """Set the step length ``fStepLength`` [s].
 
-        Args:
-            fStepLength: The step length [s]; 0 leaves the times as they are.
+        Retimers round all times up to multiples of it; 0 leaves them as they are.
         """
         self.given.numbers["_fsteplength"] = checked_vector([fStepLength], 1, "fStepLength").item()
 
     def SetRandomGeneratorSeed(self, seed: int) -> None:
-        """Set the seed of random numbers, which makes plans repeatable.
-
-        Args:
-            seed: The seed.
-        """
+        """Set the ``seed`` of random numbers, which makes plans repeatable."""
         self.given.numbers["_nrandomgeneratorseed"] = int(checked_vector([seed], 1, "seed").item())
 
     def SetPostProcessing(self, plannername: str, plannerparameters: str) -> None:
@@ -301,20 +256,16 @@ class PlannerParameters(ApiObject):
         return {"configuration": moved, "returncode": 1}
 
     def DistMetricFn(self, values0: ArrayLike, values1: ArrayLike) -> float:
-        """Return the distance of two configurations: the square root of the sum of (weight * difference)^2.
+        """Return the distance of two configurations.
 
-        Args:
-            values0: One configuration, shape (GetDOF(),).
-            values1: The other configuration, shape (GetDOF(),).
+        It is the root of the sum of (weight * (``values0`` - ``values1``))^2; both have shape (GetDOF(),).
         """
         return self.given.space().distance(self._checked(values0), self._checked(values1))
 
     def DiffStateFn(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
-        """Return ``values0 - values1``. The difference of circular joints is the one within [-pi, pi].
+        """Return ``values0 - values1``, shape (GetDOF(),).
 
-        Args:
-            values0: A configuration, shape (GetDOF(),).
-            values1: The configuration to subtract, shape (GetDOF(),).
+        The difference of circular joints is the one within [-pi, pi].
         """
         return self.given.space().difference(self._checked(values0), self._checked(values1))
 

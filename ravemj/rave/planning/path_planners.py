@@ -1,10 +1,10 @@
 """Planners that find a path without collisions."""
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -33,6 +33,17 @@ _SHORTCUTS = 100
 
 _SPACING = 10
 """The largest distance of the waypoints of a path that no planner processes, in step lengths."""
+
+
+class Query(NamedTuple):
+    """What a search takes: the test of lines, the starts and goals without collisions, its limits, and the problem."""
+
+    edges: Edges
+    starts: Sequence[Floats]
+    goals: Sequence[Floats]
+    budget: Budget
+    random: np.random.Generator
+    values: Values
 
 
 class PathPlanner(Planner):
@@ -115,7 +126,7 @@ class PathPlanner(Planner):
             iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
             budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
             random = values.random()
-            search = self._search(edges, starts, goals, budget, random, values)
+            search = self._search(Query(edges, starts, goals, budget, random, values))
             if isinstance(edges, ConstrainedEdges) and search.path is not None:
                 search = _bent(edges, search, search.path, random)
         self._search_made = search
@@ -128,15 +139,7 @@ class PathPlanner(Planner):
         return self._processed(values, traj, search)
 
     @abstractmethod
-    def _search(
-        self,
-        edges: Edges,
-        starts: Sequence[Floats],
-        goals: Sequence[Floats],
-        budget: Budget,
-        random: np.random.Generator,
-        values: Values,
-    ) -> Search: ...
+    def _search(self, query: Query) -> Search: ...
 
     def _ended(self, search: Search) -> PlannerStatus:
         size = sum(tree.count for tree in search.trees)
@@ -159,22 +162,10 @@ class PathPlanner(Planner):
         """Return the indices of the start and of the goal that the last path connects; -1 where there is none."""
         return (-1, -1) if self._search_made is None else (self._search_made.start, self._search_made.goal)
 
-    def _get_goal_index(self, arguments: str) -> str:
-        del arguments
-        return str(self._ends()[1])
-
-    def _get_start_index(self, arguments: str) -> str:
-        del arguments
-        return str(self._ends()[0])
-
-    def _get_both_indices(self, arguments: str) -> str:
-        del arguments
-        return "{} {}".format(*self._ends())
-
-    _commands: ClassVar = {
-        "GetGoalIndex": _get_goal_index,
-        "GetInitGoalIndices": _get_both_indices,
-        "GetInitIndex": _get_start_index,
+    _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {
+        "GetGoalIndex": lambda self, _: str(self._ends()[1]),
+        "GetInitGoalIndices": lambda self, _: "{} {}".format(*self._ends()),
+        "GetInitIndex": lambda self, _: str(self._ends()[0]),
     }
 
 
@@ -183,16 +174,8 @@ class BiRrt(PathPlanner):
 
     _defaults: ClassVar[Mapping[str, str]] = {"minimumgoalpaths": "1"}
 
-    def _search(
-        self,
-        edges: Edges,
-        starts: Sequence[Floats],
-        goals: Sequence[Floats],
-        budget: Budget,
-        random: np.random.Generator,
-        values: Values,
-    ) -> Search:
-        more = None
+    def _search(self, query: Query) -> Search:
+        more, values = None, query.values
         if values.goal_sampler is not None:
             sample, probability = values.goal_sampler
 
@@ -202,7 +185,7 @@ class BiRrt(PathPlanner):
                 return goal if allowed else None
 
             more = MoreGoals(next_goal, probability)
-        return connect(edges, starts, goals, budget, random, more)
+        return connect(query.edges, query.starts, query.goals, query.budget, query.random, more)
 
 
 class BasicRrt(PathPlanner):
@@ -213,16 +196,9 @@ class BasicRrt(PathPlanner):
     def _needs_goal(self, values: Values) -> bool:
         return True
 
-    def _search(
-        self,
-        edges: Edges,
-        starts: Sequence[Floats],
-        goals: Sequence[Floats],
-        budget: Budget,
-        random: np.random.Generator,
-        values: Values,
-    ) -> Search:
-        return single(edges, starts, goals, budget, random, values.tag("goalbias", 0.05))
+    def _search(self, query: Query) -> Search:
+        bias = query.values.tag("goalbias", 0.05)
+        return single(query.edges, query.starts, query.goals, query.budget, query.random, bias)
 
 
 class RaStar(PathPlanner):
@@ -231,16 +207,8 @@ class RaStar(PathPlanner):
     def _needs_goal(self, values: Values) -> bool:
         return True
 
-    def _search(
-        self,
-        edges: Edges,
-        starts: Sequence[Floats],
-        goals: Sequence[Floats],
-        budget: Budget,
-        random: np.random.Generator,
-        values: Values,
-    ) -> Search:
-        return search_by_cost(edges, starts, goals, budget, random)
+    def _search(self, query: Query) -> Search:
+        return search_by_cost(query.edges, query.starts, query.goals, query.budget, query.random)
 
 
 class ExplorationRrt(PathPlanner):
@@ -251,16 +219,9 @@ class ExplorationRrt(PathPlanner):
     def _needs_goal(self, values: Values) -> bool:
         return False
 
-    def _search(
-        self,
-        edges: Edges,
-        starts: Sequence[Floats],
-        goals: Sequence[Floats],
-        budget: Budget,
-        random: np.random.Generator,
-        values: Values,
-    ) -> Search:
-        tree = explore(edges, starts, int(values.tag("expectedsize", 100)), budget, random)
+    def _search(self, query: Query) -> Search:
+        size = int(query.values.tag("expectedsize", 100))
+        tree = explore(query.edges, query.starts, size, query.budget, query.random)
         return Search(End.found, tree.nodes(), 0, -1, tree.count, (tree,))
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:

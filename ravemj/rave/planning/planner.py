@@ -14,7 +14,6 @@ from ravemj.rave.planning.status import PlannerProgress, PlannerStatus
 from ravemj.rave.planning.values import Values
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
-from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -38,16 +37,10 @@ class Planner(Interface):
     """The extra parameters of this kind of planner: tags, and their default texts."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
-        self._env = env
-        self._xmlid = xmlid
-        self.annotations = Annotations()
+        super().__init__(env, xmlid)
         self._values: Values | None = None
         self._callbacks: list[PlanCallback] = []
         self._action = 0
-
-    def GetXMLId(self) -> str:
-        """Return the name of the planner, spelled as the caller of ``RaveCreatePlanner`` spelled it."""
-        return self._xmlid
 
     @also_named(xmlparams="params")
     def InitPlan(self, robot: Robot | None, params: PlannerParameters | str, releasegil: bool = False) -> bool:

@@ -23,16 +23,7 @@ TRAJECTORY_PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
 
 
 def post_process(env: "Environment", values: Values, traj: Trajectory) -> PlannerStatus | None:
-    """Run the planners that the parameters name for post-processing on a path.
-
-    Args:
-        env: The environment.
-        values: The parameters of the planner that found the path.
-        traj: The path, which is processed in place.
-
-    Returns:
-        The status of the planner that failed, or None if all succeeded.
-    """
+    """Run the planners that parameters name on a path, in place. Return the status of the first that fails, or None."""
     name, text = values.postprocessing
     if name and traj.GetNumWaypoints() == 1:
         name, text = "LinearTrajectoryRetimer", ""  # nothing to smooth

@@ -86,7 +86,8 @@ class Retimer(Planner):
             if group is None:
                 return self._failed("the times should be kept, and there are none")
             deltas = traj.GetAllWaypoints2D()[:, group.offset]
-        velocities = _given_velocities(traj, spec) if flag(values, "hasvelocities") else None
+        rates = spec.ConvertToDerivativeSpecification(1)
+        velocities = traj.GetAllWaypoints2D(rates) if flag(values, "hasvelocities") else None
         points = traj.GetAllWaypoints2D(spec)
         try:
             timed = _timed(profile, points, values.limits(), (deltas, velocities), values.numbers["_fsteplength"])
@@ -119,21 +120,12 @@ def lacking_group(spec: ConfigurationSpecification, source: ConfigurationSpecifi
     return next((name for name in names if source.FindCompatibleGroup(name) is None), None)
 
 
-def _given_velocities(traj: Trajectory, spec: ConfigurationSpecification) -> Floats:
-    return traj.GetAllWaypoints2D(spec.ConvertToDerivativeSpecification(1))
-
-
 def fill(
     traj: Trajectory, spec: ConfigurationSpecification, profile: Interpolated, timed: Timed, *, mark: bool = False
 ) -> None:
-    """Write a timed path into a trajectory.
+    """Write a timed path into a trajectory, whose layout and waypoints are replaced.
 
-    Args:
-        traj: The trajectory; its layout and waypoints are replaced.
-        spec: The layout of the path's values.
-        profile: The velocity profile, which says how values are interpolated and which derivatives are stored.
-        timed: The timed path.
-        mark: Whether to add a group ``iswaypoint``.
+    ``spec`` is the layout of the path's values; ``mark`` adds a group ``iswaypoint``.
     """
     groups = spec.GetGroups()
     for group in groups:

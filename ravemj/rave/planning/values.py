@@ -160,12 +160,9 @@ class Values:
         return ConstrainedEdges(self.space(), replace(self, manifold=None).allowed(), self.manifold)
 
     def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
-        """Test a configuration, and return the bit of ``ConstraintFilterOptions`` that fails, or 0.
+        """Move the bodies to a configuration, and return the bit of ``ConstraintFilterOptions`` that fails there, or 0.
 
-        Args:
-            values: The configuration, shape (n,); the bodies are moved there.
-            options: The tests to run, bits of ``ConstraintFilterOptions``.
-            report: Receives the collision.
+        ``options`` are the bits to test; the report receives the collision.
         """
         if self.bodies is None:
             return FREE
