@@ -8,6 +8,7 @@ from collections import Counter
 
 from ravemj.cli.checking import Finding, check
 from ravemj.cli.console import print_findings
+from ravemj.cli.models import model_file
 from ravemj.errors import Source
 
 
@@ -15,7 +16,7 @@ def check_models(options: argparse.Namespace) -> int:
     """Report what is wrong or odd in models."""
     found: dict[tuple[object, ...], Finding] = {}  # a file that several models include is reported once
     for model in options.models:
-        fresh = {key: finding for finding in check(model) if (key := _key(finding)) not in found}
+        fresh = {key: finding for finding in check(model_file(model)) if (key := _key(finding)) not in found}
         found.update(fresh)
         if not options.json:
             print_findings(fresh.values(), sys.stdout)

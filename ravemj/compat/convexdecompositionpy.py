@@ -1,14 +1,5 @@
-"""``openravepy.convexdecompositionpy``: convex parts of triangles; ravemj gives none to scripts."""
+"""``openravepy.convexdecompositionpy``: convex parts of triangles; ``ravemj convert`` writes models with them."""
 
-from typing import NoReturn
+from ravemj.compat.refusal import refusing
 
-from ravemj.errors import UnsupportedError
-
-
-def computeConvexDecomposition(*arguments: object, **named: object) -> NoReturn:
-    """Refuse to return convex parts.
-
-    Raises:
-        UnsupportedError: always; ``ravemj convert`` writes models with convex parts.
-    """
-    raise UnsupportedError("computeConvexDecomposition", "convex parts for scripts")
+computeConvexDecomposition = refusing("computeConvexDecomposition", "convex parts for scripts", "*arguments **named")

@@ -53,11 +53,12 @@ Which joint values bring the tool to a place? This page says how ravemj answers,
 
 ```python
 import numpy as np
+import ravemj
 from ravemj.formats.readers import read_file
 from ravemj.ik import make_solver
 from ravemj.ik.arms import chain_of
 
-robot = read_file("models/puma560.xml").scene.bodies[0]
+robot = read_file(ravemj.model_path("puma560")).scene.bodies[0]
 chain = chain_of(robot, robot.manipulators[0])
 solver = make_solver(chain)
 print(solver.describe())

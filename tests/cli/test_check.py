@@ -48,6 +48,10 @@ def test_a_clean_model_has_no_findings(folder):
     assert (done.returncode, done.stdout, done.stderr) == (0, "0 errors, 0 warnings in 1 file\n", "")
 
 
+def test_models_that_come_with_ravemj_are_checked_by_their_names(tmp_path):
+    assert ravemj_command(tmp_path, "check", "pendulum").stdout == "0 errors, 0 warnings in 1 file\n"
+
+
 def test_what_openrave_swallows_is_found_where_it_is(folder):
     found = codes(folder / "robot.xml")
     for finding in [

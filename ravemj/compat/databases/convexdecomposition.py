@@ -1,6 +1,7 @@
 """Convex parts of the links; MuJoCo makes its own hulls."""
 
-from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
+from ravemj.compat.databases.model import DatabaseGenerator
+from ravemj.compat.refusal import lacking, refusing
 from ravemj.rave.robot import Robot
 
 PARTS = "files of convex parts"
@@ -19,30 +20,16 @@ class ConvexDecompositionError(Exception):
 
 @lacking(
     PARTS,
-    {
-        "ComputePaddedConvexDecompositionFromTriMesh": "trimesh padding",
-        "ComputePaddedConvexHullFromTriMesh": "trimesh padding",
-        "GetGeometryInfosFromLink": "ilink preservetransform color",
-        "LoadHDF5": "",
-        "LoadPickle": "",
-        "SaveHDF5": "",
-        "SavePickle": "",
-        "ShowLink": "ilink progressive",
-        "generate": "padding minTriangleConvexHullThresh convexHullLinks **named",
-        "getfilename": "read",
-        "getversion": "",
-        "setrobot": "",
-        "show": "options",
-        "testPointsInside": "points",
-    },
-    static={
-        "ComputeHullPlanes": "hull thresh",
-        "CreateOptionParser": "",
-        "GenerateTrimeshFromHulls": "hulls",
-        "PadMesh": "vertices indices padding mergeDuplicated rtol atol setNormalsAwayFromCenter",
-        "RunFromParser": "Model parser args **named",
-        "transformHull": "T hull",
-    },
+    """
+    ComputePaddedConvexDecompositionFromTriMesh(trimesh padding)
+    ComputePaddedConvexHullFromTriMesh(trimesh padding)
+    GetGeometryInfosFromLink(ilink preservetransform color) LoadHDF5() LoadPickle() SaveHDF5() SavePickle()
+    ShowLink(ilink progressive) generate(padding minTriangleConvexHullThresh convexHullLinks **named)
+    getfilename(read) getversion() setrobot() show(options) testPointsInside(points)
+    @ComputeHullPlanes(hull thresh) @CreateOptionParser() @GenerateTrimeshFromHulls(hulls)
+    @PadMesh(vertices indices padding mergeDuplicated rtol atol setNormalsAwayFromCenter)
+    @RunFromParser(Model parser args **named) @transformHull(T hull)
+    """,
 )
 class ConvexDecompositionModel(DatabaseGenerator):
     """Convex parts of the links, which need no computing here: collisions use hulls anyway.
@@ -51,6 +38,8 @@ class ConvexDecompositionModel(DatabaseGenerator):
         robot: The robot.
         padding: For OpenRAVE.
     """
+
+    capability = PARTS
 
     def __init__(self, robot: Robot, padding: float = 0.0) -> None:
         del padding

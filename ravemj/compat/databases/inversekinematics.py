@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.compat.databases.model import lacking, refusing
 from ravemj.compat.databases.solved_joints import InverseKinematicsError, SolvedJoints
 from ravemj.compat.databases.visibility import ArmVisibility
+from ravemj.compat.refusal import lacking, refusing
 from ravemj.errors import RavemjError, UnsupportedError
 from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_dof
 from ravemj.rave.enums import CheckLimitsAction, IkFilterOptions
@@ -29,11 +29,7 @@ _WRONG = 1e-8
 """Squared distance from the goal beyond which a solution is wrong."""
 
 
-@lacking(
-    COMPILING,
-    {"getsourcefilename": "read outputlang", "show": "delay options forceclosure"},
-    static={"getcompiler": ""},
-)
+@lacking(COMPILING, "getsourcefilename(read outputlang) show(delay options forceclosure) @getcompiler()")
 class InverseKinematicsModel(SolvedJoints):
     """A solver for an arm.
 
@@ -68,6 +64,7 @@ class InverseKinematicsModel(SolvedJoints):
         >>> values = model.manip.FindIKSolution(T_world_tool, IkFilterOptions.CheckEnvCollisions)
     """
 
+    capability = COMPILING
     ArmVisibility = ArmVisibility
     ikfastproblem = None
 

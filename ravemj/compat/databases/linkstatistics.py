@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
+from ravemj.compat.databases.model import DatabaseGenerator
+from ravemj.compat.refusal import lacking, refusing
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.model.motion_bounds import motion_bounds
@@ -12,18 +13,10 @@ STATISTICS = "files of statistics of links"
 
 @lacking(
     STATISTICS,
-    {
-        "LoadPickle": "",
-        "SavePickle": "",
-        "generate": "**named",
-        "getfilename": "read",
-        "getversion": "",
-        "show": "options",
-    },
-    static={
-        "CreateOptionParser": "",
-        "RunFromParser": "Model parser **named",
-    },
+    """
+    LoadPickle() SavePickle() generate(**named) getfilename(read) getversion() show(options) @CreateOptionParser()
+    @RunFromParser(Model parser **named)
+    """,
 )
 class LinkStatisticsModel(DatabaseGenerator):
     """How far the links of a robot reach. It is computed from their boxes when it is asked for.
@@ -38,6 +31,8 @@ class LinkStatisticsModel(DatabaseGenerator):
         >>> model.setRobotWeights()
         >>> model.setRobotResolutions(xyzdelta=0.005)
     """
+
+    capability = STATISTICS
 
     def load(self) -> bool:
         """Return whether there is something to use: True."""

@@ -1,9 +1,8 @@
 """What all models of ``openravepy.databases`` have in common."""
 
-from collections.abc import Callable, Mapping
-from inspect import Parameter, Signature
-from typing import ClassVar, NoReturn, TypeVar
+from typing import ClassVar, NoReturn
 
+from ravemj.compat.refusal import lacking
 from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.rave.environment import Environment
 from ravemj.rave.robot import Robot
@@ -11,70 +10,14 @@ from ravemj.rave.robot import Robot
 _BUILDING = "building of databases"
 
 
-def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoReturn]:
-    """Return a function that says what is missing.
-
-    Args:
-        name: What users call it.
-        capability: What ravemj lacks.
-        arguments: The names of its arguments, which completion shows; ``*`` and ``**`` before a name take the rest.
-    """
-
-    def refuse(*given: object, **named: object) -> NoReturn:
-        raise UnsupportedError(name, capability)
-
-    kinds = {0: Parameter.POSITIONAL_OR_KEYWORD, 1: Parameter.VAR_POSITIONAL, 2: Parameter.VAR_KEYWORD}
-    shown = [Parameter(word.lstrip("*"), kinds[word.count("*")]) for word in arguments.split()]
-    vars(refuse).update(__signature__=Signature(shown), capability=capability)
-    refuse.__name__, refuse.__qualname__ = name.rpartition(".")[2], name
-    refuse.__doc__ = f"Raise ``UnsupportedError``: ravemj has no {capability} yet."
-    return refuse
-
-
-Model = TypeVar("Model", bound="DatabaseGenerator")
-
-
-def lacking(
-    capability: str, methods: Mapping[str, str], static: Mapping[str, str] | None = None
-) -> Callable[[type[Model]], type[Model]]:
-    """Give a class the methods of OpenRAVE's model that need what ravemj lacks; each raises ``UnsupportedError``.
-
-    Args:
-        capability: What ravemj lacks.
-        methods: The names of their arguments behind ``self``, by the methods' names; see ``refusing``.
-        static: The same of static methods.
-    """
-
-    def complete(model: type[Model]) -> type[Model]:
-        model.capability = capability
-        for name, arguments in methods.items():
-            setattr(model, name, refusing(f"{model.__name__}.{name}", capability, f"self {arguments}"))
-        for name, arguments in (static or {}).items():
-            setattr(model, name, staticmethod(refusing(f"{model.__name__}.{name}", capability, arguments)))
-        return model
-
-    return complete
-
-
-_PARSER = "parser env args robotatts defaultviewer allowkinbody"
-
-
 @lacking(
     _BUILDING,
-    {
-        "autogenerateparams": "options",
-        "generate": "*arguments **named",
-        "generatepcg": "",
-        "getfilename": "read",
-        "getversion": "",
-        "preprocess": "",
-        "show": "options",
-    },
-    static={
-        "CreateOptionParser": "useManipulator",
-        "InitializeFromParser": f"Model {_PARSER}",
-        "RunFromParser": f"Model {_PARSER} **named",
-    },
+    """
+    autogenerateparams(options) generate(*arguments **named) generatepcg() getfilename(read) getversion()
+    preprocess() show(options) @CreateOptionParser(useManipulator)
+    @InitializeFromParser(Model parser env args robotatts defaultviewer allowkinbody)
+    @RunFromParser(Model parser env args robotatts defaultviewer allowkinbody **named)
+    """,
 )
 class DatabaseGenerator:
     """A model that is computed once for a robot.
@@ -85,7 +28,7 @@ class DatabaseGenerator:
         named: The same, by name.
     """
 
-    capability: ClassVar[str]
+    capability: ClassVar[str] = _BUILDING
     """What ravemj lacks to compute it."""
 
     def __init__(self, robot: Robot, *arguments: object, **named: object) -> None:

@@ -1,28 +1,25 @@
 """From where a camera on an arm sees a body."""
 
-from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
+from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.compat.databases.visibility import GripperVisibility
+from ravemj.compat.refusal import lacking, refusing
 
 SEEING = "visual feedback"
 
 
 @lacking(
     SEEING,
-    {
-        "SetCameraTransforms": "transforms",
-        "ShowTransform": "relativepose options",
-        "computeValidTransform": "returnall checkcollision computevisibility randomize",
-        "generate": "preshapes sphere conedirangles localtransforms",
-        "getCameraImage": "delay",
-        "moveToPreshape": "",
-        "pruneTransformations": "thresh numminneighs maxdist translationonly",
-        "show": "options",
-        "showtransforms": "options",
-    },
+    """
+    SetCameraTransforms(transforms) ShowTransform(relativepose options)
+    computeValidTransform(returnall checkcollision computevisibility randomize)
+    generate(preshapes sphere conedirangles localtransforms) getCameraImage(delay) moveToPreshape()
+    pruneTransformations(thresh numminneighs maxdist translationonly) show(options) showtransforms(options)
+    """,
 )
 class VisibilityModel(DatabaseGenerator):
     """From where a camera on an arm sees a body."""
 
+    capability = SEEING
     GripperVisibility = GripperVisibility
 
     def autogenerate(self, options: object = None, gmodel: object = None) -> None:

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from ravemj.compat.interfaces.helper import given, number, several, whole
 from ravemj.compat.interfaces.trajectory_text import TrajectoryText
+from ravemj.compat.refusal import refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
-from ravemj.errors import UnsupportedError
 from ravemj.rave.modules import base_module
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH
 from ravemj.rave.modules.commands import search_options
@@ -358,25 +358,11 @@ class BaseManipulation(TrajectoryText):
         found = self._base.jitter_active(**given(maxiter=whole(maxiter, "maxiter"), jitter=number(jitter, "jitter")))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
-    def FindIKWithFilters(
-        self,
-        ikparam: IkParameterization,
-        cone: ArrayLike | None = None,
-        solveall: bool | None = None,
-        filteroptions: int | None = None,
-    ) -> None:
-        """Refuse to search solutions of inverse kinematics by filters, as OpenRAVE 0.149 does.
-
-        Args:
-            ikparam: The goal.
-            cone: A cone of directions.
-            solveall: Whether to return all.
-            filteroptions: ``IkFilterOptions``.
-
-        Raises:
-            UnsupportedError: always.
-        """
-        raise UnsupportedError("FindIKWithFilters", "inverse kinematics (IK) with filters of its own")
+    FindIKWithFilters = refusing(  # by OpenRAVE 0.149, too
+        "FindIKWithFilters",
+        "inverse kinematics (IK) with filters of its own",
+        "self ikparam cone solveall filteroptions",
+    )
 
 
 def _effort(maxiter: int | None, maxtries: int | None, jitter: float | None) -> dict[str, Any]:

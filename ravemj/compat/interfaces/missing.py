@@ -1,51 +1,43 @@
 """Helpers that ravemj does not have; their constructors raise ``UnsupportedError``, a ``NotImplementedError``."""
 
-from collections.abc import Callable
-
-from ravemj.errors import UnsupportedError
+from ravemj.compat.refusal import lacking
 
 
+@lacking("caging of handles", "__init__(robot plannername maxvelmult)")
 class TaskCaging:
     """Opens doors by caging their handles."""
 
-    def __init__(self, robot: object, plannername: str | None = None, maxvelmult: float | None = None) -> None:
-        raise UnsupportedError("interfaces.TaskCaging", "caging of handles")
 
-
+@lacking(
+    "visual feedback",
+    """
+    __init__(robot maxvelmult ignoresensorcollision) ComputeVisibility(checkocclusion)
+    ComputeVisibleConfiguration(pose)
+    MoveToObserveTarget(affinedofs smoothpath planner sampleprob maxiter execute outputtraj)
+    ProcessVisibilityExtents(numrolls transforms extents sphere conedirangles) SampleVisibilityGoal(numsamples)
+    SetCameraAndTarget(sensorindex sensorname manipname convexdata sensorrobot targetlink targetgeomname raydensity)
+    SetCameraTransforms(transforms mindist) SetParameter(raydensity raymindist allowableocclusion)
+    VisualFeedbackGrasping(graspset usevisibility planner graspdistthresh visgraspthresh numgradientsamples maxiter
+        execute outputtraj)
+    clone(envother)
+    """,
+)
 class VisualFeedback:
     """Moves a camera to where it sees an object."""
 
-    def __init__(
-        self, robot: object, maxvelmult: float | None = None, ignoresensorcollision: bool | None = None
-    ) -> None:
-        raise UnsupportedError("interfaces.VisualFeedback", "visual feedback")
 
-
+@lacking(
+    "planning of grasps",
+    """
+    __init__(robot friction avoidlinks plannername) ConvexHull(points returnplanes returnfaces returntriangles)
+    Grasp(direction roll position standoff target stablecontacts forceclosure transformrobot onlycontacttarget
+        tightgrasp graspingnoise execute translationstepmult outputfinal manipulatordirection coarsestep finestep
+        vintersectplane chuckingdirection ordereddofindices avoidcontact)
+    GraspThreaded(approachrays standoffs preshapes rolls manipulatordirections target transformrobot
+        onlycontacttarget tightgrasp graspingnoise forceclosurethreshold collisionchecker translationstepmult
+        numthreads startindex maxgrasps finestep)
+    clone(envother)
+    """,
+)
 class Grasper:
     """Simulates how a hand closes around a body, and rates the grasp."""
-
-    def __init__(
-        self, robot: object, friction: float = 0.3, avoidlinks: object = None, plannername: str | None = None
-    ) -> None:
-        raise UnsupportedError("interfaces.Grasper", "planning of grasps")
-
-
-def _refused(name: str, capability: str) -> Callable[..., None]:
-    def refuse(*args: object, **named: object) -> None:
-        raise UnsupportedError(name, capability)
-
-    refuse.__doc__ = f"Raise ``UnsupportedError``: ravemj does no {capability}."
-    return refuse
-
-
-_COMMANDS = {
-    VisualFeedback: (
-        "visual feedback",
-        "ComputeVisibility ComputeVisibleConfiguration MoveToObserveTarget ProcessVisibilityExtents "
-        "SampleVisibilityGoal SetCameraAndTarget SetCameraTransforms SetParameter VisualFeedbackGrasping clone",
-    ),
-    Grasper: ("planning of grasps", "ConvexHull Grasp GraspThreaded clone"),
-}
-for _kind, (_capability, _names) in _COMMANDS.items():
-    for _name in _names.split():
-        setattr(_kind, _name, _refused(f"interfaces.{_kind.__name__}.{_name}", _capability))

@@ -3,13 +3,13 @@
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
 from collections.abc import Mapping, Sequence
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ravemj.compat.interfaces.helper import Helper, given
+from ravemj.compat.refusal import lacking, refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
@@ -21,6 +21,8 @@ from ravemj.rave.planning.hand import ToolConstraint
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
+
+_PADDING = "padding of models"
 
 Answer = tuple[Floats | None, Trajectory | str | None]
 GraspAnswer = tuple[list[IkParameterization], int, float, Trajectory | str | None]
@@ -238,7 +240,7 @@ class TaskManipulation(Helper):
         """
         del grasptranslationstepmult, graspfinestep, steplength, releasegil
         if paddedgeometryinfo is not None:
-            raise UnsupportedError("GraspPlanning with paddedgeometryinfo", "padding of models")
+            raise UnsupportedError("GraspPlanning with paddedgeometryinfo", _PADDING)
         rows = np.atleast_2d(np.asarray(gmodel.grasps if grasps is None and gmodel else grasps, dtype=float))
         body = checked_kind(target or getattr(gmodel, "target", None), KinBody, "GraspPlanning: target")
         columns = graspindices or getattr(gmodel, "graspindices", {})
@@ -285,26 +287,12 @@ class TaskManipulation(Helper):
         steps, found = self._task.evaluate_constraints(constraint, rows)
         return np.array(steps, dtype=int), np.array(found).reshape(-1, dof)
 
-    def SwitchModels(
-        self,
-        switchpatterns: object = None,
-        unregister: object = None,
-        switchtofat: object = None,
-        clearpatterns: object = None,
-        clearmodels: object = None,
-        update: object = None,
-    ) -> None:
-        """Refuse to put other models in place of bodies."""
-        raise UnsupportedError("interfaces.TaskManipulation.SwitchModels", "padding of models")
+    SwitchModels = refusing(
+        "TaskManipulation.SwitchModels",
+        _PADDING,
+        "self switchpatterns unregister switchtofat clearpatterns clearmodels update",
+    )
 
+    @lacking(_PADDING, "__init__(taskmanip update) __enter__() __exit__(type value traceback)")
     class SwitchState:
-        """Refuses to put padded models in place of bodies for a while."""
-
-        def __init__(self, taskmanip: "TaskManipulation", update: bool = True) -> None:
-            raise UnsupportedError("interfaces.TaskManipulation.SwitchState", "padding of models")
-
-        def __enter__(self) -> None: ...
-
-        def __exit__(
-            self, type: "type[BaseException] | None", value: BaseException | None, traceback: TracebackType | None
-        ) -> None: ...
+        """Padded models in place of bodies for a while."""

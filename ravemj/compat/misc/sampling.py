@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.compat.refusal import refusing
 from ravemj.core.arrays import checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
-from ravemj.errors import UnsupportedError
 
 
 class SpaceSamplerExtra:
@@ -84,17 +84,9 @@ class SpaceSamplerExtra:
         np.fill_diagonal(cosines, 0)
         return np.arccos(np.minimum(cosines.max(axis=1, initial=0), 1))
 
-    def computeFaceIndices(self, N: int) -> None:
-        """Refuse to number the pixels of a face: the directions lie on a spiral, not on HEALPix's grid.
-
-        Args:
-            N: The number of pixels along an edge.
-
-        Raises:
-            UnsupportedError: always.
-        """
-        del N
-        raise UnsupportedError("SpaceSamplerExtra.computeFaceIndices", "HEALPix's grid of directions")
+    computeFaceIndices = refusing(  # directions lie on a spiral here
+        "SpaceSamplerExtra.computeFaceIndices", "HEALPix's grid of directions", "self N"
+    )
 
     def sampleR3lattice(self, averagedist: float, boxdims: ArrayLike) -> Floats:
         """Return points of a grid.

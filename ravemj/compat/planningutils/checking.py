@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.compat.refusal import refusing
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Pose, normalize
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.planning.jitter import nearby
 from ravemj.planning.verification import Samples, flaw
 from ravemj.rave.enums import ConstraintFilterOptions, Interval
@@ -23,6 +24,7 @@ from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
 
+_CHECK = "DynamicsCollisionConstraint"
 _LINES = "constraints of accelerations, torques and perturbations along lines"
 
 
@@ -108,59 +110,13 @@ class DynamicsCollisionConstraint(ApiObject):
         """
         self._mask = int(filtermask)
 
-    def SetPerturbation(self, parameters: float) -> None:
-        """Refuse to test configurations beside the line.
-
-        Args:
-            parameters: How far beside.
-
-        Raises:
-            UnsupportedError: always.
-        """
-        raise UnsupportedError("DynamicsCollisionConstraint.SetPerturbation", _LINES)
-
-    def SetTorqueLimitMode(self, torquelimitmode: int) -> None:
-        """Refuse to look at torques; ``VerifyTrajectory`` does.
-
-        Args:
-            torquelimitmode: Which torques.
-
-        Raises:
-            UnsupportedError: always.
-        """
-        raise UnsupportedError("DynamicsCollisionConstraint.SetTorqueLimitMode", _LINES)
-
-    def CheckWithAccelerations(
-        self,
-        q0: ArrayLike,
-        q1: ArrayLike,
-        dq0: ArrayLike,
-        dq1: ArrayLike,
-        ddq0: ArrayLike,
-        ddq1: ArrayLike,
-        timeelapsed: float,
-        interval: int = Interval.Closed,
-        options: int = 0xFFFF,
-        filterreturn: bool = False,
-    ) -> int | dict[str, Any]:
-        """Refuse to test a motion with accelerations.
-
-        Args:
-            q0: Its start.
-            q1: Its end.
-            dq0: Velocities at the start.
-            dq1: Velocities at the end.
-            ddq0: Accelerations at the start.
-            ddq1: Accelerations at the end.
-            timeelapsed: How long the motion takes [s].
-            interval: As for ``Check``.
-            options: As for ``Check``.
-            filterreturn: As for ``Check``.
-
-        Raises:
-            UnsupportedError: always.
-        """
-        raise UnsupportedError("DynamicsCollisionConstraint.CheckWithAccelerations", _LINES)
+    SetPerturbation = refusing(f"{_CHECK}.SetPerturbation", _LINES, "self parameters")
+    SetTorqueLimitMode = refusing(f"{_CHECK}.SetTorqueLimitMode", _LINES, "self torquelimitmode")
+    CheckWithAccelerations = refusing(
+        f"{_CHECK}.CheckWithAccelerations",
+        _LINES,
+        "self q0 q1 dq0 dq1 ddq0 ddq1 timeelapsed interval options filterreturn",
+    )
 
     def GetReport(self) -> CollisionReport:
         """Return the last collision that was found."""
