@@ -15,7 +15,7 @@ from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.geom import GeometryScope
 from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
-from ravemj.formats.openrave_xml.mass import DefaultMassReader
+from ravemj.formats.openrave_xml.mass import DefaultMass
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
 from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_sensor, read_manipulator
@@ -51,7 +51,7 @@ class _Scope(Placed):
         self.scale = scale
         self.depth = depth
         self.skip_geometry = skip_geometry
-        self.default_mass = DefaultMassReader(context)
+        self.default_mass = DefaultMass(context)
         self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
         self.transparency: float | None = None
@@ -148,8 +148,8 @@ class _Scope(Placed):
 
     def read_link(self, element: Element) -> None:
         """Read a ``<Body>``."""
-        default_mass, geometry_scope = self.default_mass.rule, self.geometry_scope
-        read_link(self.body, element, self.context, default_mass, geometry_scope, skip_geometry=self.skip_geometry)
+        mass = self.default_mass.rule()
+        read_link(self.body, element, self.context, mass, self.geometry_scope, skip_geometry=self.skip_geometry)
 
     def read_joint(self, element: Element) -> None:
         """Read a ``<Joint>``."""

@@ -28,6 +28,7 @@ class Element:
         text: The text behind the last child element; what stands before a child is discarded.
         children: Child elements in document order.
         complete: False where the file breaks off before its end tag.
+        checked: Whether its attributes were looked at.
     """
 
     tag: str
@@ -37,6 +38,7 @@ class Element:
     text: str = ""
     children: list["Element"] = field(default_factory=lambda: [])
     complete: bool = False
+    checked: bool = False
 
 
 class Document(NamedTuple):
@@ -176,11 +178,11 @@ class _Parser:
         self._encoding = encoding or ""
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
-        if self._entities and attributes:
-            self._refuse_entities()
-        lowered = {key.lower(): value for key, value in attributes.items()} if attributes else attributes
-        source = Source(self._path, self._expat.CurrentLineNumber, self._included_from)
-        element = Element(name.lower(), name, lowered, source, "", [])
+        if attributes:
+            if self._entities:
+                self._refuse_entities()
+            attributes = {key.lower(): value for key, value in attributes.items()}
+        element = Element(name.lower(), name, attributes, self._here(), "", [])
         opened = self._open
         if not opened:
             self.root = element
