@@ -249,8 +249,8 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     exchanged = first != 0 and body.links[second].static and not body.links[first].static
     if exchanged:
         first, second = second, first
-    T_scope_first, T_scope_second = body.links[first].pose, body.links[second].pose
-    T_first_frame = T_scope_first.inverse() @ reader.T_scope_frame
+    T_first_scope = body.links[first].pose.inverse()
+    T_first_frame = T_first_scope @ reader.T_scope_frame
     axes = tuple(
         Axis(_direction(reader, index, T_first_frame, exchanged=exchanged), circular=circular and index == 0, **numbers)
         for index, numbers in enumerate(reader.axes)
@@ -262,7 +262,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
             name=element.attributes.get("name", ""),
             kind=kind,
             links=(first, second),
-            T_first_second=T_scope_first.inverse() @ T_scope_second,
+            T_first_second=T_first_scope @ body.links[second].pose,
             anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # dropped, as in random-xml-0
             axes=axes,
             enabled=not is_false(element.attributes.get("enable", "true")),

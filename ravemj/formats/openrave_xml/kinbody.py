@@ -5,7 +5,6 @@ of an element acts at its end, once, on the links that were made inside it.
 """
 
 from dataclasses import replace
-from typing import TypeVar
 
 from ravemj.core.transforms import Vec3
 from ravemj.errors import SourceError
@@ -17,7 +16,7 @@ from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
 from ravemj.formats.openrave_xml.mass import DefaultMass
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
-from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
+from ravemj.formats.openrave_xml.prefix import Marks, add_prefix, youngest_first
 from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_sensor, read_manipulator
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
@@ -34,8 +33,6 @@ from ravemj.formats.openrave_xml.values import (
 )
 from ravemj.model.builder import BodyBuilder, GrabBuilder
 from ravemj.model.scene import KinBody
-
-Part = TypeVar("Part")
 
 
 class _Scope(Placed):
@@ -72,7 +69,8 @@ class _Scope(Placed):
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
         if element.tag == "robot":
-            self._youngest_first(marks)  # gap-43, gap-44, gap-45
+            self.body.manipulators = youngest_first(self.body.manipulators, marks.manipulators)
+            self.body.sensors = youngest_first(self.body.sensors, marks.sensors)
         else:
             self._join_links(element)
         if self.placement.moves:
@@ -107,18 +105,6 @@ class _Scope(Placed):
                 raise  # the whole body goes (random-xml-143); of a Robot without parts what came before stays (-120)
             self.context.diagnostics.error("broken-file", error.message, error.source, error.hint)
             self.body.set_parts(before)
-
-    def _youngest_first(self, marks: Marks) -> None:
-        """Move manipulators and sensors that came since some moment before those of then, the last one first.
-
-        If there were none then, nothing moves (gap-43); parts of a COLLADA file do not turn (gap-75).
-        """
-        body = self.body
-        arms = [any(built is older for older in marks.manipulators) for built in body.manipulators]
-        body.manipulators = _reordered(body.manipulators, arms)
-        body.sensors = _reordered(
-            body.sensors, [any(built[0] is older for older in marks.sensors) for built in body.sensors]
-        )
 
     def _join_links(self, element: Element) -> None:
         """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides.
@@ -207,13 +193,6 @@ class _Scope(Placed):
     def read_sensor(self, element: Element) -> None:
         """Read an ``<AttachedSensor>``."""
         read_attached_sensor(self.body, element, self.context)
-
-
-def _reordered(parts: list[Part], are_older: list[bool]) -> list[Part]:
-    """Return the new ones of some parts, the last one first, and behind them the older ones, if there are any."""
-    older = [part for part, is_older in zip(parts, are_older, strict=True) if is_older]
-    new = [part for part, is_older in zip(parts, are_older, strict=True) if not is_older]
-    return [*reversed(new), *older] if older else parts
 
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {

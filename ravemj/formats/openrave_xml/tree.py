@@ -56,7 +56,7 @@ class Document(NamedTuple):
 
 
 def parse_file(path: str, included_from: Source | None = None) -> Document:
-    """Read a file.
+    """Parse a file.
 
     Args:
         path: The file.
@@ -65,13 +65,16 @@ def parse_file(path: str, included_from: Source | None = None) -> Document:
     Raises:
         SourceError: the file cannot be read, or has no root element.
     """
-    whole_file = Source(path, 0, included_from)
+    return parse(content_of(path, included_from), path, included_from)
+
+
+def content_of(path: str, included_from: Source | None = None) -> bytes:
+    """Return the bytes of a file; arguments and errors are those of ``parse_file``."""
     try:
         with open(path, "rb", buffering=0) as file:
-            content = file.read()
+            return file.read()
     except OSError as error:
-        raise SourceError(f"cannot read the file: {os_reason(error)}", whole_file) from None
-    return parse(content, path, included_from)
+        raise SourceError(f"cannot read the file: {os_reason(error)}", Source(path, 0, included_from)) from None
 
 
 def parse(content: bytes, path: str, included_from: Source | None = None) -> Document:
