@@ -10,10 +10,9 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.data_folders import find
 from ravemj.formats.openrave_xml import Reading, read
-from ravemj.formats.openrave_xml.collada_body import uniform
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, give, given_scale
-from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
+from ravemj.formats.openrave_xml.other_files import add_mesh, is_mesh, uniform
 from ravemj.formats.openrave_xml.tree import content_of
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.builder import BodyBuilder

@@ -83,11 +83,9 @@ class _LinkScope(Placed):
             self.context.diagnostics.warn("openrave-bug", message, element.source, "put it into the outer Body")
 
     def read_offset(self, element: Element) -> None:
-        """Read the name of the link that the pose is relative to."""
         self.T_scope_offset = frame_of_link(self.body, element, self.context)
 
     def read_geometry(self, element: Element) -> None:
-        """Read a ``<Geom>``."""
         if self.skip_geometry:
             self.context.check_attributes(element, GEOM_ATTRIBUTES, {})
             return
@@ -99,11 +97,9 @@ class _LinkScope(Placed):
             self.link.add_to_group(group, found)
 
     def read_parameter(self, element: Element) -> None:
-        """Read a value that scripts attach to the link."""
         self.link.parameters = self.context.with_parameter(self.link.parameters, element)
 
     def read_mass(self, element: Element) -> None:
-        """Read a ``<Mass>``."""
         self.mass = read_mass(element, self.mass, self.geometry_scope.scale, self.context)
 
 
