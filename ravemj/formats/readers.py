@@ -3,16 +3,17 @@
 import difflib
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from urllib.parse import unquote
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.data_folders import find
-from ravemj.formats.openrave_xml import Reading, read, read_text
-from ravemj.formats.openrave_xml.collada_body import uniform
+from ravemj.formats.openrave_xml import Reading, read
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, give, given_scale
-from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
+from ravemj.formats.openrave_xml.other_files import add_mesh, is_mesh, uniform
+from ravemj.formats.openrave_xml.tree import content_of
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.builder import BodyBuilder
 from ravemj.model.scene import AttachedSensor, KinBody, Scene
@@ -44,17 +45,29 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: 
     elif not os.path.isfile(found):
         kind = "folder" if os.path.isdir(found) else "device or pipe"
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
-    elif found.lower().endswith(collada.SUFFIXES) or _holds_collada(found):
-        uri = f"{found}#{wanted}" if wanted else found
-        return _read_collada(
-            found,
-            given,
-            metre,
-            lambda context, scale: collada.read_file(uri, context.diagnostics, context.files, scale=scale),
-        )
+    elif is_mesh(found):
+        return read_mesh_file(found, given)
     else:
-        return read_mesh_file(found, given) if is_mesh(found) else read(found, given)
+        return _read_model(found, wanted, given, metre)
     return Reading(Scene(), Diagnostics(), failure)
+
+
+def _read_model(path: str, wanted: str, given: Attributes, metre: float) -> Reading:
+    """Read XML, or COLLADA, which may have any name: ``Environment.Save`` writes it under the one it is given."""
+    if not path.lower().endswith(collada.SUFFIXES):
+        try:
+            content = content_of(path)
+        except SourceError as error:
+            return Reading(Scene(), Diagnostics(), error, (path,))
+        if _COLLADA not in content[:_HEAD]:
+            return read(path, given, content)
+    uri = f"{path}#{wanted}" if wanted else path
+    return _read_collada(
+        path,
+        given,
+        metre,
+        lambda context, scale: collada.read_file(uri, context.diagnostics, context.files, scale=scale),
+    )
 
 
 def missing(path: str) -> SourceError:
@@ -68,28 +81,20 @@ def missing(path: str) -> SourceError:
 
 
 def read_data(data: str | bytes, given: Attributes = NOTHING, metre: float = 1.0) -> Reading:
-    """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file."""
-    head = data[:_HEAD] if isinstance(data, bytes) else data[:_HEAD].encode()
-    if _COLLADA in head:
-        text = data if isinstance(data, bytes) else data.encode()
-        return _read_collada(
-            "data",
-            given,
-            metre,
-            lambda context, scale: collada.read_text(text, "data", context.diagnostics, context.files, scale),
-        )
-    return read_text(data, "data", given)
+    """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file.
 
-
-def _holds_collada(path: str) -> bool:
-    """Tell whether a file of another name holds COLLADA, as ``Environment.Save`` writes it."""
-    if is_mesh(path):
-        return False
-    try:
-        with open(path, "rb", buffering=0) as file:
-            return _COLLADA in file.read(_HEAD)
-    except OSError:  # the reader will say why
-        return False
+    Files that it names are looked for in the working folder.
+    """
+    content = data if isinstance(data, bytes) else data.encode()
+    if _COLLADA not in content[:_HEAD]:
+        reading = read("data", given, content)
+        return replace(reading, files=reading.files[1:])
+    return _read_collada(
+        "data",
+        given,
+        metre,
+        lambda context, scale: collada.read_text(content, "data", context.diagnostics, context.files, scale),
+    )
 
 
 def _read_collada(

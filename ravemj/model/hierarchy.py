@@ -55,6 +55,8 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
         static_links: For each link, whether it is static.
         edges: The joints: active ones in DOF order, then passive ones.
     """
+    if not edges:
+        return Hierarchy((), ())
     has_dofs = any(edge.active for edge in edges)  # without any, OpenRAVE makes no depths
     depths = _depths(static_links, edges) if has_dofs else [_UNREACHED] * len(static_links)
     swapped = tuple(_is_swapped(edge.links, static_links, depths, has_dofs=has_dofs) for edge in edges)

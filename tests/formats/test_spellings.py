@@ -16,7 +16,7 @@ from strategies import Choices, RandomChoices, chance, choices, examples, number
 from ravemj.core.transforms import Pose, rotate, rows_from_wxyz, scale, wxyz_from_axis_angle
 from ravemj.errors import Diagnostics
 from ravemj.formats.collada.writer import write as collada_document
-from ravemj.formats.openrave_xml import read, read_text
+from ravemj.formats.openrave_xml import read
 from ravemj.formats.readers import read_data
 from ravemj.model.comparison import compare
 from ravemj.model.scene import Scene
@@ -193,7 +193,7 @@ def respelled(choices: Choices, element: ElementTree.Element, *, slides: bool) -
 
 
 def body(xml: str):
-    reading = read_text(xml, "test")
+    reading = read_data(xml)
     assert reading.failure is None
     (found,) = reading.scene.bodies
     return found
@@ -272,7 +272,7 @@ class TestWhatMeansTheSame:
         if last > 1 and {parts[1].kind, parts[last].kind} == {"hinge"}:
             xml = xml.replace(f'name="j{last}"', f'name="j{last}" mimic_pos="0.5*j1+0.1" mimic_vel="|j1 0.5"')
         arm = f'<Manipulator name="m"><base>l0</base><effector>l{last}</effector><Translation>1 2 3</Translation>'
-        wanted = read_text(f'<Robot name="k"><KinBody>{xml}</KinBody>{arm}</Manipulator></Robot>', "test")
+        wanted = read_data(f'<Robot name="k"><KinBody>{xml}</KinBody>{arm}</Manipulator></Robot>')
         found = read_data(collada_document(wanted.scene, Diagnostics()))
         assert (wanted.failure, found.failure) == (None, None)
         assert compare(wanted.scene, found.scene) == []

@@ -5,6 +5,6 @@ outermost element. Each kind of element has a table of the tags that it understa
 left out, with the reason; whatever is in neither is reported.
 """
 
-from ravemj.formats.openrave_xml.environment import Reading, read, read_text
+from ravemj.formats.openrave_xml.environment import Reading, read
 
-__all__ = ["Reading", "read", "read_text"]
+__all__ = ["Reading", "read"]

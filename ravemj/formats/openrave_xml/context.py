@@ -43,7 +43,6 @@ class Context:
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
         self.files: list[str] = []
-        self._checked: dict[int, Element] = {}  # elements whose attributes were looked at, kept so that ids stay theirs
         self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
         self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
@@ -66,15 +65,17 @@ class Context:
         for child in element.children:
             tag = tags.get(child.tag)
             if tag is not None:
-                if child.complete:
-                    if tag.once:
-                        self._check_first(child, before.setdefault(tag.read if tag.once is True else tag.once, child))
-                    try:
-                        tag.read(target, child)
-                    except ArithmeticError as error:
-                        raise uncomputable(child) from error
-                    if child.attributes and not tag.left_out and id(child) not in self._checked:
-                        self.check_attributes(child, {}, {})
+                if not child.complete:
+                    continue
+                read, _, left_out, once = tag
+                if once:
+                    self._check_first(child, before.setdefault(read if once is True else once, child))
+                try:
+                    read(target, child)
+                except ArithmeticError as error:
+                    raise uncomputable(child) from error
+                if child.attributes and not left_out and not child.checked:
+                    self.check_attributes(child, {}, {})
             elif child.tag in ignored:
                 self.leave_out(child, ignored[child.tag])
             else:
@@ -99,11 +100,12 @@ class Context:
 
     def check_attributes(self, element: Element, known: Mapping[str, str], ignored: Mapping[str, str]) -> None:
         """Report the attributes of an element that nothing reads; the tables give meanings and reasons."""
-        self._checked[id(element)] = element
-        self._check_flags(element)
-        if element.attributes.keys() <= known.keys():
-            return
-        for name in element.attributes:
+        element.checked = True
+        for name, text in element.attributes.items():
+            if name in FLAGS and not is_true(text) and not is_false(text):
+                counted = "false" if name == "skipgeometry" else "true"
+                message = f'{name}="{text}" counts as {counted} in OpenRAVE'
+                self.diagnostics.warn("bad-flag", message, element.source, "write true or false")
             if name in known:
                 continue
             if name in ignored:
@@ -112,15 +114,6 @@ class Context:
             elif not name.startswith("xmlns"):
                 message = f"OpenRAVE knows no attribute '{name}' of <{element.spelled}> and skips it"
                 self.diagnostics.warn("unknown-attribute", message, element.source, did_you_mean(name, known))
-
-    def _check_flags(self, element: Element) -> None:
-        """Warn of flags that are neither true nor false."""
-        for name in FLAGS & element.attributes.keys():
-            text = element.attributes[name]
-            if not is_true(text) and not is_false(text):
-                counted = "false" if name == "skipgeometry" else "true"
-                message = f'{name}="{text}" counts as {counted} in OpenRAVE'
-                self.diagnostics.warn("bad-flag", message, element.source, "write true or false")
 
     def include(self, element: Element) -> Element | None:
         """Return the root of the file that an element's ``file`` attribute names.

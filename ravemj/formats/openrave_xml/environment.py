@@ -2,7 +2,6 @@
 
 import math
 import os
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
@@ -12,7 +11,7 @@ from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
 from ravemj.formats.openrave_xml.kinbody import read_body
 from ravemj.formats.openrave_xml.sensor import read_sensor
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag
-from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
+from ravemj.formats.openrave_xml.tree import Element, parse, parse_file
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.model.scene import AttachedSensor, KinBody, Scene, View
 
@@ -64,35 +63,20 @@ class Reading:
     renames: bool = False
 
 
-def read(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Reading:
+def read(path: str | os.PathLike[str], given: Attributes = NOTHING, content: bytes | None = None) -> Reading:
     """Read an OpenRAVE XML file whose root is an environment, a robot or a kinbody.
 
     Args:
         path: The file.
         given: Attributes that act on the root.
+        content: What it holds, if somebody has read it.
     """
-    return _read(os.fspath(path), parse_file, given)
-
-
-def read_text(text: str | bytes, name: str, given: Attributes = NOTHING) -> Reading:
-    """Read an OpenRAVE XML document that is no file.
-
-    Args:
-        text: The document; files that it names are looked for in the working folder.
-        name: What to call it in messages.
-        given: Attributes that act on the root.
-    """
-    content = text.encode() if isinstance(text, str) else text
-    reading = _read(name, lambda path: parse(content, path), given)
-    return replace(reading, files=reading.files[1:])
-
-
-def _read(path: str, parsed_file: Callable[[str], Document], given: Attributes) -> Reading:
+    path = os.fspath(path)
     context = Context()
     document = _Document(context)
     failure = None
     try:
-        parsed = parsed_file(path)
+        parsed = parse_file(path) if content is None else parse(content, path)
         failure = parsed.error
         context.check_end(parsed)
         document.read(with_given(parsed.root, given, context))

@@ -114,12 +114,6 @@ class _JointReader:
                 self.axes[index][limit] = value * factor
         self.stops = True
 
-    def read_initial(self, element: Element) -> None:
-        self._set_all(element, "reference")
-
-    def read_weight(self, element: Element) -> None:
-        self._set_all(element, "weight")
-
     def read_resolution(self, element: Element) -> None:
         """Read a step for each axis, or one for all (gap-38)."""
         self._set_all(element, "resolution", 1.0 if self.kind == "slider" else math.pi / 180)
@@ -127,37 +121,20 @@ class _JointReader:
             for axis in self.axes:
                 axis["resolution"] = self.axes[0]["resolution"]
 
-    def read_max_velocity(self, element: Element) -> None:
-        self._set_all(element, "max_velocity", self._degrees(element), not_negative=True)
-
-    def read_max_acceleration(self, element: Element) -> None:
-        self._set_all(element, "max_acceleration", self._degrees(element), not_negative=True)
-
-    def read_max_torque(self, element: Element) -> None:
-        self._set_all(element, "max_torque", not_negative=True)
-
-    def read_inertia(self, element: Element) -> None:
-        self._set_all(element, "max_inertia", not_negative=True)
-
-    def read_other_number(self, element: Element) -> None:
-        """Read a number for each axis that is called otherwise than its tag."""
-        self._set_all(element, OTHER_NUMBERS[element.tag])
+    def read_number(self, element: Element) -> None:
+        self._set_all(element, _NUMBERS[element.tag], math.pi / 180 if element.tag.endswith("deg") else 1.0)
 
     def read_actuator(self, element: Element) -> None:
         self.motor = read_motor(element, self.context)
 
     def read_parameter(self, element: Element) -> None:
-        """Read a value that scripts attach to the joint."""
         self.parameters = self.context.with_parameter(self.parameters, element)
 
-    def _degrees(self, element: Element) -> float:
-        return math.pi / 180 if element.tag.endswith("deg") else 1.0
-
-    def _set_all(self, element: Element, name: str, factor: float = 1.0, *, not_negative: bool = False) -> None:
+    def _set_all(self, element: Element, name: str, factor: float) -> None:
         """Read a number for each axis; those that are missing keep their values, times the factor (gap-38)."""
         before = [axis[name] if name in axis else float(getattr(_PLAIN_AXIS, name)) for axis in self.axes]
         values = numbers(element, len(self.axes), self.context.diagnostics, before)
-        if not_negative:
+        if name in _NOT_NEGATIVE:
             self.negative.pop(name, None)  # a later number that is none makes up for it (random-xml-24)
             if min(values) < 0:
                 self.negative[name] = element
@@ -174,6 +151,19 @@ OTHER_NUMBERS = {
 }
 """Tags of numbers that most files lack, all but the first our own, and the fields of an axis that they fill."""
 
+_NUMBERS = {
+    "initial": "reference",
+    "weight": "weight",
+    "maxvel": "max_velocity",
+    "maxveldeg": "max_velocity",
+    "maxaccel": "max_acceleration",
+    "maxacceldeg": "max_acceleration",
+    "maxtorque": "max_torque",
+    "maxinertia": "max_inertia",
+    **OTHER_NUMBERS,
+}
+_NOT_NEGATIVE = {"max_velocity", "max_acceleration", "max_torque", "max_inertia"}
+
 JOINT_TAGS: dict[str, Tag[_JointReader]] = {
     "body": Tag(_JointReader.read_body, "twice: the names of the Bodies that it joins"),
     "offsetfrom": Tag(_JointReader.read_frame, "name of the Body that anchor and axis are relative to", once=True),
@@ -186,20 +176,20 @@ JOINT_TAGS: dict[str, Tag[_JointReader]] = {
     "limitsdeg": Tag(_JointReader.read_limits, "lower and upper [deg; of a slider m]", once=True),
     "lostop": Tag(_JointReader.read_stop, "deprecated: lower limit [deg, m]; turns the axis round"),
     "histop": Tag(_JointReader.read_stop, "deprecated: upper limit [deg, m]; turns the axis round"),
-    "initial": Tag(_JointReader.read_initial, "the value at the poses of the file [rad, m]", once=True),
+    "initial": Tag(_JointReader.read_number, "the value at the poses of the file [rad, m]", once="initial"),
     "parameter": Tag(_JointReader.read_parameter, PARAMETER_MEANING),
-    "weight": Tag(_JointReader.read_weight, "in distances between configurations", once=True),
+    "weight": Tag(_JointReader.read_number, "in distances between configurations", once="weight"),
     "resolution": Tag(_JointReader.read_resolution, "step of planners [deg, m]", once=True),
-    "maxvel": Tag(_JointReader.read_max_velocity, "[rad/s, m/s]", once=True),
-    "maxveldeg": Tag(_JointReader.read_max_velocity, "[deg/s]", once=True),
-    "maxaccel": Tag(_JointReader.read_max_acceleration, "[rad/s², m/s²]", once=True),
-    "maxacceldeg": Tag(_JointReader.read_max_acceleration, "[deg/s²]", once=True),
-    "maxtorque": Tag(_JointReader.read_max_torque, "[N m, N]", once=True),
-    "maxinertia": Tag(_JointReader.read_inertia, "[kg m², kg]; 0: unknown", once=True),
-    "hardmaxvel": Tag(_JointReader.read_other_number, "what planners never exceed [rad/s, m/s]; 0: nothing"),
+    "maxvel": Tag(_JointReader.read_number, "[rad/s, m/s]", once="maxvel"),
+    "maxveldeg": Tag(_JointReader.read_number, "[deg/s]", once="maxvel"),
+    "maxaccel": Tag(_JointReader.read_number, "[rad/s², m/s²]", once="maxaccel"),
+    "maxacceldeg": Tag(_JointReader.read_number, "[deg/s²]", once="maxaccel"),
+    "maxtorque": Tag(_JointReader.read_number, "[N m, N]", once="maxtorque"),
+    "maxinertia": Tag(_JointReader.read_number, "[kg m², kg]; 0: unknown", once="maxinertia"),
+    "hardmaxvel": Tag(_JointReader.read_number, "what planners never exceed [rad/s, m/s]; 0: nothing"),
     **dict.fromkeys(
         ("hardmaxaccel", "maxjerk", "hardmaxjerk", "wrapoffset"),
-        Tag(_JointReader.read_other_number, "ravemj's own, named like OpenRAVE's getter"),
+        Tag(_JointReader.read_number, "ravemj's own, named like OpenRAVE's getter"),
     ),
     "actuator": Tag(_JointReader.read_actuator, "see below"),
 }
@@ -249,8 +239,8 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     exchanged = first != 0 and body.links[second].static and not body.links[first].static
     if exchanged:
         first, second = second, first
-    T_scope_first, T_scope_second = body.links[first].pose, body.links[second].pose
-    T_first_frame = T_scope_first.inverse() @ reader.T_scope_frame
+    T_first_scope = body.links[first].pose.inverse()
+    T_first_frame = T_first_scope @ reader.T_scope_frame
     axes = tuple(
         Axis(_direction(reader, index, T_first_frame, exchanged=exchanged), circular=circular and index == 0, **numbers)
         for index, numbers in enumerate(reader.axes)
@@ -262,7 +252,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
             name=element.attributes.get("name", ""),
             kind=kind,
             links=(first, second),
-            T_first_second=T_scope_first.inverse() @ T_scope_second,
+            T_first_second=T_first_scope @ body.links[second].pose,
             anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # dropped, as in random-xml-0
             axes=axes,
             enabled=not is_false(element.attributes.get("enable", "true")),

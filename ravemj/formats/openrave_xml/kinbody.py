@@ -5,19 +5,17 @@ of an element acts at its end, once, on the links that were made inside it.
 """
 
 from dataclasses import replace
-from typing import TypeVar
 
 from ravemj.core.transforms import Vec3
 from ravemj.errors import SourceError
 from ravemj.formats.collada import is_collada
-from ravemj.formats.openrave_xml.collada_body import add_collada
 from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.geom import GeometryScope
 from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
-from ravemj.formats.openrave_xml.mass import DefaultMassReader
-from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
-from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
+from ravemj.formats.openrave_xml.mass import DefaultMass
+from ravemj.formats.openrave_xml.other_files import add_collada, add_mesh, is_mesh
+from ravemj.formats.openrave_xml.prefix import Marks, add_prefix, youngest_first
 from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_sensor, read_manipulator
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
@@ -35,8 +33,6 @@ from ravemj.formats.openrave_xml.values import (
 from ravemj.model.builder import BodyBuilder, GrabBuilder
 from ravemj.model.scene import KinBody
 
-Part = TypeVar("Part")
-
 
 class _Scope(Placed):
     """An open ``<Robot>`` or ``<KinBody>``.
@@ -51,7 +47,7 @@ class _Scope(Placed):
         self.scale = scale
         self.depth = depth
         self.skip_geometry = skip_geometry
-        self.default_mass = DefaultMassReader(context)
+        self.default_mass = DefaultMass(context)
         self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
         self.transparency: float | None = None
@@ -72,7 +68,8 @@ class _Scope(Placed):
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
         if element.tag == "robot":
-            self._youngest_first(marks)  # gap-43, gap-44, gap-45
+            self.body.manipulators = youngest_first(self.body.manipulators, marks.manipulators)
+            self.body.sensors = youngest_first(self.body.sensors, marks.sensors)
         else:
             self._join_links(element)
         if self.placement.moves:
@@ -108,18 +105,6 @@ class _Scope(Placed):
             self.context.diagnostics.error("broken-file", error.message, error.source, error.hint)
             self.body.set_parts(before)
 
-    def _youngest_first(self, marks: Marks) -> None:
-        """Move manipulators and sensors that came since some moment before those of then, the last one first.
-
-        If there were none then, nothing moves (gap-43); parts of a COLLADA file do not turn (gap-75).
-        """
-        body = self.body
-        arms = [any(built is older for older in marks.manipulators) for built in body.manipulators]
-        body.manipulators = _reordered(body.manipulators, arms)
-        body.sensors = _reordered(
-            body.sensors, [any(built[0] is older for older in marks.sensors) for built in body.sensors]
-        )
-
     def _join_links(self, element: Element) -> None:
         """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides.
 
@@ -133,8 +118,7 @@ class _Scope(Placed):
             self.context.diagnostics.warn("openrave-bug", message, element.source, "write 1 or 0")
 
     def nest(self, element: Element) -> None:
-        """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""
-        check_scope_attributes(element, self.context)
+        self.context.check_attributes(element, SCOPE_ATTRIBUTES, {})
         scale = hadamard(self.scale, scale_attribute(element, self.context.diagnostics))
         inner = _Scope(self.body, self.context, scale, self.depth + 1, skip_geometry=self.skip_geometry)
         inner.read(element)
@@ -143,20 +127,13 @@ class _Scope(Placed):
             self.joint_values = inner.joint_values
 
     def read_default_mass(self, element: Element) -> None:
-        """Read the ``<Mass>`` that the following Bodies share."""
         self.default_mass.read(element)
 
     def read_link(self, element: Element) -> None:
-        """Read a ``<Body>``."""
-        default_mass, geometry_scope = self.default_mass.rule, self.geometry_scope
-        read_link(self.body, element, self.context, default_mass, geometry_scope, skip_geometry=self.skip_geometry)
-
-    def read_joint(self, element: Element) -> None:
-        """Read a ``<Joint>``."""
-        read_joint(self.body, element, self.context)
+        mass = self.default_mass.rule()
+        read_link(self.body, element, self.context, mass, self.geometry_scope, skip_geometry=self.skip_geometry)
 
     def read_grabbed(self, element: Element) -> None:
-        """Read that a link holds another body."""
         self.context.check_attributes(element, GRABBED_ATTRIBUTES, {})
         grabbed = Placed(self.context)
         self.context.walk(element, PLACEMENT_TAGS, {}, grabbed)
@@ -170,7 +147,6 @@ class _Scope(Placed):
             self.body.grabs.append(GrabBuilder(body, known[0], grabbed.placement.pose, tuple(known[1:])))
 
     def read_adjacent(self, element: Element) -> None:
-        """Read a pair of links that never collide."""
         names = words(element.text)[:2]
         links = [link for name in names if (link := self.body.find_link(name)) is not None]
         if len(links) == 2:
@@ -180,21 +156,22 @@ class _Scope(Placed):
             self.context.diagnostics.warn("unknown-body", message, element.source)
 
     def read_models_folder(self, element: Element) -> None:
-        """Read where the meshes of the following Bodies are looked for first."""
         self.geometry_scope = self.geometry_scope._replace(models_folder=element.text.strip())
 
     def read_transparency(self, element: Element) -> None:
-        """Read the transparency that everything the body has gets at the end of the element."""
         self.transparency = number(element, self.context.diagnostics)
 
     def read_joint_values(self, element: Element) -> None:
-        """Read the values of all DOFs."""
         self.joint_values = number_list(element, self.context.diagnostics)
 
+    def read_joint(self, element: Element) -> None:
+        read_joint(self.body, element, self.context)
+
     def read_manipulator(self, element: Element) -> None:
-        """Read a ``<Manipulator>``."""
-        built = read_manipulator(self.body, element, self.context)
-        self.body.manipulators.append(built)
+        read_manipulator(self.body, element, self.context)
+
+    def read_sensor(self, element: Element) -> None:
+        read_attached_sensor(self.body, element, self.context)
 
     def read_controller(self, element: Element) -> None:
         """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints (robot-24)."""
@@ -203,17 +180,6 @@ class _Scope(Placed):
             raise SourceError("OpenRAVE cannot attach a controller while it reads a robot", element.source, hint)
         message = f"<{element.spelled}> is left out: {NO_EFFECT_HERE}"
         self.context.diagnostics.warn("ignored-tag", message, element.source)
-
-    def read_sensor(self, element: Element) -> None:
-        """Read an ``<AttachedSensor>``."""
-        read_attached_sensor(self.body, element, self.context)
-
-
-def _reordered(parts: list[Part], are_older: list[bool]) -> list[Part]:
-    """Return the new ones of some parts, the last one first, and behind them the older ones, if there are any."""
-    older = [part for part, is_older in zip(parts, are_older, strict=True) if is_older]
-    new = [part for part, is_older in zip(parts, are_older, strict=True) if not is_older]
-    return [*reversed(new), *older] if older else parts
 
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
@@ -276,7 +242,7 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
     Raises:
         SourceError: OpenRAVE refuses the body before it is in the environment.
     """
-    check_scope_attributes(element, context)
+    context.check_attributes(element, SCOPE_ATTRIBUTES, {})
     body = BodyBuilder(element.tag == "robot", element.source)
     skip_geometry = is_true(element.attributes.get("skipgeometry", "false"))
     scope = _Scope(body, context, scale_attribute(element, context.diagnostics), 0, skip_geometry=skip_geometry)
@@ -307,8 +273,3 @@ def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
     elif kind.lower() not in {"genericrobot", "kinbody", ""}:  # errors-43
         message = f"there is no class '{kind}' for bodies here; read as a plain one"
         context.diagnostics.error("unknown-interface", message, element.source)
-
-
-def check_scope_attributes(element: Element, context: Context) -> None:
-    """Report the attributes of a ``<Robot>`` or ``<KinBody>`` that nothing reads."""
-    context.check_attributes(element, SCOPE_ATTRIBUTES, {})

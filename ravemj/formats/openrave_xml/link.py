@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from ravemj.core.transforms import Pose
+from ravemj.core.transforms import UNMOVED, Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
 from ravemj.formats.openrave_xml.geom import GEOM_ATTRIBUTES, GeometryScope, read_geometries
 from ravemj.formats.openrave_xml.joint import frame_of_link
-from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
+from ravemj.formats.openrave_xml.mass import MassRule, link_inertial, read_mass
 from ravemj.formats.openrave_xml.tags import IGNORED, Tag
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import Placement, hadamard, is_false, scale_attribute
@@ -20,15 +20,23 @@ class _LinkScope(Placed):
     """An open ``<Body>``."""
 
     def __init__(
-        self, body: BodyBuilder, link: LinkBuilder, mass: MassReader, context: Context, geometry_scope: GeometryScope
+        self,
+        body: BodyBuilder,
+        link: LinkBuilder,
+        start: Pose,
+        mass: MassRule | None,
+        context: Context,
+        geometry_scope: GeometryScope,
+        *,
+        skip_geometry: bool,
     ) -> None:
-        super().__init__(context, Placement(link.pose, geometry_scope.scale))
+        super().__init__(context, Placement(start, geometry_scope.scale))
         self.body = body
         self.link = link
         self.mass = mass
         self.geometry_scope = geometry_scope
         self.T_scope_offset: Pose | None = None
-        self.skip_geometry = False
+        self.skip_geometry = skip_geometry
 
     def read(self, element: Element) -> None:
         """Read the attributes, the file that they name, and the children."""
@@ -59,28 +67,25 @@ class _LinkScope(Placed):
         """Read a ``<Body>`` in this one: the same link, all of whose shapes so far its transform moves."""
         older = len(self.link.geometries)
         geometry_scope = _scaled(self.geometry_scope, element, self.context.diagnostics)
-        mass = MassReader(self.context, None, geometry_scope.scale)
-        inner = _LinkScope(self.body, self.link, mass, self.context, geometry_scope)
-        inner.placement = Placement(Pose(), geometry_scope.scale)
-        inner.skip_geometry = self.skip_geometry
+        inner = _LinkScope(
+            self.body, self.link, UNMOVED, None, self.context, geometry_scope, skip_geometry=self.skip_geometry
+        )
         inner.read(element)
         self.link.geometries = [
             replace(geometry, T_link_geometry=inner.pose @ geometry.T_link_geometry)
             for geometry in self.link.geometries
         ]
-        if older and inner.pose != Pose():
+        if older and inner.pose != UNMOVED:
             message = "the transform of a Body in a Body moves the shapes before it too"
             self.context.diagnostics.warn("openrave-bug", message, element.source, "put the inner Body first")
-        if mass.rule is not None:
+        if inner.mass is not None:
             message = "OpenRAVE discards the Mass of a Body in a Body"
             self.context.diagnostics.warn("openrave-bug", message, element.source, "put it into the outer Body")
 
     def read_offset(self, element: Element) -> None:
-        """Read the name of the link that the pose is relative to."""
         self.T_scope_offset = frame_of_link(self.body, element, self.context)
 
     def read_geometry(self, element: Element) -> None:
-        """Read a ``<Geom>``."""
         if self.skip_geometry:
             self.context.check_attributes(element, GEOM_ATTRIBUTES, {})
             return
@@ -92,12 +97,10 @@ class _LinkScope(Placed):
             self.link.add_to_group(group, found)
 
     def read_parameter(self, element: Element) -> None:
-        """Read a value that scripts attach to the link."""
         self.link.parameters = self.context.with_parameter(self.link.parameters, element)
 
     def read_mass(self, element: Element) -> None:
-        """Read a ``<Mass>``."""
-        self.mass.read(element)
+        self.mass = read_mass(element, self.mass, self.geometry_scope.scale, self.context)
 
 
 LINK_TAGS: dict[str, Tag[_LinkScope]] = {
@@ -127,7 +130,7 @@ def read_link(
     body: BodyBuilder,
     element: Element,
     context: Context,
-    default_mass: MassRule | None,
+    mass: MassRule | None,
     geometry_scope: GeometryScope,
     *,
     skip_geometry: bool,
@@ -138,12 +141,9 @@ def read_link(
     # A known name, also an empty one, goes on with that link; a Body without the attribute is new (transform-26).
     link = LinkBuilder(name or "", element.source) if existing is None else body.links[existing]
     geometry_scope = _scaled(geometry_scope, element, context.diagnostics)
-    mass = MassReader(context, default_mass, geometry_scope.scale)
-    scope = _LinkScope(body, link, mass, context, geometry_scope)
-    scope.skip_geometry = skip_geometry
+    scope = _LinkScope(body, link, link.pose, mass, context, geometry_scope, skip_geometry=skip_geometry)
     scope.read(element)
-    link.pose = scope.pose
-    rule = mass.rule or default_mass
+    link.pose, rule = scope.pose, scope.mass
     inertial = link_inertial(rule, link.geometries)
     if existing is not None and rule is None and inertial.mass != link.inertial.mass:
         message = (

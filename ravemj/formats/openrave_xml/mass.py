@@ -7,9 +7,10 @@ there, so they are rounded to it here.
 import math
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from ravemj.core.transforms import ZERO, Rows, Vec3, Wxyz, add, dot, normalize, rows_from_wxyz, scale
+from ravemj.core.transforms import UNSCALED, ZERO, Rows, Vec3, Wxyz, add, dot, normalize, rows_from_wxyz, scale
+from ravemj.errors import Diagnostics
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tags import Tag
 from ravemj.formats.openrave_xml.tree import Element
@@ -22,7 +23,8 @@ _ROUNDING = 1e-6  # of inertias that were printed with few digits
 TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is given
 
 
-class MassRule(NamedTuple):
+@dataclass(slots=True)
+class MassRule:
     """How the mass properties of a link are computed.
 
     Attributes:
@@ -41,179 +43,144 @@ class MassRule(NamedTuple):
     density: float = 1.0
     total: float = 1.0
     by_total: bool = False
-    half_extents: Vec3 = (1.0, 1.0, 1.0)
+    half_extents: Vec3 = UNSCALED
     custom_mass: float = 1.0
     com: Vec3 = ZERO
     inertia: Rows = DEFAULT_INERTIAL.inertia
     axes: Wxyz | None = None
 
 
-class MassReader:
-    """Reads ``<Mass>`` elements in order; what one leaves out keeps its value.
+@dataclass(slots=True)
+class _Mass:
+    """An open ``<Mass>`` of a Body."""
 
-    Attributes:
-        rule: The rule so far, or None before the first ``<Mass>``.
-    """
-
-    def __init__(self, context: Context, default: MassRule | None, scale: Vec3) -> None:
-        self._context = context
-        self._scale = scale
-        self._rule = default or MassRule()
-        self.rule: MassRule | None = None
-
-    def read(self, element: Element) -> None:
-        """Read a ``<Mass>`` of a Body."""
-        self._context.check_attributes(element, MASS_ATTRIBUTES, {})
-        kind = element.attributes.get("type", "sphere").lower()
-        if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
-            self._context.diagnostics.warn(
-                "unknown-type", f"there is no mass of type '{kind}'; OpenRAVE takes a sphere", element.source
-            )
-            kind = "sphere"
-        self._rule = self._rule._replace(kind=kind, by_total=False)  # whatever the KinBody's was (gap-22, gap-23)
-        self._context.walk(element, MASS_TAGS, {}, self)
-        self.rule = self._rule
-        if kind == "box" and any(child.tag == "extents" for child in element.children):
-            self._context.diagnostics.warn(
-                "openrave-bug",
-                "<extents> of a box mass in a Body has no effect in OpenRAVE; "
-                f"the half sizes are {self._rule.half_extents}",
-                element.source,
-                "write the mass as type custom",
-            )
-
-    def precise_total(self, element: Element) -> None:
-        """Read a total mass in double precision."""
-        self._take_total(self._total(element))
+    diagnostics: Diagnostics
+    rule: MassRule
+    scale: Vec3
 
     def density(self, element: Element) -> None:
         """Read a ``<density>``; it has no effect on a custom mass (gap-21), but on a Mass after it."""
-        density = single(number(element, self._context.diagnostics, self._rule.density))
-        self._rule = self._rule._replace(density=density, by_total=False)
+        self.rule.density = single(number(element, self.diagnostics, self.rule.density))
+        self.rule.by_total = False
 
     def total(self, element: Element) -> None:
-        """Read a ``<total>`` mass."""
-        self._take_total(single(self._total(element)))
-
-    def _total(self, element: Element) -> float:
-        rule = self._rule
-        return number(element, self._context.diagnostics, rule.custom_mass if rule.kind == "custom" else rule.total)
-
-    def _take_total(self, total: float) -> None:
-        self._rule = self._rule._replace(total=total, by_total=True, custom_mass=total)
+        """Read a total mass: ``<total>``, or in double precision ``<precisetotal>``."""
+        rule = self.rule
+        total = number(element, self.diagnostics, rule.custom_mass if rule.kind == "custom" else rule.total)
+        rule.total = rule.custom_mass = single(total) if element.tag == "total" else total
+        rule.by_total = True
 
     def radius(self, element: Element) -> None:
-        """Read the ``<radius>`` of a sphere."""
-        before, *others = self._rule.half_extents
-        radius = number(element, self._context.diagnostics, before) * self._scale[0]
-        self._rule = self._rule._replace(half_extents=(radius, *others))
+        before, y, z = self.rule.half_extents
+        self.rule.half_extents = (number(element, self.diagnostics, before) * self.scale[0], y, z)
 
     def com(self, element: Element) -> None:
-        """Read the centre of mass of a custom mass."""
-        com = vector(element, self._context.diagnostics, self._rule.com)
-        self._rule = self._rule._replace(com=hadamard(self._scale, com))
+        self.rule.com = hadamard(self.scale, vector(element, self.diagnostics, self.rule.com))
 
     def inertia(self, element: Element) -> None:
         """Read the inertia of a custom mass; only its upper triangle counts."""
-        before = [value for row in self._rule.inertia for value in row]
-        xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers(element, 9, self._context.diagnostics, before)
+        before = [value for row in self.rule.inertia for value in row]
+        xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers(element, 9, self.diagnostics, before)
         if max(abs(xy - yx), abs(xz - zx), abs(yz - zy)) > _ROUNDING * max(abs(xx), abs(yy), abs(zz)):
             message = f"<{element.spelled}> is not symmetric; OpenRAVE takes what stands above its diagonal"
-            self._context.diagnostics.warn("asymmetric-inertia", message, element.source)
-        self._rule = self._rule._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+            self.diagnostics.warn("asymmetric-inertia", message, element.source)
+        self.rule.inertia = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
     def axes(self, element: Element) -> None:
-        """Read which principal axes a custom mass has."""
-        self._rule = self._rule._replace(axes=normalize(ROTATIONS["quat"](element, self._context.diagnostics)))
+        self.rule.axes = normalize(ROTATIONS["quat"](element, self.diagnostics))
 
     def extents(self, element: Element) -> None:
         """Accept ``<extents>``, which OpenRAVE does not read in a Body (mass-11)."""
 
 
 MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
-MASS_TAGS: dict[str, Tag[MassReader]] = {
-    "density": Tag(MassReader.density, "[kg/m³]", once=True),
-    "total": Tag(MassReader.total, "[kg]", once=True),
+MASS_TAGS: dict[str, Tag[_Mass]] = {
+    "density": Tag(_Mass.density, "[kg/m³]", once=True),
+    "total": Tag(_Mass.total, "[kg]", once=True),
     "precisetotal": Tag(
-        MassReader.precise_total,
+        _Mass.total,
         "[kg] of which OpenRAVE, which does not know it, has single precision; ravemj writes it",
     ),
-    "radius": Tag(MassReader.radius, "of a sphere [m]", once=True),
-    "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so", once=True),
-    "com": Tag(MassReader.com, "centre of a custom mass [m]", once=True),
-    "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]", once=True),
+    "radius": Tag(_Mass.radius, "of a sphere [m]", once=True),
+    "extents": Tag(_Mass.extents, "no effect, as in OpenRAVE; a warning says so", once=True),
+    "com": Tag(_Mass.com, "centre of a custom mass [m]", once=True),
+    "inertia": Tag(_Mass.inertia, "of a custom mass, about its centre: nine numbers [kg m²]", once=True),
     "principalaxes": Tag(
-        MassReader.axes,
+        _Mass.axes,
         "w x y z of the principal axes that a custom mass has of all that fit its inertia; ravemj's own",
     ),
 }
 
 
-class DefaultMassReader:
-    """Reads ``<Mass>`` of a KinBody: the default of the Bodies that follow it.
+def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: Context) -> MassRule:
+    """Read a ``<Mass>`` of a Body; what it leaves out is as before, which the result takes the place of."""
+    context.check_attributes(element, MASS_ATTRIBUTES, {})
+    kind = element.attributes.get("type", "sphere").lower()
+    if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
+        message = f"there is no mass of type '{kind}'; OpenRAVE takes a sphere"
+        context.diagnostics.warn("unknown-type", message, element.source)
+        kind = "sphere"
+    rule = before or MassRule()
+    rule.kind, rule.by_total = kind, False  # whatever the KinBody's was (gap-22, gap-23)
+    context.walk(element, MASS_TAGS, {}, _Mass(context.diagnostics, rule, scale))
+    if kind == "box" and any(child.tag == "extents" for child in element.children):
+        message = f"<extents> of a box mass in a Body has no effect in OpenRAVE; the half sizes are {rule.half_extents}"
+        context.diagnostics.warn("openrave-bug", message, element.source, "write the mass as type custom")
+    return rule
 
-    Attributes:
-        rule: The default so far, or None before the first ``<Mass>``.
-    """
 
-    def __init__(self, context: Context) -> None:
-        self._context = context
-        self.rule: MassRule | None = None
-        self._kind = "sphere"
-        self._number = 1.0
-        self._half_extents: Vec3 = (1.0, 1.0, 1.0)
-        self._is_total = False
+@dataclass(slots=True)
+class DefaultMass:
+    """What the ``<Mass>`` elements of a KinBody say about the Bodies that follow."""
+
+    context: Context
+    kind: str = ""  # before the first
+    number: float = 1.0  # density or total
+    is_total: bool = False
+    half_extents: Vec3 = UNSCALED
+
+    def rule(self) -> MassRule | None:
+        """Return what a Body starts from, or None before the first ``<Mass>``."""
+        by_total = self.is_total and self.kind != "mimicgeom"
+        return MassRule(self.kind, self.number, self.number, by_total, self.half_extents) if self.kind else None
 
     def read(self, element: Element) -> None:
         """Read a ``<Mass>`` of a KinBody."""
-        self._context.check_attributes(element, DEFAULT_MASS_ATTRIBUTES, {})
+        self.context.check_attributes(element, DEFAULT_MASS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "sphere").lower()
         if kind not in {"mimicgeom", "sphere", "box"}:  # "custom" too
             message = f"OpenRAVE takes a mass of type '{kind}' in a KinBody for a sphere"
-            self._context.diagnostics.warn("openrave-bug", message, element.source, "give each Body its own Mass")
+            self.context.diagnostics.warn("openrave-bug", message, element.source, "give each Body its own Mass")
             kind = "sphere"
-        self._kind, self._is_total = kind, False
-        self._context.walk(element, DEFAULT_MASS_TAGS, {}, self)
-        if self._is_total and kind == "mimicgeom":
-            message = f"OpenRAVE takes the total {self._number:g} of a KinBody's mimicgeom mass for a density"
-            self._context.diagnostics.warn("openrave-bug", message, element.source, "write <density>")
-        self.rule = MassRule(
-            kind,
-            density=self._number,
-            total=self._number,
-            by_total=self._is_total and kind != "mimicgeom",
-            half_extents=self._half_extents,
-        )
+        self.kind, self.is_total = kind, False
+        self.context.walk(element, DEFAULT_MASS_TAGS, {}, self)
+        if self.is_total and kind == "mimicgeom":
+            message = f"OpenRAVE takes the total {self.number:g} of a KinBody's mimicgeom mass for a density"
+            self.context.diagnostics.warn("openrave-bug", message, element.source, "write <density>")
 
-    def density(self, element: Element) -> None:
-        """Read a ``<density>``."""
-        self._number, self._is_total = self._read(element), False
-
-    def total(self, element: Element) -> None:
-        """Read a ``<total>``; it lands in the same place as a density (mass-21)."""
-        self._number, self._is_total = self._read(element), True
-
-    def _read(self, element: Element) -> float:
-        return single(number(element, self._context.diagnostics, self._number))
+    def read_number(self, element: Element) -> None:
+        """Read a ``<density>`` or a ``<total>``; both land in the same place (mass-21)."""
+        self.number = single(number(element, self.context.diagnostics, self.number))
+        self.is_total = element.tag == "total"
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
-        before, second, third = self._half_extents
-        self._half_extents = (number(element, self._context.diagnostics, before), second, third)
+        before, y, z = self.half_extents
+        self.half_extents = (number(element, self.context.diagnostics, before), y, z)
 
     def extents(self, element: Element) -> None:
         """Read the half sizes of a box; of other kinds and behind a total they have no effect (gap-24)."""
-        half_extents = vector(element, self._context.diagnostics, self._half_extents)
-        if self._kind == "box" and not self._is_total:
-            self._half_extents = half_extents
+        half_extents = vector(element, self.context.diagnostics, self.half_extents)
+        if self.kind == "box" and not self.is_total:
+            self.half_extents = half_extents
 
 
 DEFAULT_MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box; others count as sphere"}
-DEFAULT_MASS_TAGS: dict[str, Tag[DefaultMassReader]] = {
-    "density": Tag(DefaultMassReader.density, "[kg/m³]", once=True),
-    "total": Tag(DefaultMassReader.total, "[kg]; of mimicgeom OpenRAVE takes it for a density", once=True),
-    "radius": Tag(DefaultMassReader.radius, "of a sphere [m]", once=True),
-    "extents": Tag(DefaultMassReader.extents, "of a box: half sizes [m]", once=True),
+DEFAULT_MASS_TAGS: dict[str, Tag[DefaultMass]] = {
+    "density": Tag(DefaultMass.read_number, "[kg/m³]", once="density"),
+    "total": Tag(DefaultMass.read_number, "[kg]; of mimicgeom OpenRAVE takes it for a density", once="total"),
+    "radius": Tag(DefaultMass.radius, "of a sphere [m]", once=True),
+    "extents": Tag(DefaultMass.extents, "of a box: half sizes [m]", once=True),
 }
 
 
@@ -230,7 +197,7 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
     if rule.by_total:
         moments = scale(moments, rule.total / mass if mass else 0.0)
         mass = rule.total
-    return Inertial(mass, ZERO, ((moments[0], 0.0, 0.0), (0.0, moments[1], 0.0), (0.0, 0.0, moments[2])))
+    return Inertial(mass, ZERO, _diagonal(moments))
 
 
 def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
@@ -245,21 +212,26 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     if mass == 0.0:
         return Inertial(0.0, ZERO, NO_INERTIA, undefined=rule.by_total and bool(geometries))
     factor = rule.total / mass if rule.by_total else 1.0
+    poses = [geometry.T_link_geometry for geometry in geometries]
     com = ZERO
-    for geometry, (part, _) in zip(geometries, solids, strict=True):
-        com = add(com, scale(geometry.T_link_geometry.position, part / mass))
+    for (position, _), (part, _) in zip(poses, solids, strict=True):
+        com = add(com, scale(position, part / mass))
     inertia = NO_INERTIA
-    for geometry, (part, moments) in zip(geometries, solids, strict=True):
-        position, wxyz = geometry.T_link_geometry
-        arm = add(position, scale(com, -1.0))
-        inertia = _add_rows(inertia, _rotated(moments, wxyz), _point_inertia(part * factor, arm))
+    for (position, wxyz), (part, moments) in zip(poses, solids, strict=True):
+        inertia = _add_rows(inertia, _rotated(moments, wxyz))
+        if position != com:
+            inertia = _add_rows(inertia, _point_inertia(part * factor, add(position, scale(com, -1.0))))
     return Inertial(mass * factor, com, inertia)
+
+
+def _diagonal(moments: Vec3) -> Rows:
+    return ((moments[0], 0.0, 0.0), (0.0, moments[1], 0.0), (0.0, 0.0, moments[2]))
 
 
 def _rotated(moments: Vec3, wxyz: Wxyz) -> Rows:
     """Return R diag(moments) R^T."""
     if moments[0] == moments[1] == moments[2] or not any(wxyz[1:]):
-        return ((moments[0], 0.0, 0.0), (0.0, moments[1], 0.0), (0.0, 0.0, moments[2]))
+        return _diagonal(moments)
     rows = rows_from_wxyz(wxyz)
     weighted = [(row[0] * moments[0], row[1] * moments[1], row[2] * moments[2]) for row in rows]
     xy, xz, yz = dot(weighted[0], rows[1]), dot(weighted[0], rows[2]), dot(weighted[1], rows[2])
@@ -281,11 +253,8 @@ def _point_inertia(mass: float, arm: Vec3) -> Rows:
     )
 
 
-def _add_rows(*matrices: Rows) -> Rows:
-    first, second, third = ZERO, ZERO, ZERO
-    for matrix in matrices:
-        first, second, third = add(first, matrix[0]), add(second, matrix[1]), add(third, matrix[2])
-    return first, second, third
+def _add_rows(a: Rows, b: Rows) -> Rows:
+    return (add(a[0], b[0]), add(a[1], b[1]), add(a[2], b[2]))
 
 
 def single(value: float) -> float:

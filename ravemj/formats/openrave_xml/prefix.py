@@ -1,12 +1,14 @@
-"""Prefixes of names: of the parts of a body that were made since some moment."""
+"""The parts of a body that were made since some moment: prefixes of their names, and their order."""
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from ravemj.model.builder import BodyBuilder, SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.mimic import Equations
-from ravemj.model.scene import AttachedSensor
+
+Part = TypeVar("Part")
 
 
 class Marks(NamedTuple):
@@ -15,13 +17,12 @@ class Marks(NamedTuple):
     links: int = 0
     joints: int = 0
     manipulators: tuple[ManipulatorBuilder, ...] = ()
-    sensors: tuple[AttachedSensor, ...] = ()
+    sensors: tuple[SensorBuilder, ...] = ()
 
     @classmethod
     def of(cls, body: BodyBuilder) -> "Marks":
         """Return the marks of the present moment."""
-        sensors = tuple([built.sensor for built in body.sensors])
-        return cls(len(body.links), len(body.joints), tuple(body.manipulators), sensors)
+        return cls(len(body.links), len(body.joints), tuple(body.manipulators), tuple(body.sensors))
 
 
 def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> None:
@@ -47,17 +48,26 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
             equations = joint.equations
             texts = (equations.position, equations.velocity, equations.acceleration)
             joint.equations = Equations(*(substitute(text, renamed) for text in texts))
-    _prefix_arms_and_sensors(prefix, body, marks)
-
-
-def _prefix_arms_and_sensors(prefix: str, body: BodyBuilder, marks: Marks) -> None:
-    for built in body.manipulators:
-        if any(built is older for older in marks.manipulators):
-            continue
+    for built in _newer(body.manipulators, marks.manipulators):
         built.name = prefix + built.name
         built.base = prefix + built.base
         built.effector = prefix + built.effector
         built.gripper_joints = [prefix + name for name in built.gripper_joints]
-    for index, (sensor, link_name) in enumerate(body.sensors):
-        if all(sensor is not older for older in marks.sensors):
-            body.sensors[index] = SensorBuilder(replace(sensor, name=prefix + sensor.name), link_name)
+    older = set(map(id, marks.sensors))
+    body.sensors = [
+        built if id(built) in older else built._replace(sensor=replace(built.sensor, name=prefix + built.sensor.name))
+        for built in body.sensors
+    ]
+
+
+def youngest_first(parts: list[Part], older: Sequence[Part]) -> list[Part]:
+    """Move parts that came since some moment before the older ones, the last one first (gap-44, gap-45).
+
+    If there were none then, nothing moves (gap-43); parts of a COLLADA file do not turn (gap-75).
+    """
+    return [*reversed(_newer(parts, older)), *older] if older else parts
+
+
+def _newer(parts: Sequence[Part], older: Sequence[Part]) -> list[Part]:
+    known = set(map(id, older))
+    return [part for part in parts if id(part) not in known]

@@ -29,26 +29,21 @@ class _ManipulatorScope(Placed):
         self.built = built
 
     def read_base(self, element: Element) -> None:
-        """Read the name of the link that the arm starts from."""
         self.built.base = self._link(element)
 
     def read_effector(self, element: Element) -> None:
-        """Read the name of the link that carries the tool."""
         self.built.effector = self._link(element)
 
     def _link(self, element: Element) -> str:
         return named_link(self.body, element, "the manipulator", self.context)
 
     def read_gripper(self, element: Element) -> None:
-        """Read the names of the gripper's joints."""
         self.built.gripper_joints = words(element.text)
 
     def read_closing(self, element: Element) -> None:
-        """Read the signs of closing."""
         self.built.closing_direction = number_list(element, self.context.diagnostics)
 
     def read_direction(self, element: Element) -> None:
-        """Read the direction that the tool points along."""
         self.built.direction = vector(element, self.context.diagnostics)
 
 
@@ -71,8 +66,8 @@ MANIPULATOR_IGNORED = {
 }
 
 
-def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> ManipulatorBuilder:
-    """Read a ``<Manipulator>``."""
+def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> None:
+    """Read a ``<Manipulator>`` and append it to the body."""
     context.check_attributes(element, MANIPULATOR_ATTRIBUTES, {})
     name = element.attributes.get("name", "")
     if not name:
@@ -84,7 +79,7 @@ def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> M
         message = f"the manipulator '{name}' has no effector"
         context.diagnostics.error("no-effector", message, element.source, "name its last link")
     scope.built.T_effector_tool = scope.placement.pose
-    return scope.built
+    body.manipulators.append(scope.built)
 
 
 class _SensorScope(Placed):
@@ -97,11 +92,9 @@ class _SensorScope(Placed):
         self.device = SensorElement()
 
     def read_link(self, element: Element) -> None:
-        """Read the name of the link that carries the sensor."""
         self.link = named_link(self.body, element, "the sensor", self.context)
 
     def read_device(self, element: Element) -> None:
-        """Read the ``<Sensor>`` itself."""
         self.device = read_device(element, self.context)
 
 

@@ -28,6 +28,7 @@ class Element:
         text: The text behind the last child element; what stands before a child is discarded.
         children: Child elements in document order.
         complete: False where the file breaks off before its end tag.
+        checked: Whether its attributes were looked at.
     """
 
     tag: str
@@ -37,6 +38,7 @@ class Element:
     text: str = ""
     children: list["Element"] = field(default_factory=lambda: [])
     complete: bool = False
+    checked: bool = False
 
 
 class Document(NamedTuple):
@@ -54,7 +56,7 @@ class Document(NamedTuple):
 
 
 def parse_file(path: str, included_from: Source | None = None) -> Document:
-    """Read a file.
+    """Parse a file.
 
     Args:
         path: The file.
@@ -63,13 +65,16 @@ def parse_file(path: str, included_from: Source | None = None) -> Document:
     Raises:
         SourceError: the file cannot be read, or has no root element.
     """
-    whole_file = Source(path, 0, included_from)
+    return parse(content_of(path, included_from), path, included_from)
+
+
+def content_of(path: str, included_from: Source | None = None) -> bytes:
+    """Return the bytes of a file; arguments and errors are those of ``parse_file``."""
     try:
         with open(path, "rb", buffering=0) as file:
-            content = file.read()
+            return file.read()
     except OSError as error:
-        raise SourceError(f"cannot read the file: {os_reason(error)}", whole_file) from None
-    return parse(content, path, included_from)
+        raise SourceError(f"cannot read the file: {os_reason(error)}", Source(path, 0, included_from)) from None
 
 
 def parse(content: bytes, path: str, included_from: Source | None = None) -> Document:
@@ -176,11 +181,11 @@ class _Parser:
         self._encoding = encoding or ""
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
-        if self._entities and attributes:
-            self._refuse_entities()
-        lowered = {key.lower(): value for key, value in attributes.items()} if attributes else attributes
-        source = Source(self._path, self._expat.CurrentLineNumber, self._included_from)
-        element = Element(name.lower(), name, lowered, source, "", [])
+        if attributes:
+            if self._entities:
+                self._refuse_entities()
+            attributes = {key.lower(): value for key, value in attributes.items()}
+        element = Element(name.lower(), name, attributes, self._here(), "", [])
         opened = self._open
         if not opened:
             self.root = element

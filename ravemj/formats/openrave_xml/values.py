@@ -27,10 +27,6 @@ _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))", 
 _WORD = re.compile(r"\S+", re.ASCII)
 """C++ takes only ASCII's digits for digits and only ASCII's spaces for spaces."""
 
-_PLAIN = "0123456789.+-eE \t\r\n"
-"""What almost every text with numbers consists of; then Python makes of their words what C++ makes of them."""
-
-
 _OF_FEW_DIGITS = 0.01
 """How far the numbers of a rotation matrix are from one where somebody wrote two digits."""
 
@@ -62,7 +58,7 @@ def leading_numbers(text: str) -> Numbers:
 
 def _plain_numbers(text: str) -> list[float] | None:
     """Return the numbers of a text that holds nothing else, or None."""
-    if text.strip(_PLAIN):
+    if "_" in text or not text.isascii():  # Python takes both for parts of numbers
         return None
     try:
         plain = list(map(float, text.split()))

@@ -1,12 +1,17 @@
-"""A COLLADA file in place of a body: its first body joins the one that is open."""
+"""Other files in place of a body: the first body of a COLLADA file joins the one that is open, a mesh is one link."""
 
+import os
 from dataclasses import replace
+from pathlib import Path
 
 from ravemj.core.transforms import Pose, Vec3
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
+from ravemj.formats.meshes import MESH_SUFFIXES
 from ravemj.formats.openrave_xml.context import Context
-from ravemj.model.builder import BodyBuilder, SensorBuilder
+from ravemj.model.builder import BodyBuilder, LinkBuilder, SensorBuilder
+from ravemj.model.scene import Geometry, TriMesh
+from ravemj.model.shape_bodies import MASSLESS
 
 
 def add_collada(
@@ -78,3 +83,36 @@ def _join(body: BodyBuilder, other: BodyBuilder) -> None:
     for sensor, link_name in other.sensors:
         link = None if sensor.link is None else indices[sensor.link]
         body.sensors.append(SensorBuilder(replace(sensor, link=link), link_name))
+
+
+def is_mesh(name: str) -> bool:
+    """Return whether a file in place of a body is a mesh; COLLADA files are robots there."""
+    lowered = name.lower()
+    return lowered.endswith(MESH_SUFFIXES) and not lowered.endswith(collada.SUFFIXES)
+
+
+def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context: Context) -> None:
+    """Fill a body with the link that OpenRAVE makes of a mesh file; it has the name of the file.
+
+    Args:
+        body: The body.
+        path: The file.
+        scale: Factors along x, y and z.
+        source: Where the file is named.
+        context: Takes findings.
+    """
+    geometries = [
+        Geometry(
+            shape=TriMesh(part.mesh),
+            T_link_geometry=Pose(),
+            name="",
+            diffuse=part.diffuse,
+            ambient=part.ambient,
+            transparency=part.transparency,
+            visible=True,
+            source=source,
+        )
+        for part in context.mesh(os.path.abspath(path), source, scale=scale)
+    ]
+    body.links.append(LinkBuilder("base", source, geometries=geometries, inertial=MASSLESS, static=True))
+    body.name = Path(path).stem
