@@ -13,7 +13,7 @@ from waiting import time_limit
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
 from ravemj.formats.meshes.files import FileContent
-from ravemj.formats.meshes.reading import _READERS, _read
+from ravemj.formats.meshes.reading import _read, reader_of
 
 FILES = DATA / "meshes"
 SAMPLES = {path.name: path.read_bytes() for path in sorted(FILES.iterdir()) if path.suffix in MESH_SUFFIXES}
@@ -56,7 +56,7 @@ def survives(name, data):
     with warnings.catch_warnings():
         if suffix in TRIMESH:
             warnings.simplefilter("ignore")
-        parts = outcome(lambda: _read(FileContent(str(FILES / name), data), _READERS[suffix])[0])
+        parts = outcome(lambda: _read(FileContent(str(FILES / name), data), reader_of(suffix))[0])
     for part in parts:
         assert len(part.mesh.triangles)
         assert part.mesh.triangles.min() >= 0

@@ -1,129 +1,132 @@
 """The parameters of an axis: limits, velocities, weights and resolutions, from up to three elements."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
 
 from ravemj.core.transforms import Vec3
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.references import References
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
 from ravemj.model.scene import UNLIMITED, Axis
 
 _RADIANS = {"OpenRAVE Collada Writer", "URDF Collada Writer"}
 """Tools that write speeds and values of joints in radians, where the standard says degrees."""
 
-_UNLIMITED_SLIDE = 1e6
-_DEFAULT_VELOCITIES = {"revolute": 0.5, "prismatic": 0.01}  # [rad/s, m/s]
+_UNLIMITED_SLIDE = 1e6  # OpenRAVE's limit of sliders without limits
+_DEGREE = math.pi / 180
 
 
-@dataclass(frozen=True, slots=True)
-class AxisInfo:
-    """The elements that say something about an axis.
+class AxisReader(NamedTuple):
+    """Reads one axis.
 
     Attributes:
+        library: The documents.
+        element: The ``<revolute>`` or ``<prismatic>``.
         kinematics: The ``<axis_info>`` of the kinematics system, or None.
         motion: That of the motion system, or None.
     """
 
+    library: Library
+    element: Element
     kinematics: Element | None = None
     motion: Element | None = None
 
+    @property
+    def is_revolute(self) -> bool:
+        """True where the axis turns, False where it slides."""
+        return local_name(self.element) == "revolute"
 
-class AxisReader:
-    """Reads axes."""
+    @property
+    def is_active(self) -> bool:
+        """True where the axis has a DOF."""
+        return self.library.truth(child(self.kinematics, "active"), True)
 
-    def __init__(self, library: Library, references: References) -> None:
-        self._library = library
-        self._references = references
+    @property
+    def direction(self) -> Vec3:
+        """The unit vector in the joint's frame; z where the file has none."""
+        values = numbers(child(self.element, "axis"))[:3]
+        length = float(np.linalg.norm(values))
+        if len(values) < 3 or not 0 < length < math.inf:
+            return (0.0, 0.0, 1.0)
+        x, y, z = (values / length).tolist()
+        return x, y, z
 
-    def is_active(self, info: AxisInfo) -> bool:
-        """Tell whether an axis has a DOF."""
-        return self._references.truth(child(info.kinematics, "active"), True)
+    @property
+    def wrap(self) -> float:
+        """The middle of limits beyond half a turn, about which OpenRAVE counts turns [rad]; 0 within them."""
+        written = self._written_limits()
+        return sum(written) / 2 if written and max(map(abs, written)) > math.pi else 0.0
 
-    def value(self, element: Element, written: float | None) -> float:
-        """Return the value that a binding gives to an axis [rad or m]."""
-        if written is None or not math.isfinite(written):
-            return 0.0
-        return written * self._factor(element, 1.0 if self._in_radians(element) else math.pi / 180)
+    @property
+    def dof_index(self) -> float:
+        """The DOF that OpenRAVE's writer gave to the axis; infinity for none."""
+        for element in children(self.kinematics, "index"):
+            value = self.library.number(element) if element.get("semantic") == "OpenRAVE" else None
+            if value is not None and value >= 0:
+                return value
+        return math.inf
 
-    def read(self, element: Element, direction: Vec3, info: AxisInfo) -> Axis:
-        """Return an axis.
+    def value(self, written: float | None) -> float:
+        """Return the value that a binding gives to the axis [rad or m]."""
+        return 0.0 if written is None or not math.isfinite(written) else written * self._speed_unit()
 
-        Args:
-            element: The ``<revolute>`` or ``<prismatic>``.
-            direction: Its unit vector in the frame of the parent link.
-            info: What else says something about it.
-        """
-        lower, upper, circular = self._limits(element, info)
-        speed_factor = self._factor(element, 1.0 if self._in_radians(element) else math.pi / 180)
+    def read(self, direction: Vec3) -> Axis:
+        """Return the axis, given its unit vector in the frame of the parent link."""
+        lower, upper, circular = self._limits()
         return Axis(
             direction,
             lower=lower,
             upper=upper,
             circular=circular,
-            weight=self._parameter(info.kinematics, "planning_weight", 1.0),
-            resolution=self._parameter(info.kinematics, "discretization_resolution", 0.02),
-            max_velocity=self._rate(info.motion, "speed", speed_factor, _DEFAULT_VELOCITIES[local_name(element)]),
-            max_acceleration=self._rate(info.motion, "acceleration", speed_factor, 50.0),
+            weight=self._parameter("planning_weight", 1.0),
+            resolution=self._parameter("discretization_resolution", 0.02),
+            max_velocity=self._rate("speed", 0.5 if self.is_revolute else 0.01),
+            max_acceleration=self._rate("acceleration", 50.0),
         )
 
-    def wrap(self, element: Element, info: AxisInfo) -> float:
-        """Return the middle of limits beyond half a turn, about which OpenRAVE counts turns [rad]; 0 within them."""
-        written = self._written_limits(element, info)
-        return sum(written) / 2 if written and max(map(abs, written)) > math.pi else 0.0
-
-    def dof_index(self, info: AxisInfo) -> float:
-        """Return the DOF that OpenRAVE's writer gave to an axis; infinity for none."""
-        for element in children(info.kinematics, "index"):
-            value = self._references.number(element) if element.get("semantic") == "OpenRAVE" else None
-            if value is not None and value >= 0:
-                return value
-        return math.inf
-
-    def _limits(self, element: Element, info: AxisInfo) -> tuple[float, float, bool]:
+    def _limits(self) -> tuple[float, float, bool]:
         """Return the limits, and whether the axis turns without end."""
-        revolute = local_name(element) == "revolute"
-        if self._references.truth(child(info.kinematics, "locked"), False):
+        if self.library.truth(child(self.kinematics, "locked"), False):
             return 0.0, 0.0, False
-        if revolute and self._is_circular(info.kinematics):
+        if self.is_revolute and self.library.truth(self._newparam("circular"), False):
             return -UNLIMITED, UNLIMITED, True
-        written = self._written_limits(element, info)
+        written = self._written_limits()
         if written is not None:
             lower, upper = sorted(written)
             return (0.0, 0.0, False) if lower == upper else (lower, upper, False)
-        if revolute:
+        if self.is_revolute:
             return -UNLIMITED, UNLIMITED, True
         return -_UNLIMITED_SLIDE, _UNLIMITED_SLIDE, False
 
-    def _written_limits(self, element: Element, info: AxisInfo) -> tuple[float, float] | None:
+    def _written_limits(self) -> tuple[float, float] | None:
         """Return the limits as written: those of the system, or else those of the axis itself [rad or m]."""
-        factor = self._factor(element, math.pi / 180)
-        for owner in (info.kinematics, element):
+        unit = self._unit(_DEGREE)
+        for owner in (self.kinematics, self.element):
             limits = child(owner, "limits")
             if limits is not None and owner is not None:
-                lower, upper = (self._references.number(child(limits, name), owner) for name in ("min", "max"))
+                lower, upper = (self.library.number(child(limits, name), owner) for name in ("min", "max"))
                 if lower is not None and upper is not None and not math.isnan(lower + upper):
-                    return lower * factor, upper * factor
+                    return lower * unit, upper * unit
         return None
 
-    def _is_circular(self, info: Element | None) -> bool:
-        found = (item for item in children(info, "newparam") if item.get("sid") == "circular")
-        return self._references.truth(next(found, None), False)
+    def _newparam(self, sid: str) -> Element | None:
+        return next((item for item in children(self.kinematics, "newparam") if item.get("sid") == sid), None)
 
-    def _parameter(self, info: Element | None, name: str, default: float) -> float:
-        found = (item for item in children(info, "newparam") if item.get("sid") == name)
-        values = numbers(child(next(found, None), "float"))
+    def _parameter(self, sid: str, default: float) -> float:
+        values = numbers(child(self._newparam(sid), "float"))
         return float(values[0]) if len(values) else default
 
-    def _rate(self, info: Element | None, name: str, factor: float, default: float) -> float:
-        value = None if info is None else self._references.number(child(info, name), info)
-        return default if value is None or not math.isfinite(value) else abs(value * factor)
+    def _rate(self, name: str, default: float) -> float:
+        value = None if self.motion is None else self.library.number(child(self.motion, name), self.motion)
+        return default if value is None or not math.isfinite(value) else abs(value * self._speed_unit())
 
-    def _factor(self, element: Element, angle: float) -> float:
-        """Return what a number of this axis has to be multiplied by."""
-        return angle if local_name(element) == "revolute" else self._library.metres(element)
+    def _unit(self, angle: float) -> float:
+        """Return what a number of this axis has to be multiplied by, given the unit of angles [rad]."""
+        return angle if self.is_revolute else self.library.metres(self.element)
 
-    def _in_radians(self, element: Element) -> bool:
-        root = self._library.document_of(element).root
-        contributors = children(child(root, "asset"), "contributor")
-        return any(" ".join(words(child(item, "authoring_tool"))) in _RADIANS for item in contributors)
+    def _speed_unit(self) -> float:
+        """Return what speeds and values have to be multiplied by."""
+        contributors = children(child(self.library.document_of(self.element).root, "asset"), "contributor")
+        tools = (" ".join(words(child(item, "authoring_tool"))) for item in contributors)
+        return self._unit(1.0 if any(tool in _RADIANS for tool in tools) else _DEGREE)

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.references import References
-from ravemj.formats.collada.visual import Node
+from ravemj.formats.collada.visual import Node, find_node
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
 
 _OWNERS = {"instance_articulated_system", "instance_kinematics_model"}
@@ -88,14 +87,11 @@ def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> boo
     return True
 
 
-def read_bindings(
-    library: Library, references: References, instance: Element, scene: Element, root: Node | None
-) -> Bindings:
+def read_bindings(library: Library, instance: Element, scene: Element, root: Node | None) -> Bindings:
     """Read the bindings of a kinematics scene.
 
     Args:
         library: The documents.
-        references: Resolves parameters.
         instance: The ``<instance_kinematics_scene>``.
         scene: The ``<kinematics_scene>``.
         root: The visual scene, or None.
@@ -104,37 +100,28 @@ def read_bindings(
     axes: list[AxisBinding] = []
     for element in children(instance, "bind_kinematics_model"):
         name = "".join(words(child(element, "param"))) or (element.get("param") or "")
-        found = references.parameter(name, instance, scene) if name else None
-        node = _node(library, root, element, "node")
+        found = library.parameter(name, instance, scene) if name else None
+        node = find_node(library, root, element.get("node") or "", element)
         if found is None:
             library.warn("broken-reference", f"there is no model behind the parameter '{name}'", element)
         elif node is not None:
-            models.append(ModelBinding(_owner(references, name, instance, scene), found.element, node))
+            models.append(ModelBinding(_owner(library, name, instance, scene), found.element, node))
     for element in children(instance, "bind_joint_axis"):
-        param = child(element, "axis", "param")
-        name = "".join(words(param))
-        found = references.parameter(name, instance, scene) if name else None
+        name = "".join(words(child(element, "axis", "param")))
+        found = library.parameter(name, instance, scene) if name else None
         if found is None or local_name(found.element) not in {"revolute", "prismatic"}:
             library.warn("broken-reference", f"there is no axis behind the parameter '{name}'", element)
             continue
-        owner = _owner(references, name, instance, scene)
-        value = references.number(child(element, "value"), instance, scene)
-        node = _node(library, root, element, "target")
+        owner = _owner(library, name, instance, scene)
+        value = library.number(child(element, "value"), instance, scene)
+        node = find_node(library, root, element.get("target") or "", element)
         axes.append(AxisBinding(owner, found.through, found.element, node, value))
     return Bindings(tuple(models), tuple(axes))
 
 
-def _node(library: Library, root: Node | None, element: Element, attribute: str) -> Node | None:
-    path = element.get(attribute) or ""
-    node = None if root is None or not path else root.find(path)
-    if node is None:
-        library.warn("broken-reference", f"there is no node '{path}' in the visual scene", element)
-    return node
-
-
-def _owner(references: References, name: str, *scopes: Element) -> Element | None:
+def _owner(library: Library, name: str, *scopes: Element) -> Element | None:
     """Return the instance in the kinematics scene whose parameter has a name."""
-    found = next((item for scope in scopes if (item := references.resolve(name, scope)) is not None), None)
+    found = next((item for scope in scopes if (item := library.resolve(name, scope)) is not None), None)
     around = None if found is None else found.element
     while around is not None and local_name(around) not in _OWNERS:
         around = around.getparent()

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping
 from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, Vec3, add, conjugate, rotate, scale
 from ravemj.errors import Diagnostics, OutputError
 from ravemj.formats import settled
+from ravemj.formats.collada.extras import PROFILE
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.kinematics_model import Names, valid_name
 from ravemj.formats.collada.mathml_writer import TooDeepError, math_of
 from ravemj.formats.collada.sections import Sections
-from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.system_writer import SystemWriter
 from ravemj.formats.collada.trees import Tree, trees_of
 from ravemj.formats.xml_text import XmlText

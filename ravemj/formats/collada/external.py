@@ -10,11 +10,10 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import settled
 from ravemj.formats.collada.axis import AxisReader
 from ravemj.formats.collada.bindings import AxisBinding, Bindings, ModelBinding, read_bindings
+from ravemj.formats.collada.extras import extra_of
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.library import ARCHIVE_SUFFIX, Library
-from ravemj.formats.collada.references import References
 from ravemj.formats.collada.sections import Sections
-from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.visual import Node, expand
 from ravemj.formats.data_folders import find, name_in_data_folders
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
@@ -126,7 +125,6 @@ class _Finder:
         self._uri = uri
         self._suffix = suffix
         self._document = document
-        self._references = References(library)
         self._scene = child(document.root, "scene")
         visual = child(self._scene, "instance_visual_scene")
         shown = None if visual is None else library.follow(visual)
@@ -143,7 +141,7 @@ class _Finder:
             for instance in children(scene, "instance_articulated_system"):
                 system = self._library.follow(instance)
                 if scene is not None and system is not None and line in (instance.sourceline, system.sourceline):
-                    bindings = read_bindings(self._library, self._references, kinematics, scene, self._root)
+                    bindings = read_bindings(self._library, kinematics, scene, self._root)
                     return self._described(instance, system, bindings)
         raise SourceError("the file has no such body any more", Source(self._document.path, line))
 
@@ -190,7 +188,7 @@ class _Finder:
             "/".join((self._path(node, tops), *sids[place : place + 1])),
             self._library.source(joint),
             place,
-            AxisReader(self._library, self._references).value(binding.axis, 1.0),
+            AxisReader(self._library, binding.axis).value(1.0),
         )
 
     def _links(self, models: list[ModelBinding]) -> Iterator[tuple[Source, str]]:
@@ -244,7 +242,7 @@ def write_reference(sections: Sections, body: KinBody, number: int, external: Ex
         with out.inside("motion"):
             out.element("instance_articulated_system", url=f"{external.uri}#{external.system}", sid=f"{name}_origin")
             out.element("technique_common")
-        with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
+        with extra_of(out):
             out.element("name", body.name)
             for grab in body.grabs:
                 paths = [

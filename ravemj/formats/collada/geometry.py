@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ravemj.core.transforms import Floats, Pose, wxyz_from_axis_angle
+from ravemj.formats.collada.extras import extras, own_techniques
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.polar import polar_decomposition, rigid_part
-from ravemj.formats.collada.supplement import own_techniques
-from ravemj.formats.collada.visual import Node, transform_of
+from ravemj.formats.collada.visual import Node, polar_decomposition, read_pose
 from ravemj.formats.meshes.collada.document import (
     Element,
     attribute_number,
@@ -65,12 +64,12 @@ class GeometryReader:
         return found
 
     def _shapes(self, instance: Element, geometry: Element, T_link_node: Floats) -> Iterator[Geometry]:
-        info = _info(geometry)
+        info = next((technique for _, technique in extras(geometry, "geometry_info")), None)
         source = self._library.source(instance)
         T_link_frame, scaling = polar_decomposition(T_link_node, source)
         visible = True
         if info is not None:
-            T_link_frame = T_link_frame @ rigid_part(transform_of(self._library, info), source)
+            T_link_frame = T_link_frame @ read_pose(self._library, info)
             visible = words(child(info, "visible", "bool"))[:1] != ["false"]
         primitive = None if info is None else self._primitive(info)
         groups = self._groups(geometry)
@@ -165,15 +164,6 @@ class GeometryReader:
                 message = "ravemj knows no such shape; the triangles count"
                 self._library.warn("unknown-type", message, element)
         return None
-
-
-def _info(geometry: Element) -> Element | None:
-    """Return what OpenRAVE says of a ``<geometry>``."""
-    for extra in children(geometry, "extra"):
-        if extra.get("type") == "geometry_info":
-            techniques = children(extra, "technique")
-            return next((item for item in techniques if item.get("profile") == "OpenRAVE"), None)
-    return None
 
 
 def _shape(element: Element, metres: float) -> Shape | None:

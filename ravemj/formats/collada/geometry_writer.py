@@ -5,7 +5,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats import settled
-from ravemj.formats.collada.supplement import PROFILE
+from ravemj.formats.collada.extras import extra_of
 from ravemj.formats.meshes.parts import weld
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.scene import SHAPE_TYPES, Cylinder, Geometry, Mesh, Rgb, TriMesh
@@ -42,10 +42,10 @@ class GeometryWriter:
         out = self.geometries
         with out.inside("geometry", id=name, name=geometry.name or None):
             _write_mesh(out, name, _stored(geometry.shape.triangulated(), T_link_geometry))
-            with out.inside("extra", type="geometry_info"), out.inside("technique", profile="OpenRAVE"):
+            with extra_of(out, "geometry_info"):
                 _write_info(out, geometry, T_link_geometry)
             if geometry.display is not None or not geometry.modifiable:
-                with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
+                with extra_of(out):
                     out.element("modifiable", geometry.modifiable)
                     if geometry.display is not None:
                         out.element("render", url=f"#{name}_render")

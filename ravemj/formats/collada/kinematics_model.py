@@ -1,6 +1,5 @@
 """``<kinematics_model>``: links and joints, filled into a body."""
 
-import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -12,26 +11,23 @@ from ravemj.core.transforms import (
     UNIT_WXYZ,
     Floats,
     Pose,
-    Vec3,
     Wxyz,
     conjugate,
     multiply,
     rotate,
     wxyz_from_axis_angle,
 )
-from ravemj.formats.collada.axis import AxisInfo, AxisReader
+from ravemj.formats.collada.axis import AxisReader
 from ravemj.formats.collada.bindings import Bindings
+from ravemj.formats.collada.extras import own_techniques
 from ravemj.formats.collada.formulas import read_formulas
 from ravemj.formats.collada.geometry import GeometryReader
 from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.physics import NO_MASS, Physics
-from ravemj.formats.collada.polar import rigid_part
-from ravemj.formats.collada.references import References
-from ravemj.formats.collada.supplement import own_techniques
-from ravemj.formats.collada.visual import Node, transform_of
-from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers
+from ravemj.formats.collada.visual import Node, read_pose, rigid_part
+from ravemj.formats.meshes.collada.document import Element, child, children, local_name
 from ravemj.model.builder import BodyBuilder, JointBuilder, LinkBuilder
-from ravemj.model.scene import AXES, Axis, JointKind
+from ravemj.model.scene import AXES, JointKind
 
 _MAX_LINKS = 20_000
 _SHIFT = 1e-6  # of nodes, below which nobody sees it
@@ -44,12 +40,15 @@ def valid_name(name: str | None) -> str:
     return _NOT_IN_NAMES.sub("_", name or "")
 
 
+Infos = dict[Element, tuple[Element, Element | None]]
+"""For axes, the ``<axis_info>`` of the system of kinematics, and that of the system of motion."""
+
+
 @dataclass(slots=True)
 class SceneContext:
     """What all bodies of a kinematics scene share."""
 
     library: Library
-    references: References
     bindings: Bindings
     physics: Physics
     geometry: GeometryReader
@@ -58,11 +57,6 @@ class SceneContext:
     def __post_init__(self) -> None:
         self.moved = {binding.node for binding in self.bindings.axes if binding.node is not None}
         self.moved |= {binding.node for binding in self.bindings.models}
-
-    @property
-    def axes(self) -> AxisReader:
-        """A reader of axes."""
-        return AxisReader(self.library, self.references)
 
 
 class Names:
@@ -105,35 +99,28 @@ class ModelReader:
     """Reads one instance of a kinematics model into a body.
 
     Attributes:
-        body: The body.
+        model: The ``<kinematics_model>``.
         links: Indices of links, by ``<link>``.
         joints: Indices of joints, by ``<joint>`` or ``<instance_joint>``, and by axis.
-        values: Values of the axes of each joint as the scene binds them.
+        values: Values of the axes of each joint as the scene binds them, in the order of the body's joints.
         ends: The ends of joints that close loops.
     """
 
     def __init__(
-        self,
-        scene: SceneContext,
-        body: BodyBuilder,
-        owner: Element,
-        instance: Element,
-        model: Element,
-        infos: dict[Element, AxisInfo],
+        self, scene: SceneContext, body: BodyBuilder, owner: Element, instance: Element, model: Element, infos: Infos
     ) -> None:
         self._scene = scene
         self._library = scene.library
-        self.body = body
+        self._body = body
         self._owner = owner
         self._instance = instance
         self.model = model
         self._infos = infos
-        self._axes = scene.axes
         self._root = scene.bindings.node_of(owner, instance, model)
         self._T_world_root = Pose()
         self.links: dict[Element, int] = {}
         self.joints: dict[Element, int] = {}
-        self.values: dict[int, list[float]] = {}
+        self.values: list[list[float]] = []
         self._found: list[_FoundJoint] = []
         self.ends: list[_LoopEnd] = []
         self._link_names = Names(link.name for link in body.links)
@@ -145,14 +132,14 @@ class ModelReader:
         for link in children(common, "link"):
             parent = None if self._root is None else self._root.parent
             T_world_parent = Pose() if parent is None else rigid_part(parent.world, self._library.source(link))
-            self._T_world_root = T_world_parent @ self._pose(link)
+            self._T_world_root = T_world_parent @ read_pose(self._library, link)
             self._read_link(link, self._root, self._T_world_root)
 
     def settle(self, others: "list[ModelReader]") -> None:
         """Give the joints to the body, with what they follow, once all models of the body are read."""
         self._close_loops([end for reader in others for end in reader.ends])
         self._settle_joints()
-        read_formulas(self._library, self._scene.references, self.model, self.joints, self.body)
+        read_formulas(self._library, self.model, self.joints, self._body)
 
     def _close_loops(self, ends: "list[_LoopEnd]") -> None:
         """Read the joints that close loops; OpenRAVE's reader, and so that of its files, leaves them out."""
@@ -166,29 +153,25 @@ class ModelReader:
                 end, child_link = next(found, (None, 0))
                 if end is None:
                     raise self._library.error("the other end of the loop is missing", start)
-                T_parent_frame = self._pose(start)
-                T_parent_child = T_parent_frame @ self._pose(end).inverse()
+                T_parent_frame = read_pose(self._library, start)
+                T_parent_child = T_parent_frame @ read_pose(self._library, end).inverse()
                 self._add_joint(start, (parent, child_link), T_parent_frame, T_parent_child)
 
     def _settle_joints(self) -> None:
         """Give the joints to the body, those with an index of OpenRAVE's in its order."""
         for found in sorted(self._found, key=lambda found: found.place):
-            index = len(self.body.joints)
-            self.joints |= dict.fromkeys(found.keys, index)
-            self.values[index] = found.values
-            self.body.joints.append(found.built)
-
-    def _pose(self, element: Element) -> Pose:
-        return rigid_part(transform_of(self._library, element), self._library.source(element))
+            self.joints |= dict.fromkeys(found.keys, len(self._body.joints))
+            self.values.append(found.values)
+            self._body.joints.append(found.built)
 
     def _read_link(self, element: Element, node: Node | None, T_world_link: Pose) -> None:
-        if len(self.body.links) >= _MAX_LINKS:
+        if len(self._body.links) >= _MAX_LINKS:
             raise self._library.error(f"the body has more than {_MAX_LINKS} links", element)
         link = LinkBuilder(
             self._link_name(element.get("name")), self._library.source(element), T_world_link, inertial=NO_MASS
         )
-        index = len(self.body.links)
-        self.body.links.append(link)
+        index = len(self._body.links)
+        self._body.links.append(link)
         self.links[element] = index
         rigid_body = self._scene.physics.of(node)
         if rigid_body is not None:
@@ -238,9 +221,9 @@ class ModelReader:
         if inner is None:
             self._library.warn("no-link", "there is no link in it; it is left out", element)
             return
-        T_parent_frame = self._pose(element)
-        T_parent_child = T_parent_frame @ self._pose(inner)
-        node = self._add_joint(element, (parent, len(self.body.links)), T_parent_frame, T_parent_child)
+        T_parent_frame = read_pose(self._library, element)
+        T_parent_child = T_parent_frame @ read_pose(self._library, inner)
+        node = self._add_joint(element, (parent, len(self._body.links)), T_parent_frame, T_parent_child)
         self._read_link(inner, node, T_world_parent @ T_parent_child)
 
     def _add_joint(
@@ -248,19 +231,23 @@ class ModelReader:
     ) -> Node | None:
         """Read the joint of an attachment; return the node that it moves."""
         holder, joint = self._joint(attachment)
-        axes = [*children(joint, "revolute", "prismatic")]
-        bound = [self._scene.bindings.of_axis(self._owner, self._instance, axis, holder) for axis in axes]
+        axes = [
+            AxisReader(self._library, axis, *self._infos.get(axis, ()))
+            for axis in children(joint, "revolute", "prismatic")
+        ]
+        bound = [self._scene.bindings.of_axis(self._owner, self._instance, axis.element, holder) for axis in axes]
         built = self._built_joint(joint, axes, links, T_parent_frame, T_parent_child)
         written = [None if item is None else item.value for item in bound]
-        values = [self._axes.value(axis, value) for axis, value in zip(axes, written, strict=True)]
-        place = min(self._axes.dof_index(self._infos.get(axis, AxisInfo())) for axis in axes)
-        self._found.append(_FoundJoint((holder, joint, *axes), built, values[: len(built.axes)], place))
+        values = [axis.value(value) for axis, value in zip(axes, written, strict=True)]
+        place = min(axis.dof_index for axis in axes)
+        keys = (holder, joint, *(axis.element for axis in axes))
+        self._found.append(_FoundJoint(keys, built, values[: len(built.axes)], place))
         return next((item.node for item in bound if item is not None and item.node is not None), None)
 
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
         """Return what an attachment names, and the ``<joint>`` behind it."""
         path = attachment.get("joint") or ""
-        found = self._scene.references.resolve(path, self.model)
+        found = self._library.resolve(path, self.model)
         joint = None if found is None else found.element
         if joint is not None and local_name(joint) == "instance_joint":
             joint = self._library.follow(joint)
@@ -271,28 +258,25 @@ class ModelReader:
         return found.element, joint
 
     def _built_joint(
-        self, joint: Element, axes: list[Element], links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose
+        self, joint: Element, axes: list[AxisReader], links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose
     ) -> JointBuilder:
         kind = self._kind(joint, axes)
-        infos = [self._infos.get(axis, AxisInfo()) for axis in axes]
         name = valid_name(joint.get("name") or joint.get("id") or joint.get("sid"))
+        turn = T_parent_frame.wxyz
         return JointBuilder(
-            name=name or f"joint{len(self.body.joints) + len(self._found)}",
+            name=name or f"joint{len(self._body.joints) + len(self._found)}",
             kind=kind,
             links=links,
             T_first_second=T_parent_child,
             anchor=T_parent_frame.position,
-            axes=tuple(
-                self._axis(axis, info, T_parent_frame)
-                for axis, info in zip(axes[: len(AXES[kind])], infos, strict=False)
-            ),
-            weld_turn=self._weld_turn(kind, axes[0], infos[0], T_parent_frame, T_parent_child),
-            enabled=all(self._axes.is_active(info) for info in infos),
+            axes=tuple(axis.read(rotate(turn, axis.direction)) for axis in axes[: len(AXES[kind])]),
+            weld_turn=UNIT_WXYZ if kind == "slider" else _weld_turn(axes[0], T_parent_frame, T_parent_child),
+            enabled=all(axis.is_active for axis in axes),
             source=self._library.source(joint),
         )
 
-    def _kind(self, joint: Element, axes: list[Element]) -> JointKind:
-        written = "".join("R" if local_name(axis) == "revolute" else "P" for axis in axes)
+    def _kind(self, joint: Element, axes: list[AxisReader]) -> JointKind:
+        written = "".join("R" if axis.is_revolute else "P" for axis in axes)
         if len(written) == 3 and next(own_techniques(joint), None) is not None:
             return "spherical"
         if written not in _KINDS:
@@ -300,26 +284,10 @@ class ModelReader:
             self._library.warn("unknown-type", message, joint)
         return _KINDS.get(written, _KINDS[written[0]])
 
-    def _axis(self, element: Element, info: AxisInfo, T_parent_frame: Pose) -> Axis:
-        return self._axes.read(element, rotate(T_parent_frame.wxyz, _direction(element)), info)
 
-    def _weld_turn(
-        self, kind: JointKind, axis: Element, info: AxisInfo, T_parent_frame: Pose, T_parent_child: Pose
-    ) -> Wxyz:
-        """Return what OpenRAVE turns the axis of a joint by when its limits leave it no room."""
-        if kind == "slider":
-            return UNIT_WXYZ
-        T_frame_child = T_parent_frame.inverse() @ T_parent_child
-        turn = wxyz_from_axis_angle(_direction(axis), self._axes.wrap(axis, info))
-        turned = multiply(multiply(turn, T_frame_child.wxyz), conjugate(T_parent_frame.wxyz))
-        return multiply(T_parent_frame.wxyz, turned)
-
-
-def _direction(element: Element) -> Vec3:
-    """Return the unit vector of an axis; z where the file has none."""
-    values = numbers(child(element, "axis"))[:3]
-    length = float(np.linalg.norm(values))
-    if len(values) < 3 or not 0 < length < math.inf:
-        return (0.0, 0.0, 1.0)
-    x, y, z = (values / length).tolist()
-    return x, y, z
+def _weld_turn(axis: AxisReader, T_parent_frame: Pose, T_parent_child: Pose) -> Wxyz:
+    """Return what OpenRAVE turns the axis of a joint by when its limits leave it no room; sliders are not turned."""
+    T_frame_child = T_parent_frame.inverse() @ T_parent_child
+    turn = wxyz_from_axis_angle(axis.direction, axis.wrap)
+    turned = multiply(multiply(turn, T_frame_child.wxyz), conjugate(T_parent_frame.wxyz))
+    return multiply(T_parent_frame.wxyz, turned)

@@ -1,8 +1,8 @@
-"""Translation of mimic equations into MathML: what ``mathml`` reads."""
+"""Translation of mimic equations into MathML: what ``formulas`` reads."""
 
 from collections.abc import Callable, Sequence
 
-from ravemj.formats.collada.mathml import CALLS
+from ravemj.formats.collada.formulas import CALLS
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.expressions import Expression
 from ravemj.model.expressions.nodes import Call, Node, Number, Variable

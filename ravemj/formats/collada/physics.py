@@ -7,9 +7,7 @@ import numpy as np
 
 from ravemj.core.transforms import ZERO, Pose, Vec3
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.polar import rigid_part
-from ravemj.formats.collada.references import References
-from ravemj.formats.collada.visual import Node, transform_of
+from ravemj.formats.collada.visual import Node, find_node, read_pose, rigid_part
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
 from ravemj.model.inertia import inertial_about
 from ravemj.model.scene import Inertial
@@ -55,7 +53,7 @@ class RigidBody:
         frame = child(common, "mass_frame")
         source = library.source(self.element if frame is None else frame)
         T_world_parent = T_world_root if self.parent is None else rigid_part(self.parent.world, source)
-        T_parent_mass = Pose() if frame is None else rigid_part(transform_of(library, frame), source)
+        T_parent_mass = Pose() if frame is None else read_pose(library, frame)
         T_link_mass = T_world_link.inverse() @ T_world_parent @ T_parent_mass
         return inertial_about(weight, T_link_mass, moments)
 
@@ -67,10 +65,9 @@ class Physics:
         gravity: Acceleration of free fall [m/s^2], or None.
     """
 
-    def __init__(self, library: Library, references: References, scene: Element | None, root: Node | None) -> None:
+    def __init__(self, library: Library, scene: Element | None, root: Node | None) -> None:
         """Read what the ``<instance_physics_scene>`` elements of a ``<scene>`` name."""
         self._library = library
-        self._references = references
         self._root = root
         self._bodies: dict[Node, RigidBody] = {}
         self.gravity: Vec3 | None = None
@@ -90,17 +87,15 @@ class Physics:
         model = self._library.follow(instance)
         if model is None:
             return
-        parent = self._node(instance, instance.get("parent") or "")
+        parent = self._node(instance, "parent")
         for body in children(instance, "instance_rigid_body"):
-            node = self._node(body, body.get("target") or "")
-            found = self._references.resolve(body.get("body") or "", model)
+            node = self._node(body, "target")
+            found = self._library.resolve(body.get("body") or "", model)
             if found is None or local_name(found.element) != "rigid_body":
                 self._library.warn("broken-reference", f"there is no rigid body '{body.get('body')}'", body)
             elif node is not None:
                 self._bodies.setdefault(node, RigidBody(found.element, parent))
 
-    def _node(self, element: Element, url: str) -> Node | None:
-        node = self._root.find(url.rpartition("#")[2]) if url and self._root is not None else None
-        if url and node is None:
-            self._library.warn("broken-reference", f"there is no node '{url}' in the visual scene", element)
-        return node
+    def _node(self, element: Element, attribute: str) -> Node | None:
+        url = element.get(attribute) or ""
+        return find_node(self._library, self._root, url, element) if url else None

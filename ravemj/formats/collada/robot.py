@@ -1,29 +1,19 @@
 """OpenRAVE's ``<extra>`` elements: the kind of a body, manipulators, sensors, motors and adjacent links."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from ravemj.core.transforms import Pose
-from ravemj.formats.collada.kinematics_model import ModelReader, valid_name
+from ravemj.formats.collada.extras import extras
+from ravemj.formats.collada.kinematics_model import valid_name
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.motor import driven
-from ravemj.formats.collada.polar import rigid_part
-from ravemj.formats.collada.references import References
-from ravemj.formats.collada.sensor import SensorReader
-from ravemj.formats.collada.visual import transform_of
+from ravemj.formats.collada.sensor import read_sensor
+from ravemj.formats.collada.visual import read_pose
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
-from ravemj.model.builder import SensorBuilder
+from ravemj.model.builder import BodyBuilder, SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
-
-
-def extras(element: Element | None, kind: str) -> Iterator[tuple[Element, Element]]:
-    """Yield the ``<extra>`` elements of a type, each with its technique of OpenRAVE's."""
-    for extra in children(element, "extra"):
-        if extra.get("type") == kind:
-            for technique in children(extra, "technique"):
-                if technique.get("profile") == "OpenRAVE":
-                    yield extra, technique
+from ravemj.model.scene import Axis
 
 
 def interface_kind(*elements: Element) -> str | None:
@@ -37,14 +27,23 @@ def interface_kind(*elements: Element) -> str | None:
     return None
 
 
+@dataclass(frozen=True, slots=True)
 class ExtraReader:
-    """Reads the extras of one body."""
+    """Reads the extras of one body.
 
-    def __init__(self, library: Library, references: References, models: list[ModelReader]) -> None:
-        self._library = library
-        self._references = references
-        self._models = models
-        self._body = models[0].body
+    Attributes:
+        library: The documents.
+        body: The body, filled from its models.
+        models: Its kinematics models.
+        links: Indices of its links, by their elements.
+        joints: Indices of its joints, by their elements.
+    """
+
+    library: Library
+    body: BodyBuilder
+    models: list[Element]
+    links: Mapping[Element, int]
+    joints: Mapping[Element, int]
 
     def read(self, systems: list[Element]) -> None:
         """Read the extras of articulated systems, and those of the models."""
@@ -55,100 +54,115 @@ class ExtraReader:
                 self._read_sensor(extra, technique, system)
             for _, technique in extras(system, "attach_actuator"):
                 self._read_actuator(technique, system)
-        for scope in (*systems, *(model.model for model in self._models)):
+        for scope in (*systems, *self.models):
             for _, technique in extras(scope, "collision"):
                 self._read_collision(technique, scope)
 
-    def link(self, element: Element, scope: Element, attribute: str = "link") -> int | None:
+    def _link(self, element: Element, scope: Element, attribute: str = "link") -> int | None:
         """Return the index of the link that an attribute names; None, with a warning, where there is none."""
         path = element.get(attribute) or ""
-        for around in (scope, *(model.model for model in self._models)):
-            found = self._references.resolve(path, around) if path else None
-            for model in self._models:
-                if found is not None and found.element in model.links:
-                    return model.links[found.element]
-        named = self._body.find_link(valid_name(path.rpartition("/")[2]))
-        if named is None:
-            self._library.warn("unknown-body", f"there is no link '{path}'", element)
-        return named
+        index = self._found(path, scope, self.links)
+        if index is None:
+            index = self.body.find_link(valid_name(path.rpartition("/")[2]))
+        if index is None:
+            self.library.warn("unknown-body", f"there is no link '{path}'", element)
+        return index
 
-    def joint(self, element: Element, scope: Element) -> int | None:
+    def _joint(self, element: Element, scope: Element) -> int | None:
         """Return the index of the joint that an element names; None, with a warning, where there is none."""
         path = element.get("joint") or ""
-        for around in (scope, *(model.model for model in self._models)):
-            found = self._references.resolve(path, around) if path else None
-            for model in self._models:
-                if found is not None and found.element in model.joints:
-                    return model.joints[found.element]
-        self._library.warn("unknown-joint", f"there is no joint '{path}'", element)
+        index = self._found(path, scope, self.joints)
+        if index is None:
+            self.library.warn("unknown-joint", f"there is no joint '{path}'", element)
+        return index
+
+    def _found(self, path: str, scope: Element, parts: Mapping[Element, int]) -> int | None:
+        """Return the index of the part that a path leads to, from a scope or else from a model."""
+        for around in (scope, *self.models):
+            found = self.library.resolve(path, around) if path else None
+            if found is not None and found.element in parts:
+                return parts[found.element]
         return None
 
     def _read_manipulator(self, extra: Element, technique: Element, system: Element) -> None:
-        name = extra.get("name") or f"manip{len(self._body.manipulators)}"
-        built = ManipulatorBuilder(name, self._library.source(extra))
+        name = extra.get("name") or f"manip{len(self.body.manipulators)}"
+        built = ManipulatorBuilder(name, self.library.source(extra))
         origin, tip = child(technique, "frame_origin"), child(technique, "frame_tip")
-        base = None if origin is None else self.link(origin, system)
-        effector = None if tip is None else self.link(tip, system)
+        base = None if origin is None else self._link(origin, system)
+        effector = None if tip is None else self._link(tip, system)
         if base is None or effector is None or tip is None:
-            self._library.warn("no-effector", "the manipulator is left out: its first or last link is missing", extra)
+            self.library.warn("no-effector", "the manipulator is left out: its first or last link is missing", extra)
             return
-        built.base, built.effector = (self._body.links[index].name for index in (base, effector))
-        built.T_effector_tool = self._pose(tip)
+        built.base, built.effector = (self.body.links[index].name for index in (base, effector))
+        built.T_effector_tool = read_pose(self.library, tip)
         direction = numbers(child(tip, "direction")).tolist()
         if len(direction) == 3 and all(map(math.isfinite, direction)):
             built.direction = (direction[0], direction[1], direction[2])
         for element in children(technique, "gripper_joint"):
-            index = self.joint(element, system)
+            index = self._joint(element, system)
             if index is not None:
-                built.gripper_joints.append(self._body.joints[index].name)
-                built.closing_direction += self._closing(element, len(self._body.joints[index].axes))
-        self._body.manipulators.append(built)
+                built.gripper_joints.append(self.body.joints[index].name)
+                built.closing_direction += self._closing(element, len(self.body.joints[index].axes))
+        self.body.manipulators.append(built)
 
     def _closing(self, element: Element, count: int) -> list[float]:
         """Return the signs of closing of a gripper's joint, one for each axis."""
         found = children(element, "chucking_direction", "closing_direction")
-        signs = [self._references.number(direction) or 0.0 for direction in found]
+        signs = [self.library.number(direction) or 0.0 for direction in found]
         return (signs + [0.0] * count)[:count]
-
-    def _pose(self, element: Element) -> Pose:
-        return rigid_part(transform_of(self._library, element), self._library.source(element))
 
     def _read_sensor(self, extra: Element, technique: Element, system: Element) -> None:
         origin = child(technique, "frame_origin")
-        link = None if origin is None else self.link(origin, system)
-        pose = Pose() if origin is None else self._pose(origin)
-        sensor = SensorReader(self._library, self._references).read(extra, technique, link, pose)
-        self._body.sensors.append(SensorBuilder(sensor))
+        link = None if origin is None else self._link(origin, system)
+        pose = Pose() if origin is None else read_pose(self.library, origin)
+        self.body.sensors.append(SensorBuilder(read_sensor(self.library, extra, technique, link, pose)))
 
     def _read_actuator(self, technique: Element, system: Element) -> None:
         """Give a joint the torque limit and the inertia of its motor, where the file has a motor."""
         bound, instance = child(technique, "bind_actuator"), child(technique, "instance_actuator")
         if bound is None or instance is None:
             return
-        index, motor = self.joint(bound, system), self._library.follow(instance, "actuator")
+        index, motor = self._joint(bound, system), self.library.follow(instance, "actuator")
         if index is not None and motor is not None:
-            joint = self._body.joints[index]
-            joint.axes = tuple(driven(axis, motor) for axis in joint.axes)
+            joint = self.body.joints[index]
+            joint.axes = tuple(_driven(axis, motor) for axis in joint.axes)
 
     def _read_collision(self, technique: Element, scope: Element) -> None:
         for element in children(technique):
             kind = local_name(element)
             if kind == "ignore_link_pair":
-                pair = [self.link(element, scope, attribute) for attribute in ("link0", "link1")]
-                first, second = (-1 if index is None else index for index in pair)
-                if first >= 0 and second >= 0 and first != second:
-                    self._body.adjacent.append((min(first, second), max(first, second)))
-            elif kind == "link_collision_state":
-                index = self.link(element, scope)
+                pair = [self._link(element, scope, attribute) for attribute in ("link0", "link1")]
+                first, second = sorted(-1 if index is None else index for index in pair)
+                if 0 <= first < second:
+                    self.body.adjacent.append((first, second))
+            elif kind in ("link_collision_state", "link_visible_state"):
+                index = self._link(element, scope)
                 if index is not None:
-                    self._body.links[index].enabled = self._references.truth(element, True)
-            elif kind == "link_visible_state":
-                self._show(element, scope)
+                    self._set_state(index, kind, self.library.truth(element, True))
             else:
-                self._library.warn("ignored-tag", "OpenRAVE leaves it out unless it is asked for", element)
+                self.library.warn("ignored-tag", "OpenRAVE leaves it out unless it is asked for", element)
 
-    def _show(self, element: Element, scope: Element) -> None:
-        index = self.link(element, scope)
-        if index is not None and not self._references.truth(element, True):
-            link = self._body.links[index]
+    def _set_state(self, index: int, kind: str, state: bool) -> None:
+        link = self.body.links[index]
+        if kind == "link_collision_state":
+            link.enabled = state
+        elif not state:
             link.geometries = [replace(part, visible=False) for part in link.geometries]
+
+
+def _driven(axis: Axis, motor: Element) -> Axis:
+    """Return an axis with the torque limit and the inertia of its motor, both behind the gear, and its friction."""
+
+    def number(name: str) -> float:
+        values = numbers(child(motor, name))
+        return float(values[0]) if len(values) and math.isfinite(values[0]) else 0.0
+
+    gear = number("gear_ratio")
+    torques = (number(name) * gear for name in ("max_instantaneous_torque", "nominal_torque") if number(name) > 0)
+    return replace(
+        axis,
+        max_torque=next(torques, axis.max_torque),
+        armature=number("rotor_inertia") * gear**2,
+        coulomb_friction=number("coloumb_friction"),
+        viscous_friction=number("viscous_friction"),
+    )

@@ -3,19 +3,15 @@
 from typing import NamedTuple
 
 from ravemj.core.transforms import Vec3, inverse
-from ravemj.formats.collada.attached import AttachedReader
-from ravemj.formats.collada.axis import AxisInfo
 from ravemj.formats.collada.bindings import read_bindings
 from ravemj.formats.collada.geometry import GeometryReader
-from ravemj.formats.collada.kinematics_model import ModelReader, SceneContext, valid_name
+from ravemj.formats.collada.kinematics_model import Infos, ModelReader, SceneContext, valid_name
 from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.physics import NO_MASS, Physics
-from ravemj.formats.collada.polar import rigid_part
-from ravemj.formats.collada.references import References
 from ravemj.formats.collada.robot import ExtraReader, interface_kind
-from ravemj.formats.collada.sensor import SensorReader
-from ravemj.formats.collada.supplement import read_supplement
-from ravemj.formats.collada.visual import Node, expand
+from ravemj.formats.collada.sensor import read_loose
+from ravemj.formats.collada.supplement import SupplementReader
+from ravemj.formats.collada.visual import Node, expand, rigid_part
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children
 from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import AttachedSensor
@@ -52,12 +48,11 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     Raises:
         SourceError: Something in it is impossible, or what is wanted is not there.
     """
-    references = References(library)
     scene = child(document.root, "scene")
     instance = child(scene, "instance_visual_scene")
     visual = None if instance is None else library.follow(instance)
     root = None if visual is None else expand(library, visual)
-    physics = Physics(library, references, scene, root)
+    physics = Physics(library, scene, root)
     geometry = GeometryReader(library)
     bodies: list[BodyBuilder] = []
     sensors: list[AttachedSensor] = []
@@ -65,11 +60,11 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     for kinematics in children(scene, "instance_kinematics_scene"):
         element = library.follow(kinematics)
         if element is not None:
-            bindings = read_bindings(library, references, kinematics, element, root)
-            shared = SceneContext(library, references, bindings, physics, geometry)
+            bindings = read_bindings(library, kinematics, element, root)
+            shared = SceneContext(library, bindings, physics, geometry)
             shown |= shared.moved
             bodies += _bodies(shared, element, wanted)
-            sensors += SensorReader(library, references).read_loose(element)
+            sensors += read_loose(library, element)
     if wanted:
         if not bodies:
             raise library.error(f"there is no articulated system '{wanted}' in the scene", document.root)
@@ -93,7 +88,7 @@ class _System(NamedTuple):
 
     systems: list[Element]
     models: list[Element]
-    infos: dict[Element, AxisInfo]
+    infos: Infos
 
     def has(self, name: str) -> bool:
         """Tell whether a name is that of a part, or that of an instance of one."""
@@ -138,21 +133,21 @@ def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _S
     model = readers[0].model
     body.name = valid_name(model.get("name") or model.get("id") or instance.get("name"))
     body.check_joint_names()
-    ExtraReader(scene.library, scene.references, readers).read(parts.systems)
-    values = {index: values for reader in readers for index, values in reader.values.items()}
-    links = {element: index for reader in readers for element, index in reader.links.items()}
-    joints = {element: index for reader in readers for element, index in reader.joints.items()}
-    attached = AttachedReader(
+    links = {element: index for reader in reversed(readers) for element, index in reader.links.items()}
+    joints = {element: index for reader in reversed(readers) for element, index in reader.joints.items()}
+    values = [values for reader in readers for values in reader.values]
+    ExtraReader(scene.library, body, [reader.model for reader in readers], links, joints).read(parts.systems)
+    supplement = SupplementReader(
         scene.library,
-        scene.references,
         scene.geometry,
+        body,
         {element: body.links[index] for element, index in links.items()},
         {element: body.joints[index] for element, index in joints.items()},
+        values,
     )
     for system in reversed(parts.systems):  # what refers to a system has the last word
-        read_supplement(system, scene.references, body, links, joints, values)
-        attached.read(system, body)
-    chosen = [value for index, joint in enumerate(body.joints) if joint.active for value in values[index]]
+        supplement.read(system)
+    chosen = [value for joint, own in zip(body.joints, values, strict=True) if joint.active for value in own]
     body.joint_values = chosen if any(chosen) else None
     return body
 
@@ -172,7 +167,7 @@ def _take_apart(
             _take_apart(scene, item, parts, inner, depth + 1)
     if kinematics is not None:
         for axis, info in _axis_infos(scene, kinematics).items():
-            parts.infos[axis] = AxisInfo(info, motions.get(info, motions.get(axis)))
+            parts.infos[axis] = (info, motions.get(info, motions.get(axis)))
         parts.models.extend(children(kinematics, "instance_kinematics_model"))
 
 
@@ -180,7 +175,7 @@ def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
     """Return the ``<axis_info>`` elements of a part of a system, by what they say something about."""
     infos: dict[Element, Element] = {}
     for info in children(child(part, "technique_common"), "axis_info"):
-        found = scene.references.resolve(info.get("axis") or "", part)
+        found = scene.library.resolve(info.get("axis") or "", part)
         if found is None:
             scene.library.warn("broken-reference", f"there is no axis '{info.get('axis')}'", info)
         else:

@@ -1,86 +1,127 @@
-"""Our own ``<extra>`` elements, which say what COLLADA and OpenRAVE's extras cannot: order and names of the parts."""
+"""What our own ``<extra>`` elements say of a body: order, names and parameters of its parts, and what it holds."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
-from ravemj.formats.collada.references import References
+import numpy as np
+
+from ravemj.errors import SourceError
+from ravemj.formats.collada.extras import own_techniques
+from ravemj.formats.collada.geometry import GeometryReader
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.visual import read_pose
 from ravemj.formats.meshes.collada.document import Element, child, children, words
-from ravemj.model.builder import BodyBuilder
+from ravemj.formats.parameters import with_parameter
+from ravemj.model.builder import BodyBuilder, GrabBuilder, JointBuilder, LinkBuilder
 from ravemj.model.scene.mechanism import RARE_NUMBERS
 
-PROFILE = "ravemj"
+_Part = TypeVar("_Part", LinkBuilder, JointBuilder)
 
 _NUMBERS = {"values": "reference", "torques": "max_torque", **{name: name for name in RARE_NUMBERS}}
 
 
-def own_techniques(element: Element | None) -> Iterator[Element]:
-    """Yield our techniques in the extras of an element."""
-    for extra in children(element, "extra"):
-        if extra.get("type") == PROFILE:
-            for technique in children(extra, "technique"):
-                if technique.get("profile") == PROFILE:
-                    yield technique
+@dataclass(frozen=True, slots=True)
+class SupplementReader:
+    """Reads what articulated systems say of a body.
 
-
-def read_supplement(
-    system: Element,
-    references: References,
-    body: BodyBuilder,
-    links: Mapping[Element, int],
-    joints: Mapping[Element, int],
-    values: dict[int, list[float]],
-) -> None:
-    """Give a body the order and the names of its parts, if an articulated system has them.
-
-    Args:
-        system: The articulated system.
-        references: Resolves paths.
+    Attributes:
+        library: The documents.
+        geometry: Reads shapes.
         body: The body, filled from its models.
-        links: Indices of its links, by their elements.
-        joints: Indices of its joints, by their elements.
-        values: Values of the joints' axes, by index.
+        links: Its links, by their elements.
+        joints: Its joints, by their elements.
+        values: Values of the joints' axes as the scene binds them, in the order of the body's joints.
     """
-    for technique in own_techniques(system):
+
+    library: Library
+    geometry: GeometryReader
+    body: BodyBuilder
+    links: Mapping[Element, LinkBuilder]
+    joints: Mapping[Element, JointBuilder]
+    values: list[list[float]]
+
+    def read(self, system: Element) -> None:
+        """Read all that a system says.
+
+        Raises:
+            SourceError: A number in it is none.
+        """
+        for technique in own_techniques(system):
+            self._read_names(technique)
+            for element in children(technique, "parameter"):
+                self._read_parameter(element)
+            for element in children(technique, "group"):
+                link = self._link(element.get("of") or "", technique)
+                if link is not None:
+                    link.add_to_group(element.get("name") or "", self.geometry.read_instances(element, np.eye(4)))
+            for element in children(technique, "grabbed"):
+                link = self._link(element.get("link") or "", technique)
+                if link is not None:
+                    found = (self._link(path, technique) for path in (element.get("ignored") or "").split())
+                    ignored = tuple(one for one in found if one is not None)
+                    pose = read_pose(self.library, element)
+                    self.body.grabs.append(GrabBuilder(element.get("body") or "", link, pose, ignored))
+
+    def _read_names(self, technique: Element) -> None:
+        """Read what only the writer of ravemj says: names that COLLADA's readers change, and the order of all parts."""
+        body = self.body
         body.name = _text(child(technique, "name")) or body.name
         body.description = _text(child(technique, "description")) or body.description
         if words(child(technique, "joined_links_adjacent"))[:1] == ["false"]:
             body.joined_links_adjacent = False
-        order, names = _listed(references, technique, "joint", joints)
-        if sorted(order) == list(range(len(body.joints))):
-            _name_joints(body, order, names)
+        listed = [*children(technique, "joint")]
+        order = self._order(listed, technique, self.joints, body.joints)
+        if order is not None:
+            _name_joints(body, [body.joints[index].name for index in order], listed)
             body.joints = [body.joints[index] for index in order]
-            for joint, element in zip(body.joints, children(technique, "joint"), strict=True):
+            self.values[:] = [self.values[index] for index in order]
+            for joint, element in zip(body.joints, listed, strict=True):
                 for name, field in _NUMBERS.items():
                     given = map(float, (element.get(name) or "").split())
                     joint.axes = tuple(
                         replace(axis, **{field: next(given, getattr(axis, field))}) for axis in joint.axes
                     )
-            values |= {place: given for place, given in enumerate([values[index] for index in order])}
-        order, names = _listed(references, technique, "link", links)
-        if sorted(order) == list(range(len(body.links))):
-            _order_links(body, order, names)
-            for link, element in zip(body.links, children(technique, "link"), strict=True):
+        listed = [*children(technique, "link")]
+        order = self._order(listed, technique, self.links, body.links)
+        if order is not None:
+            _order_links(body, order, [_text(element) for element in listed])
+            for link, element in zip(body.links, listed, strict=True):
                 link.self_collision_ignored = element.get("self_collision_ignored") == "true"
 
+    def _order(
+        self, listed: list[Element], technique: Element, parts: Mapping[Element, _Part], built: list[_Part]
+    ) -> list[int] | None:
+        """Return the indices of the listed parts; None if these are not all parts of the body."""
+        index_of = {id(part): index for index, part in enumerate(built)}
+        found = (self._found(element.get("path") or "", technique, parts) for element in listed)
+        order = [index_of.get(id(part), -1) for part in found]
+        return order if sorted(order) == list(range(len(built))) else None
 
-def _listed(
-    references: References, technique: Element, kind: str, indices: Mapping[Element, int]
-) -> tuple[list[int], list[str]]:
-    """Return the indices of the listed parts, and their names."""
-    order: list[int] = []
-    names: list[str] = []
-    for element in children(technique, kind):
-        found = references.resolve(element.get("path") or "", technique)
-        order.append(-1 if found is None else indices.get(found.element, -1))
-        names.append(_text(element))
-    return order, names
+    def _read_parameter(self, element: Element) -> None:
+        path = element.get("of") or ""
+        owner = self._found(path, element, self.links) or self._found(path, element, self.joints)
+        if owner is None:
+            return
+        name, kind = element.get("name") or "", element.get("type") or ""
+        try:
+            owner.parameters = with_parameter(owner.parameters, name, kind, element.text or "")
+        except ValueError as error:
+            raise SourceError(f"the parameter '{name}' cannot be read: {error}", self.library.source(element)) from None
+
+    def _link(self, path: str, technique: Element) -> LinkBuilder | None:
+        return self._found(path, technique, self.links)
+
+    def _found(self, path: str, scope: Element, parts: Mapping[Element, _Part]) -> _Part | None:
+        found = self.library.resolve(path, scope)
+        return None if found is None else parts.get(found.element)
 
 
-def _name_joints(body: BodyBuilder, order: Sequence[int], names: Sequence[str]) -> None:
-    """Name the joints, also where equations and manipulators refer to them."""
+def _name_joints(body: BodyBuilder, names: Sequence[str], listed: Sequence[Element]) -> None:
+    """Give joints their listed names, also where equations and manipulators refer to them."""
     from ravemj.model.expressions import substitute  # noqa: PLC0415 - rarely wanted
 
-    renamed = {body.joints[index].name: name for index, name in zip(order, names, strict=True)}
+    renamed = {name: _text(element) for name, element in zip(names, listed, strict=True)}
     if all(old == new for old, new in renamed.items()):
         return
     for joint in body.joints:

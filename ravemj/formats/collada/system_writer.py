@@ -1,14 +1,13 @@
 """The writer of articulated systems: what the axes are like, how they follow each other, and OpenRAVE's extras."""
 
-from collections.abc import Generator, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 
 from ravemj.errors import Diagnostics
 from ravemj.formats import settled
+from ravemj.formats.collada.extras import extra_of
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.sensor import write_device
-from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.trees import Tree
 from ravemj.formats.parameters import write_parameters
 from ravemj.formats.xml_text import XmlText
@@ -132,25 +131,25 @@ class SystemWriter:
         """Write what OpenRAVE's extras say about the body, and what they cannot say."""
         out, body = self._sections.systems, self._body
         kind = ("robot", "GenericRobot") if body.is_robot else ("kinbody", "KinBody")
-        with _extra(out, "interface_type"):
+        with extra_of(out, "interface_type"):
             out.element("interface", kind[1], type=kind[0])
         for manipulator in body.manipulators:
             self._write_manipulator(manipulator)
         for number, sensor in enumerate(body.sensors):
-            with _extra(out, "attach_sensor", sensor.name):
+            with extra_of(out, "attach_sensor", sensor.name):
                 self._write_sensor(number, sensor)
         for index, joint in enumerate(body.all_joints):
             axis = joint.axes[0]
             if axis.max_torque or axis.armature or axis.coulomb_friction or axis.viscous_friction:
-                with _extra(out, "attach_actuator", f"joint{index}"):
+                with extra_of(out, "attach_actuator", f"joint{index}"):
                     self._write_actuator(index, axis)
-        with _extra(out, "collision"):
+        with extra_of(out, "collision"):
             for first, second in body.adjacent:
                 out.element("ignore_link_pair", link0=self._link_path(first), link1=self._link_path(second))
             for index, link in enumerate(body.links):
                 with out.inside("link_collision_state", link=self._link_path(index)):
                     out.element("bool", link.enabled)
-        with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
+        with extra_of(out):
             self._write_supplement()
 
     def _write_manipulator(self, manipulator: Manipulator) -> None:
@@ -159,7 +158,7 @@ class SystemWriter:
             message = f"the manipulator '{manipulator.name}' lacks its first or last link; readers leave it out"
             self._diagnostics.warn("not-written", message, manipulator.source)
             return
-        with _extra(out, "manipulator", manipulator.name):
+        with extra_of(out, "manipulator", manipulator.name):
             out.element("frame_origin", link=self._link_path(manipulator.base))
             with out.inside("frame_tip", link=self._link_path(manipulator.effector)):
                 write_pose(out, settled.pose(manipulator.T_effector_tool))
@@ -258,9 +257,3 @@ def _write_parameter(out: XmlText, name: str, kind: str, value: float | bool) ->
 def _write_value(out: XmlText, tag: str, kind: str, value: float | bool) -> None:
     with out.inside(tag):
         out.element(kind, value)
-
-
-@contextmanager
-def _extra(out: XmlText, kind: str, name: str | None = None) -> Generator[None]:
-    with out.inside("extra", type=kind, name=name), out.inside("technique", profile="OpenRAVE"):
-        yield

@@ -1,4 +1,4 @@
-"""The visual scene with all instances of nodes expanded: which node has which pose."""
+"""The visual scene with all instances of nodes expanded: which node has which pose, and the poses of elements."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Pose, pose_of
+from ravemj.errors import Source, SourceError
 from ravemj.formats.collada.library import Library
 from ravemj.formats.meshes.collada.document import Element, children, local_name, words
 from ravemj.formats.meshes.collada.node_transforms import LENGTHS, local_transform
@@ -134,3 +135,53 @@ def _suffix(instance: Element) -> str:
 
 def _suffixed(name: str | None, suffix: str) -> str | None:
     return name + suffix if name else None
+
+
+def find_node(library: Library, root: Node | None, path: str, element: Element) -> Node | None:
+    """Return the node of the visual scene that a path in an element leads to; None, with a warning, without one."""
+    node = None if root is None else root.find(path.rpartition("#")[2])
+    if node is None:
+        library.warn("broken-reference", f"there is no node '{path}' in the visual scene", element)
+    return node
+
+
+def read_pose(library: Library, element: Element) -> Pose:
+    """Return the pose that the transforms in an element give, without their stretch.
+
+    Raises:
+        SourceError: A number in them is not finite.
+    """
+    return rigid_part(transform_of(library, element), library.source(element))
+
+
+def polar_decomposition(matrix: Floats, source: Source) -> tuple[Pose, Floats | None]:
+    """Decompose a 4x4 matrix into a pose and a stretch: ``matrix = pose @ stretch``.
+
+    Args:
+        matrix: Shape (4, 4).
+        source: Where it comes from.
+
+    Returns:
+        The pose, and the stretch, shape (3, 3); None for a matrix that is rigid.
+
+    Raises:
+        SourceError: A number in it is not finite.
+    """
+    linear = matrix[:3, :3]
+    if not np.isfinite(matrix).all() or np.abs(matrix).max() > 1e100:
+        raise SourceError("a transform has a number that is not finite", source)
+    if np.abs(linear.T @ linear - np.eye(3)).max() < 1e-7 and np.linalg.det(linear) > 0:
+        return pose_of(matrix), None
+    u, _, vt = np.linalg.svd(linear)
+    rigid = matrix.copy()
+    rigid[:3, :3] = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
+    return pose_of(rigid), rigid[:3, :3].T @ linear
+
+
+def rigid_part(matrix: Floats, source: Source) -> Pose:
+    """Return the pose of a matrix, without its stretch.
+
+    Raises:
+        SourceError: A number in it is not finite.
+    """
+    return polar_decomposition(matrix, source)[0]

@@ -22,7 +22,7 @@ import logging
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
@@ -84,9 +84,9 @@ def cached(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
         read: Returns the parts.
     """
     folder = cache_folder()
-    return (
-        read() if folder is None else _by_content(folder, content, kind, "", lambda _: (read(), ReferencedFiles()))[0]
-    )
+    if folder is None:
+        return read()
+    return _by_content(folder, content, kind, "", lambda _: (read(), ReferencedFiles()))[0]
 
 
 def cache_folder() -> Path | None:
@@ -157,16 +157,9 @@ def readers_stamp() -> bytes:
 
 def reader_sources() -> list[str]:
     """Return the paths of the modules beside this one, and of that with class ``Mesh``."""
-    return [*sorted(_modules(os.path.dirname(__file__))), mesh.__file__]
-
-
-def _modules(folder: str) -> Iterator[str]:
-    with os.scandir(folder) as entries:
-        for entry in entries:
-            if entry.name.endswith(".py"):
-                yield entry.path
-            elif entry.is_dir() and entry.name != "__pycache__":
-                yield from _modules(entry.path)
+    folders = sorted(os.walk(os.path.dirname(__file__)))
+    names = (os.path.join(folder, name) for folder, _, files in folders for name in sorted(files))
+    return [*(name for name in names if name.endswith(".py")), mesh.__file__]
 
 
 def _loaded(file: str, unpack: Callable[[bytes], _T]) -> _T | None:

@@ -8,7 +8,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import Source, SourceError
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.files import FileContent
-from ravemj.formats.meshes.parts import BLACK, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.formats.meshes.parts import BLACK, MeshPart, check_finite, check_size, rgb, welded
 from ravemj.model.scene import Mesh, Rgb
 
 GRAY = rgb((0.6, 0.6, 0.6))
@@ -84,8 +84,7 @@ def read_obj(file: FileContent) -> tuple[MeshPart, ...]:
         except ValueError as error:
             raise SourceError(f"malformed line: {error}", Source(file.path, number)) from error
     points = np.array(reading.points, np.float64).reshape(-1, 3)
-    parts = (_part(material, points, file) for material in reading.materials.values())
-    return tuple(part for part in parts if part is not None)
+    return tuple(part for material in reading.materials.values() for part in _parts(material, points, file))
 
 
 def write_obj(mesh: Mesh) -> str:
@@ -124,16 +123,12 @@ def _colour(material: _Material, words: list[str]) -> None:
         pass  # a colour that is no number: as if it were not there
 
 
-def _part(material: _Material, points: Floats, file: FileContent) -> MeshPart | None:
+def _parts(material: _Material, points: Floats, file: FileContent) -> tuple[MeshPart, ...]:
     sizes, index = np.array(material.sizes, np.int_), np.array(material.index, np.int_)
     check_size(int((sizes - 2).sum()), file.source)
-    corners = points[index]
-    check_finite(corners, file.source)
-    triangles = corners[triangulation.clipped(corners, np.cumsum(sizes) - sizes, sizes)]
-    triangles = without_degenerate(triangles)
-    if not len(triangles):
-        return None
-    return MeshPart(weld(triangles), material.diffuse, material.ambient, transparency(material.opacity))
+    check_finite(points[index], file.source)
+    corners = triangulation.triangles(points, sizes, index, concave=True)
+    return welded(corners, file.source, material.diffuse, material.ambient, transparency(material.opacity))
 
 
 def transparency(opacity: float) -> float:

@@ -54,6 +54,20 @@ def weld(corners: ArrayLike) -> Mesh:
     return Mesh(points[first[order]].astype(np.float64), rank[number].reshape(-1, 3))
 
 
+def welded(
+    corners: Floats, source: Source, diffuse: Rgb = WHITE, ambient: Rgb = BLACK, transparency: float = 0.0
+) -> tuple[MeshPart, ...]:
+    """Return separate triangles as a part without degenerate triangles, as OpenRAVE's importer makes it; none if empty.
+
+    Raises:
+        SourceError: There are too many triangles, or a coordinate is not finite.
+    """
+    check_size(len(corners), source)
+    check_finite(corners, source)
+    corners = without_degenerate(corners)
+    return (MeshPart(weld(corners), diffuse, ambient, transparency),) if len(corners) else ()
+
+
 def corners_of(mesh: Mesh) -> Floats:
     """Return the three points of each triangle, shape (n, 3, 3)."""
     return mesh.vertices[mesh.triangles]

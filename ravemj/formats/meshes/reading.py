@@ -1,5 +1,6 @@
 """The choice of a reader for a mesh file: by the end of its name, as in OpenRAVE."""
 
+import importlib
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -14,49 +15,20 @@ from ravemj.model.scene import Mesh
 
 _Reader = Callable[[FileContent], tuple[MeshPart, ...]]
 
-
-def _inventor(file: FileContent) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.inventor import read_inventor  # noqa: PLC0415 - most meshes come from the cache
-
-    return read_inventor(file)
-
-
-def _stl(file: FileContent) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.stl import read_stl  # noqa: PLC0415
-
-    return read_stl(file)
-
-
-def _obj(file: FileContent) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.obj import read_obj  # noqa: PLC0415
-
-    return read_obj(file)
-
-
-def _collada(file: FileContent) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.collada import read_collada  # noqa: PLC0415
-
-    return read_collada(file)
-
-
-def _through_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.trimesh_formats import read_with_trimesh  # noqa: PLC0415
-
-    return read_with_trimesh(file)
-
-
-_READERS: dict[str, _Reader] = {
-    ".iv": _inventor,
-    ".wrl": _inventor,
-    ".vrml": _inventor,
-    ".stl": _stl,
-    ".obj": _obj,
-    ".dae": _collada,
-    ".ply": _through_trimesh,
-    ".off": _through_trimesh,
-    ".glb": _through_trimesh,
-    ".gltf": _through_trimesh,
+_READERS = {
+    **dict.fromkeys((".iv", ".wrl", ".vrml"), ("inventor", "read_inventor")),
+    ".stl": ("stl", "read_stl"),
+    ".obj": ("obj", "read_obj"),
+    ".dae": ("collada", "read_collada"),
+    **dict.fromkeys((".ply", ".off", ".glb", ".gltf"), ("trimesh_formats", "read_with_trimesh")),
 }
+"""Modules and names of the readers, which are imported when they are asked for: most meshes come from the cache."""
+
+
+def reader_of(suffix: str) -> _Reader:
+    """Return the reader of the files whose names have an end."""
+    module, name = _READERS[suffix]
+    return getattr(importlib.import_module(f"ravemj.formats.meshes.{module}"), name)
 
 
 def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
@@ -82,7 +54,7 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
     kind = suffix if scale == UNSCALED else f"{suffix} {scale}"
 
     def read(raw: bytes) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
-        parts, references = _read(FileContent(path, unpacked(raw, path)), _READERS[suffix])
+        parts, references = _read(FileContent(path, unpacked(raw, path)), reader_of(suffix))
         return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
 
     return cache.cached_file(path, kind, read)

@@ -7,16 +7,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
 from ravemj.formats.meshes.files import FileContent
-from ravemj.formats.meshes.parts import (
-    WHITE,
-    MeshPart,
-    check_finite,
-    check_size,
-    corners_of,
-    rgb,
-    weld,
-    without_degenerate,
-)
+from ravemj.formats.meshes.parts import WHITE, MeshPart, corners_of, rgb, welded
 from ravemj.model.scene import Mesh
 
 AMBIENT = rgb((0.05, 0.05, 0.05))
@@ -49,10 +40,7 @@ def read_stl(file: FileContent) -> tuple[MeshPart, ...]:
         corners = _text_corners(file)
     else:
         raise SourceError("neither text nor binary STL, or cut short", file.source)
-    check_size(len(corners), file.source)
-    check_finite(corners, file.source)
-    corners = without_degenerate(corners)
-    return (MeshPart(weld(corners), diffuse, AMBIENT),) if len(corners) else ()
+    return welded(corners, file.source, diffuse, AMBIENT)
 
 
 def _text_corners(file: FileContent) -> Floats:

@@ -53,6 +53,30 @@ def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
     return np.concatenate(pieces)
 
 
+def triangles(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats:
+    """Return the triangles of polygons that refer to points.
+
+    Args:
+        points: The points, shape (n, 3).
+        sizes: For each polygon the number of its corners; those with fewer than three vanish.
+        index: For each corner the index of its point; polygons with an index that leads nowhere vanish.
+        concave: Whether polygons may be concave; else they become fans.
+
+    Returns:
+        Three points for each triangle, shape (m, 3, 3).
+    """
+    ends = np.cumsum(sizes)
+    starts = ends - sizes
+    wrong = (index < 0) | (index >= len(points))
+    before = np.concatenate([[0], np.cumsum(wrong)])
+    good = (sizes >= 3) & (before[ends] == before[starts])
+    if not good.any():
+        return np.zeros((0, 3, 3))
+    corners = points[np.where(wrong, 0, index)]
+    starts, sizes = starts[good], sizes[good]
+    return corners[clipped(corners, starts, sizes) if concave else fans(starts, sizes)]
+
+
 def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
     """Triangulate convex polygons as ear clipping does it, whose ears are the corners from the first one on."""
     triangles = fans(starts, sizes)

@@ -11,7 +11,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
-from ravemj.formats.meshes.parts import BLACK, WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.formats.meshes.parts import BLACK, WHITE, MeshPart, rgb, welded
 from ravemj.model.scene import Rgb
 
 _COLOURS: dict[str, tuple[Rgb, Rgb]] = {
@@ -34,15 +34,11 @@ def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
     for corners, rgba in _geometries(file, kind):
         colour = (_COLOURS[kind][0], 0.0) if rgba is None else (rgb(rgba), transparency(float(rgba[3])))
         pieces.setdefault(colour, []).append(corners)
-    parts: list[MeshPart] = []
-    for (diffuse, clear), some in pieces.items():
-        corners = np.concatenate(some)
-        check_size(len(corners), file.source)
-        check_finite(corners, file.source)
-        corners = without_degenerate(corners)
-        if len(corners):
-            parts.append(MeshPart(weld(corners), diffuse, _COLOURS[kind][1], clear))
-    return tuple(parts)
+    return tuple(
+        part
+        for (diffuse, clear), some in pieces.items()
+        for part in welded(np.concatenate(some), file.source, diffuse, _COLOURS[kind][1], clear)
+    )
 
 
 class _References(Mapping[str, bytes]):

@@ -1,8 +1,7 @@
 """The reader of COLLADA files as meshes: it flattens the visual scene to one part for each material.
 
-As OpenRAVE's importer does it, the file is scaled by its unit and turned to y up. The arrays of one ``<geometry>``
-(``geometry``), colours (``materials``) and transforms (``placement``) are read by functions of their own, for the
-reader of robots, which does neither.
+As OpenRAVE's importer does it, the file is scaled by its unit and turned to y up. The reader of robots does neither,
+and shares the modules beside this one: ``triangles``, ``materials`` and ``node_transforms``.
 """
 
 import numpy as np
@@ -22,7 +21,8 @@ from ravemj.formats.meshes.collada.node_transforms import local_transform
 from ravemj.formats.meshes.collada.triangles import PrimitiveGroup, primitive_groups
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
-from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.formats.meshes.parts import WHITE, MeshPart, check_size, rgb, welded
+from ravemj.model.scene import Rgb
 
 _AMBIENT = rgb((0.1, 0.1, 0.1))  # where the file gives other colours alone, in OpenRAVE's importer
 _MAX_DEPTH = 150
@@ -46,21 +46,19 @@ def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
     scene = None if instance is None else document.find("visual_scene", instance.get("url"))
     if scene is not None:
         flattening.nodes(scene, _root_transform(document), 0)
-    parts: list[MeshPart] = []
-    for material, pieces in sorted(flattening.pieces.items()):
-        corners = np.concatenate(pieces)
-        check_finite(corners, file.source)
-        corners = without_degenerate(corners)
-        if len(corners):
-            parts.append(_part(corners, flattening.material(material)))
-    return tuple(parts)
+    return tuple(
+        part
+        for material, pieces in sorted(flattening.pieces.items())
+        for part in welded(np.concatenate(pieces), file.source, *_colours(flattening.material(material)))
+    )
 
 
-def _part(corners: Floats, material: ColladaMaterial) -> MeshPart:
+def _colours(material: ColladaMaterial) -> tuple[Rgb, Rgb, float]:
+    """Return the diffuse and the ambient colour and the transparency of a part."""
     diffuse = WHITE if material.textured else rgb(material.diffuse or GRAY)
     is_bare = material == ColladaMaterial()
     ambient = rgb(material.ambient or (GRAY if is_bare else _AMBIENT))
-    return MeshPart(weld(corners), diffuse, ambient, transparency(material.opacity))
+    return diffuse, ambient, transparency(material.opacity)
 
 
 def _root_transform(document: ColladaDocument) -> Floats:

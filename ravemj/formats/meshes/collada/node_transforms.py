@@ -37,14 +37,10 @@ def _look_at(rows: Floats) -> Floats:
     """Return the frame at the first point that looks along -z at the second, with y near the third vector."""
     eye, interest, up = rows
     back = _unit(eye - interest)
-    right = _unit(_cross(up, back))
+    right = _unit(np.cross(up, back))
     matrix = np.eye(4)
-    matrix[:3] = np.stack([right, _cross(back, right), back, eye], axis=1)
+    matrix[:3] = np.stack([right, np.cross(back, right), back, eye], axis=1)
     return matrix
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    return np.asarray(np.cross(a, b), np.float64)
 
 
 def _unit(vector: Floats) -> Floats:

@@ -69,7 +69,8 @@ def primitive_groups(
         sizes, index = _polygons(element, kind)
         if int(np.maximum(sizes - 2, 0).sum()) > MAX_TRIANGLES:
             raise SourceError(f"the mesh has more than {MAX_TRIANGLES} triangles", document.source(element))
-        groups.append(PrimitiveGroup(element.get("material", ""), _corners(points, sizes, index, concave)))
+        corners = triangulation.triangles(points, sizes, index, concave)
+        groups.append(PrimitiveGroup(element.get("material", ""), corners))
     return groups
 
 
@@ -181,16 +182,3 @@ def _indices(element: Element, width: int, offset: int) -> Ints:
     except (ValueError, OverflowError):
         every = np.nan_to_num(numbers_of(element), nan=-1).clip(-1, 2**53).astype(np.int_)
     return every[: len(every) // width * width][offset::width]
-
-
-def _corners(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats:
-    ends = np.cumsum(sizes)
-    starts = ends - sizes
-    wrong = (index < 0) | (index >= len(points))
-    before = np.concatenate([[0], np.cumsum(wrong)])
-    good = (sizes >= 3) & (before[ends] == before[starts])
-    if not good.any():
-        return np.zeros((0, 3, 3))
-    corners = points[np.where(wrong, 0, index)]
-    starts, sizes = starts[good], sizes[good]
-    return corners[triangulation.clipped(corners, starts, sizes) if concave else triangulation.fans(starts, sizes)]

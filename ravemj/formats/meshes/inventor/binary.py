@@ -50,21 +50,21 @@ class _Reader:
     def nodes(self) -> list[Node]:
         nodes: list[Node] = []
         while self._body[self._at :].strip(b"\0"):
-            node = self._node()
+            node = self.node()
             if node is not None:
                 nodes.append(node)
         return nodes
 
-    def _node(self) -> Node | None:
-        kind = self._string()
+    def node(self) -> Node | None:
+        kind = self.word()
         if kind == "NULL":
             return None
         if kind == "USE":
-            name = self._string()
+            name = self.word()
             return self._named.get(name) or self._fail(f"USE of {name[:40]!r}, which no DEF before it names")
         if kind != "DEF":
             return self._body_of(kind)
-        name, kind = self._string(), self._string()
+        name, kind = self.word(), self.word()
         node = self._named[name] = self._body_of(kind)
         return node
 
@@ -76,14 +76,14 @@ class _Reader:
             self._fail("the nodes are nested too deep, or there are too many")
         is_group = bool(self._integer() & _IS_GROUP) if self._flagged else kind in _GROUPS_OF_2_0
         for _ in range(self._integer() & 0xFF):
-            name = self._string()
+            name = self.word()
             read = _FIELDS.get(f"{kind}.{name}") or _FIELDS.get(name)
             if read is None:
                 self._fail(f"the field {name[:40]!r} of {kind[:40]!r} is not in Inventor's standard")
             node.fields[name] = read(self)
             self._integer()  # flags: ignored, connected
         if is_group:
-            children = [self._node() for _ in range(self._count(4))]
+            children = [self.node() for _ in range(self._count(4))]
             node.children = [child for child in children if child is not None]
         self._depth -= 1
         return node
@@ -105,7 +105,7 @@ class _Reader:
             self._fail("the file ends too early")
         return count
 
-    def _string(self) -> str:
+    def word(self) -> str:
         return self._take(self._count(1)).decode("latin-1")
 
     def floats(self, width: int) -> Floats:
@@ -120,20 +120,14 @@ class _Reader:
     def many_integers(self) -> Floats:
         return np.frombuffer(self._take(4 * self._count(4)), ">i4").astype(np.float64)
 
-    def word(self) -> str:
-        return self._string()
-
     def many_words(self) -> Value:
-        return [self._string() for _ in range(self._count(4))]
+        return [self.word() for _ in range(self._count(4))]
 
     def bitmask(self) -> Value:
         words: list[Value] = []
-        while word := self._string():
+        while word := self.word():
             words.append(word)
         return words
-
-    def node(self) -> Value:
-        return self._node()
 
     def image(self) -> None:
         """Skip an image."""

@@ -27,13 +27,9 @@ class InventorDocument:
     path: str
     text: str = ""
 
-    def source(self, offset: int) -> Source:
-        """Return the line of a character, for messages."""
-        return Source(self.path, self.text.count("\n", 0, offset) + 1 if self.text else 0)
-
-    def fail(self, message: str, offset: int, hint: str = "") -> NoReturn:
-        """Raise a ``SourceError`` about a place in the file."""
-        raise SourceError(message, self.source(offset), hint)
+    def fail(self, message: str, offset: int) -> NoReturn:
+        """Raise a ``SourceError`` about the line of a character."""
+        raise SourceError(message, Source(self.path, self.text.count("\n", 0, offset) + 1 if self.text else 0))
 
 
 @dataclass(frozen=True, slots=True)

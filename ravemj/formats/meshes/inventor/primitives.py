@@ -3,6 +3,7 @@
 Directions of the round ones start at -z; their axis is y.
 """
 
+from collections.abc import Set
 from itertools import pairwise
 
 import numpy as np
@@ -20,7 +21,7 @@ def box(size: Floats) -> Floats:
     return (signs * size / 2)[quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)]
 
 
-def cylinder(radius: float, height: float, parts: set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
+def cylinder(radius: float, height: float, parts: Set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
     """Return a centred cylinder.
 
     Args:
@@ -29,19 +30,12 @@ def cylinder(radius: float, height: float, parts: set[str], complexity: float = 
         parts: Which of ``SIDES``, ``TOP`` and ``BOTTOM`` there are.
         complexity: Fineness from 0 to 1.
     """
-    low = _circle(_sides(complexity)) * [radius, 0.0, radius] - [0.0, height / 2, 0.0]
+    low = _bottom(radius, height, complexity)
     high = low + np.array([0.0, height, 0.0])
-    pieces = [np.zeros((0, 3, 3))]
-    if "SIDES" in parts:
-        pieces.append(_band(high, low))
-    if "TOP" in parts:
-        pieces.append(_disc(high))
-    if "BOTTOM" in parts:
-        pieces.append(_disc(low[::-1]))
-    return np.concatenate(pieces)
+    return _joined(parts, SIDES=_band(high, low), TOP=_disc(high), BOTTOM=_disc(low[::-1]))
 
 
-def cone(radius: float, height: float, parts: set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
+def cone(radius: float, height: float, parts: Set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
     """Return a cone whose tip is at ``height / 2``.
 
     Args:
@@ -50,14 +44,10 @@ def cone(radius: float, height: float, parts: set[str], complexity: float = DEFA
         parts: Which of ``SIDES`` and ``BOTTOM`` there are.
         complexity: Fineness from 0 to 1.
     """
-    low = _circle(_sides(complexity)) * [radius, 0.0, radius] - [0.0, height / 2, 0.0]
-    pieces = [np.zeros((0, 3, 3))]
-    if "SIDES" in parts:
-        tip = np.broadcast_to([0.0, height / 2, 0.0], low.shape)
-        pieces.append(np.stack([tip, low, np.roll(low, -1, axis=0)], axis=1))
-    if "BOTTOM" in parts:
-        pieces.append(_disc(low[::-1]))
-    return np.concatenate(pieces)
+    low = _bottom(radius, height, complexity)
+    tip = np.broadcast_to([0.0, height / 2, 0.0], low.shape)
+    sides = np.stack([tip, low, np.roll(low, -1, axis=0)], axis=1)
+    return _joined(parts, SIDES=sides, BOTTOM=_disc(low[::-1]))
 
 
 def sphere(radius: float, complexity: float = DEFAULT_COMPLEXITY) -> Floats:
@@ -81,8 +71,12 @@ def sphere(radius: float, complexity: float = DEFAULT_COMPLEXITY) -> Floats:
     return np.concatenate(caps + bands)
 
 
-def _sides(complexity: float) -> int:
-    return max(int(40 * complexity), 4)
+def _bottom(radius: float, height: float, complexity: float) -> Floats:
+    return _circle(max(int(40 * complexity), 4)) * [radius, 0.0, radius] - [0.0, height / 2, 0.0]
+
+
+def _joined(parts: Set[str], **pieces: Floats) -> Floats:
+    return np.concatenate([np.zeros((0, 3, 3)), *(piece for name, piece in pieces.items() if name in parts)])
 
 
 def _circle(count: int) -> Floats:

@@ -126,17 +126,7 @@ class Traversal:
         self._corners_left -= len(index)
         if self._corners_left < 0:
             node.fail("the mesh has too many corners of polygons")
-        ends = np.cumsum(sizes)
-        starts = ends - sizes
-        bad = np.concatenate([[0], np.cumsum((index < 0) | (index >= len(state.points)))])
-        good = (sizes >= 3) & (bad[ends] == bad[starts])
-        starts, sizes = starts[good], sizes[good]
-        if state.concave and (sizes > 3).any():
-            index = np.where((index < 0) | (index >= len(state.points)), 0, index)
-            triangles = triangulation.clipped(state.points[index], starts, sizes)
-        else:
-            triangles = triangulation.fans(starts, sizes)
-        return self.add(state.points[index[triangles]], node, state)
+        return self.add(triangulation.triangles(state.points, sizes, index, state.concave), node, state)
 
     def include(self, names: Iterable[str], node: Node, state: State, with_materials: bool) -> State:
         """Traverse the first of the named files that can be read; none is no error, as in OpenRAVE.
@@ -172,6 +162,11 @@ class Traversal:
         """Set the material of the file: the last one counts."""
         if self._materials_count:
             self.material = material
+
+
+def shape(corners: Callable[[Node, State], Floats]) -> Handler:
+    """Return the handler of a shape, given its triangles in its frame, shape (n, 3, 3)."""
+    return lambda traversal, node, state: traversal.add(corners(node, state), node, state)
 
 
 def moved(state: State, step: Floats) -> State:

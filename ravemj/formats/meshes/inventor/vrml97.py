@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from ravemj.core.transforms import Floats
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import Node
-from ravemj.formats.meshes.inventor.traversal import Handler, Material, State, Traversal, moved, transform
+from ravemj.formats.meshes.inventor.traversal import Handler, Material, State, Traversal, moved, shape, transform
 from ravemj.formats.meshes.parts import rgb
 
 
@@ -60,36 +61,26 @@ def _indexed_face_set(traversal: Traversal, node: Node, state: State) -> State:
     coordinates = node.node("coord")
     if coordinates is None:
         return state
-    shape = State(state.matrix, coordinates.vectors("point"), concave=not node.flag("convex", True))
-    traversal.add_polygons(*triangulation.split(node.integers("coordIndex")), node, shape)
+    own = State(state.matrix, coordinates.vectors("point"), concave=not node.flag("convex", True))
+    traversal.add_polygons(*triangulation.split(node.integers("coordIndex")), node, own)
     return state
 
 
-def _box(traversal: Traversal, node: Node, state: State) -> State:
-    return traversal.add(primitives.box(node.floats("size", 3, (2.0, 2.0, 2.0))), node, state)
+def _cylinder(node: Node, _state: State) -> Floats:
+    return primitives.cylinder(node.number("radius", 1.0), node.number("height", 2.0), _parts(node))
 
 
-def _sphere(traversal: Traversal, node: Node, state: State) -> State:
-    return traversal.add(primitives.sphere(node.number("radius", 1.0)), node, state)
+def _cone(node: Node, _state: State) -> Floats:
+    return primitives.cone(node.number("bottomRadius", 1.0), node.number("height", 2.0), _parts(node))
 
 
-def _cylinder(traversal: Traversal, node: Node, state: State) -> State:
-    parts = {name.upper() + "S" * (name == "side") for name in ("side", "top", "bottom") if node.flag(name, True)}
-    radius, height = node.number("radius", 1.0), node.number("height", 2.0)
-    return traversal.add(primitives.cylinder(radius, height, parts), node, state)
-
-
-def _cone(traversal: Traversal, node: Node, state: State) -> State:
-    parts = {name.upper() + "S" * (name == "side") for name in ("side", "bottom") if node.flag(name, True)}
-    radius, height = node.number("bottomRadius", 1.0), node.number("height", 2.0)
-    return traversal.add(primitives.cone(radius, height, parts), node, state)
+def _parts(node: Node) -> set[str]:
+    fields = {"SIDES": "side", "TOP": "top", "BOTTOM": "bottom"}
+    return {part for part, field in fields.items() if node.flag(field, True)}
 
 
 HANDLERS: dict[str, Handler] = {
-    "Group": _group,
-    "Anchor": _group,
-    "Billboard": _group,
-    "Collision": _group,
+    **dict.fromkeys(("Group", "Anchor", "Billboard", "Collision"), _group),
     "Transform": _transform,
     "Switch": _switch,
     "LOD": _level_of_detail,
@@ -98,9 +89,9 @@ HANDLERS: dict[str, Handler] = {
     "Appearance": _appearance,
     "Material": _material,
     "IndexedFaceSet": _indexed_face_set,
-    "Box": _box,
-    "Sphere": _sphere,
-    "Cylinder": _cylinder,
-    "Cone": _cone,
+    "Box": shape(lambda node, _state: primitives.box(node.floats("size", 3, (2.0, 2.0, 2.0)))),
+    "Sphere": shape(lambda node, _state: primitives.sphere(node.number("radius", 1.0))),
+    "Cylinder": shape(_cylinder),
+    "Cone": shape(_cone),
 }
 """What to do at each kind of node; lights, sensors, lines, points and text draw nothing here."""
