@@ -62,7 +62,7 @@ def _arrange(env: Environment, viewer: Viewer, options: argparse.Namespace) -> N
         camera = env.renderer.camera_for_stills(_ASPECT)
         center, _ = env.renderer.bounding_sphere()
         viewer.SetCamera(camera.T_world_camera, float(np.linalg.norm(center - camera.position)))
-    viewer.interaction.controls.display.show("floor")
+    viewer.interaction.controls.display.shown |= {"floor"}
     if options.physics:
         hold_bases(env)
         env.SetPhysicsEngine("mujoco")

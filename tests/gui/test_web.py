@@ -27,7 +27,7 @@ from websockets.sync.client import connect
 import ravemj
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import Camera
-from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
+from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Tool, Use, Wheel
 from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.viewers.sharpness import LEVELS, Sharpness
 from ravemj.gui.viewers.viewer import LOCKED
@@ -646,7 +646,7 @@ def test_closing_ends_all_pages_and_main(env, viewer):
         ('{"type":"leave"}', Leave()),
         ('{"type":"ready"}', Ready()),
         ('{"type":"draws","itself":false}', Draws(False)),
-        ('{"type":"shape","width":3,"height":4,"ratio":1.5}', Shape(Resize(3, 4), 1.5)),
+        ('{"type":"shape","width":3,"height":4,"ratio":1.5}', Shape(3, 4, 1.5)),
     ],
 )
 def test_messages(text, message):

@@ -59,7 +59,7 @@ class Page:
         self._connection = connect(url, origin=viewer.url.rsplit("/", 2)[0], compression=None)
         self.socket = self._connection.__enter__()
         self.text, self.drawn, self.poses, self.colours, self.camera, self.bytes = {}, {}, {}, {}, None, 0
-        self.said = self.heard = 0
+        self.said = self.acknowledged = 0
         self.send(type="shape", width=SIZE[0], height=SIZE[1], ratio=1)
         self.send(type="draws", itself=True)
         self.ready()
@@ -93,7 +93,7 @@ class Page:
                 self.drawn[kind] = {name: batch["sizes"]["count"] for name, batch in document["drawings"].items()}
 
     def _take(self, message) -> SimpleNamespace:
-        _, self.heard, bodies, shapes, cameras = struct.unpack_from("<5I", message)
+        _, self.acknowledged, bodies, shapes, cameras = struct.unpack_from("<5I", message)
         at = 20
 
         def part(kind, *shape):
@@ -115,7 +115,7 @@ class Page:
     def settled(self) -> None:
         """Take everything in up to the answer to a message that means nothing."""
         self.send(type="nothing")
-        while self.heard != self.said:
+        while self.acknowledged != self.said:
             self.frame()
 
     def scene(self) -> dict:
@@ -213,9 +213,9 @@ class TestWhatIsSent:
             page.send(type="wheel", steps=1)
             page.send(type="move", x=3, y=3)
             page.settled()
-            assert page.heard == page.said
+            assert page.acknowledged == page.said
             assert page.camera[:3] == pytest.approx([0.9, 0, 0])
-            page.send(type="key", name="k", pressed=True)  # a turntable, which pages do not foresee
+            page.send(type="key", name="k", pressed=True)  # a turntable, which pages do not predict
             page.settled()
             assert page.camera[8] == 0
 
@@ -283,7 +283,7 @@ class TestWhatIsSent:
             page.settled()
             page.send(type="draws", itself=itself)
             page.settled()
-            assert page.heard == page.said
+            assert page.acknowledged == page.said
 
 
 def arm() -> ravemj.Environment:
@@ -385,7 +385,7 @@ class TestWhatIsSeen:
         desk.core.look_from(desk.env.renderer.camera_for_stills(4 / 3))
         desk.viewer.SetCamera(desk.core.view.camera.T_world_camera)
         camera = desk.core.view.camera.T_world_camera
-        await_that(lambda: np.allclose(desk.page.evaluate("drawing.answer.position"), camera[:3, 3], atol=1e-5))
+        await_that(lambda: np.allclose(desk.page.evaluate("drawing.serverView.position"), camera[:3, 3], atol=1e-5))
         desk.await_picture()
         picture, expected = self.seen(desk).astype(float), desk.expected().astype(float)
         tiles = [(slice(row, row + 240), slice(column, column + 320)) for row in (0, 240) for column in (0, 320)]
@@ -459,13 +459,13 @@ class TestWhatIsSeen:
 
     def test_the_view_turns_before_the_answer_comes(self, desk):
         desk.await_picture()
-        desk.page.evaluate("() => { window.late = []; take = async (...what) => { late.push(what); }; }")
+        desk.page.evaluate("() => { window.late = []; handleMessage = async (...what) => { late.push(what); }; }")
         desk.drag((320, 100), (360, 120), (400, 130))
         desk.wheel(1)
         desk.drag((320, 100), (360, 120), keys=["Shift"])
         desk.await_picture()
         assert desk.page.evaluate("drawing.view.position") == pytest.approx(desk.core.view.camera.position, abs=1e-6)
-        assert desk.page.evaluate("drawing.heard < drawing.foreseenBy")
+        assert desk.page.evaluate("drawing.acknowledged < drawing.predictedBy")
 
     def test_pictures_stand_in_while_webgl_is_lost(self, desk):
         assert not desk.page.is_visible("#source")

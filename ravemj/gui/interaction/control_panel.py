@@ -19,12 +19,7 @@ class ControlPanel:
     """
 
     def __init__(self, controls: Controls, *, is_drawn: bool = True) -> None:
-        """Begin with the first rows.
-
-        Args:
-            controls: What there is to press and to slide.
-            is_drawn: False where the shell has buttons and sliders of its own: nothing is on the view then.
-        """
+        """Begin with the first rows; nothing is drawn where the shell has controls of its own."""
         self.controls = controls
         self._is_drawn = is_drawn
         self._first_row = 0.0

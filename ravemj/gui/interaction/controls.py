@@ -3,13 +3,13 @@
 They are plain data, which a window draws (``layout``) and a page makes its own buttons and sliders of.
 """
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction import joint_controls
 from ravemj.gui.interaction.control import Control
-from ravemj.gui.interaction.display import Display
 from ravemj.gui.interaction.navigation import Navigation
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.playback import Playback
@@ -23,13 +23,7 @@ if TYPE_CHECKING:
 
 
 class Menu(NamedTuple):
-    """A button that unfolds others.
-
-    Attributes:
-        text: What stands on it.
-        label: What it does, for people.
-        shortcuts: The others.
-    """
+    """A button that unfolds others: its text, what it does, and the others."""
 
     text: str
     label: str
@@ -58,6 +52,19 @@ class Request(Enum):
 
 
 _REQUESTS = {request.value for request in Request}
+
+
+@dataclass
+class Display:
+    """What is shown besides the bodies as they look; all views of a viewer share it.
+
+    Attributes:
+        shown: Names of what is shown, of ``shortcuts.DISPLAY``.
+        wants_reload: Whether people have asked to read the model again; None where nobody would do it.
+    """
+
+    shown: frozenset[str] = frozenset()
+    wants_reload: bool | None = None
 
 
 class Controls:
@@ -102,16 +109,14 @@ class Controls:
         return self.time.playback
 
     @property
-    def changes(self) -> int:
-        """A number that grows with the view, and with what the views share."""
-        return self.navigation.changes + self.time.changes + self.notices.changes + self.display.changes
+    def appearance(self) -> object:
+        """What is equal for as long as the view, and what the views share, look the same."""
+        notices = self.notices
+        told = notices.lines, notices.recording, notices.text_size
+        return self.navigation.appearance, self.time.appearance, told, self.display.shown
 
     def pass_time(self, now: float) -> None:
-        """Let a motion that plays go on, and old notices go away.
-
-        Args:
-            now: What ``time.monotonic`` says.
-        """
+        """Let a motion that plays go on, and old notices go away; ``now`` as ``time.monotonic`` says."""
         self.navigation.pass_time(now)
         self.time.pass_time(now)
         self.notices.pass_time(now)
@@ -152,11 +157,7 @@ class Controls:
         return names_of(self._selector.selection)
 
     def rows(self, search: str) -> list[Control]:
-        """Return the search and the tree as buttons, or the help as one that hides it, for a window.
-
-        Args:
-            search: Words that are in the names of the rows.
-        """
+        """Return, for a window, the rows of the tree that a search leaves, or a button that hides the help."""
         if self.unfolded == "help":
             return [Control("help", "", group="help")]
         if self.unfolded != "tree":
@@ -231,7 +232,7 @@ class Controls:
         elif name == "reload":
             self._ask_for_reload()
         else:
-            self.display.toggle(name)
+            self.display.shown ^= {name}
 
     def _ask_for_reload(self) -> None:
         if self.display.wants_reload is None:

@@ -7,25 +7,20 @@ figures, the text and the rectangles of ``overlay()``.
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from ravemj.engine.simulation import Simulation
-from ravemj.graphics.rendering import Camera, Style, bounding_sphere
+from ravemj.graphics.rendering import Camera, Style
 from ravemj.gui.interaction import floor, mode_buttons
-from ravemj.gui.interaction.controls import Controls
-from ravemj.gui.interaction.display import Display
+from ravemj.gui.interaction.controls import Controls, Display
 from ravemj.gui.interaction.events import Event, Move, Press, Release, Wheel
 from ravemj.gui.interaction.figures import figures, names
 from ravemj.gui.interaction.hand import Hand, Mode
 from ravemj.gui.interaction.mode_buttons import Tool
-from ravemj.gui.interaction.navigation import Navigation, Sphere
+from ravemj.gui.interaction.navigation import Navigation
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.overlay import Label, Overlay
 from ravemj.gui.interaction.picking import Hit
-from ravemj.gui.interaction.playback import Playback
 from ravemj.gui.interaction.selection import OnSelect, Selection, Selector, point_line
 from ravemj.gui.interaction.shortcuts import sections
-from ravemj.gui.interaction.simulation_time import SimulationTime
 from ravemj.gui.interaction.time_controls import TimeControls
 from ravemj.gui.interaction.viewpoint import View
 from ravemj.model.drawing import NOTHING, Primitives, merge
@@ -50,25 +45,21 @@ class Interaction:
             on_select: Asked before something is selected, with the simulation locked.
         """
         self._simulation = simulation
-        self._sphere = np.zeros(3), 1.0
-        self._navigation = Navigation(View(camera, 0.0, size), self._scene_sphere)
+        self._navigation = Navigation(View(camera, 0.0, size), simulation)
         notices = Notices()
         self._selector = Selector(simulation, notices, on_select)
-        time = TimeControls(Playback(simulation), SimulationTime(simulation, notices))
-        self.controls = Controls(self._selector, self._navigation, time, notices, Display())
+        self.controls = Controls(
+            self._selector, self._navigation, TimeControls(simulation, notices), notices, Display()
+        )
         self._hand = Hand(self._selector, self._navigation, self.controls)
         self._changes = 0
         self._hovered = False
 
     def another_view(self, *, has_tools: bool = True) -> "Interaction":
-        """Return the mouse and the keys of another view on the same simulation; they share what is selected.
-
-        Args:
-            has_tools: False where the shell has buttons and wheels of its own, which ``Use`` them.
-        """
+        """Return the interaction of another view with the same selection; without tools, the shell has its own."""
         other = Interaction(self._simulation, self.view.camera, self.view.size)
-        other._navigation = self._navigation.another(other._scene_sphere)
-        other._selector, other._sphere = self._selector, self._sphere
+        other._navigation = self._navigation.another()
+        other._selector = self._selector
         other.controls = self.controls.another(other._navigation)
         other._hand = Hand(self._selector, other._navigation, other.controls, has_tools=has_tools)
         other._hand.mode = self.mode
@@ -80,9 +71,9 @@ class Interaction:
         return self._hand.mode
 
     @property
-    def version(self) -> int:
-        """A number that grows with what changes the view and the overlay; what moves bodies changes these as well."""
-        return self._changes + self._selector.changes + self.controls.changes
+    def appearance(self) -> object:
+        """What is equal for as long as the view and the overlay look the same, if no body moves either."""
+        return self._changes, self._selector.changes, self.controls.appearance
 
     @property
     def view(self) -> View:
@@ -152,11 +143,7 @@ class Interaction:
             return self._hand.hit()
 
     def pass_time(self, now: float) -> None:
-        """Let a motion that plays go on; who draws calls this before each picture, with the simulation locked.
-
-        Args:
-            now: What ``time.monotonic`` says.
-        """
+        """Let motions and time go on until ``now`` (``time.monotonic``); before each picture, under the lock."""
         self.controls.pass_time(now)
 
     def overlay(self) -> Overlay:
@@ -166,7 +153,7 @@ class Interaction:
             hand, shown = self._hand, self.controls.display.shown
             hand.look()
             if self.view.distance <= 0:
-                self._scene_sphere()  # it may be wanted while others have the simulation
+                self._navigation.scene_sphere()  # it may be wanted while others have the simulation
             hit = hand.hit()
             lines = *self._pointed_at(hit), *self._selector.lines(), *self.controls.notices.lines
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
@@ -176,7 +163,7 @@ class Interaction:
             parts = [self._selector.primitives(), self._hand.primitives(), mark or NOTHING]
             labels = tuple(Label(point, text) for point, text in self._simulation.drawings.texts())
             if shown:
-                sphere = self._scene_sphere()
+                sphere = self._navigation.scene_sphere()
                 parts += figures(self._simulation, shown, sphere[1])
                 labels += names(self._simulation) if "names" in shown else ()
                 if "floor" in shown:
@@ -248,22 +235,8 @@ class Interaction:
         return waiting
 
     def pass_time_without_bodies(self, now: float) -> None:
-        """Let the view glide while others have the simulation.
-
-        Args:
-            now: What ``time.monotonic`` says.
-        """
+        """Let the view glide while others have the simulation; ``now`` as ``time.monotonic`` says."""
         self._navigation.pass_time(now)
-
-    def _scene_sphere(self) -> Sphere:
-        """Return a sphere around everything: as it was last, while others have the simulation."""
-        if self._simulation.lock.acquire(blocking=False):
-            try:
-                compiled = self._simulation.compiled()
-                self._sphere = bounding_sphere(compiled.model, compiled.data)
-            finally:
-                self._simulation.lock.release()
-        return self._sphere
 
 
 def _without_clicks(events: list[Event]) -> list[Event]:

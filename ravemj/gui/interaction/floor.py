@@ -27,12 +27,7 @@ _AXIS_WIDTH = 3.0
 
 
 def grid(center: Floats, radius: float) -> Primitives:
-    """Return lines on the floor around a sphere, and the axes of the world at its origin.
-
-    Args:
-        center: Centre of the sphere [m], shape (3,).
-        radius: Its radius [m].
-    """
+    """Return lines on the floor around a sphere (centre and radius [m]), and the axes of the world at its origin."""
     step, reach = _step_and_reach(center, radius)
     places = step * np.arange(-round(reach / step), round(reach / step) + 1)
     ends = np.array([[(place, -reach), (place, reach)] for place in places])

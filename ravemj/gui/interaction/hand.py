@@ -72,14 +72,7 @@ class Hand:
     def __init__(
         self, selector: Selector, navigation: Navigation, controls: Controls, *, has_tools: bool = True
     ) -> None:
-        """Begin in camera mode, with nothing held.
-
-        Args:
-            selector: Selects bodies.
-            navigation: The view.
-            controls: What there is to press and to slide.
-            has_tools: False where the shell has buttons and wheels of its own.
-        """
+        """Begin in camera mode, with nothing held."""
         self._simulation: Simulation = selector.simulation
         self._selector, self._navigation, self._controls = selector, navigation, controls
         self.mode = Mode.CAMERA

@@ -30,13 +30,7 @@ class _Text(NamedTuple):
 
 
 class HelpLayout(NamedTuple):
-    """The help with its place.
-
-    Attributes:
-        rect: Where it is.
-        last_row: The greatest number that the first row can have.
-        panels: What to draw.
-    """
+    """Where the help is, the greatest number that its first row can have, and what to draw."""
 
     rect: Rect
     last_row: int
@@ -44,12 +38,7 @@ class HelpLayout(NamedTuple):
 
 
 def help_layout(size: tuple[int, int], first_row: int) -> HelpLayout:
-    """Lay the help out.
-
-    Args:
-        size: Width and height of the view [points].
-        first_row: Which row should be the first that is seen, where there is no room for all.
-    """
+    """Lay the help out for a view of some size [points], from a row on where there is no room for all."""
     width = min(_WIDEST, size[0] - 2 * _MARGIN)
     columns = 2 if width >= _TWO_COLUMNS else 1
     column_width = (width - 2 * _PADDING) / columns

@@ -70,7 +70,7 @@ def _slider(body: BodyState, dof: int, value: float, *, in_degrees: bool = False
         middle = min(max(0.0, lower + reach), upper - reach)
         lower, upper = middle - reach, middle + reach
     name = f"{joint.name}, axis {axis}" if len(joint.axes) > 1 else joint.name
-    text = f"{round(value, 3) + 0.0:.3f} {unit}"
+    text = f"{value:z.3f} {unit}"  # z: -0.0001 is shown as 0.000
     if in_degrees and unit == "rad":
-        text = f"{round(math.degrees(value), 1) + 0.0:.1f} deg"
+        text = f"{math.degrees(value):z.1f} deg"
     return Control(f"dof {dof}", name, text, shown, lower, upper, group="joints")

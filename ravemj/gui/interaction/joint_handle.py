@@ -1,6 +1,5 @@
 """The cylinder at a selected joint."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -123,10 +122,7 @@ def _strip(points: Floats) -> Primitives:
 def joint_frame(body: BodyState, dof: int) -> tuple[Joint, Floats]:
     """Return the joint of a DOF and the frame of its axis in the world, 4x4: z along it, x fixed to the child."""
     joint, axis = joint_and_axis(body, dof)
-    return joint, _frame(body, joint, axis, body.kinematics.values()[dof - axis :].tolist())
-
-
-def _frame(body: BodyState, joint: Joint, axis: int, values: Sequence[float]) -> Floats:
+    values = body.kinematics.values()[dof - axis :].tolist()
     T_world_parent, T_world_child = (body.link_transform(link) for link in (joint.parent, joint.child))
     directions = directions_at(joint, values)
     direction = np.array(directions[axis])
@@ -142,4 +138,4 @@ def _frame(body: BodyState, joint: Joint, axis: int, values: Sequence[float]) ->
     frame = np.eye(4)
     frame[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
     frame[:3, 3] = T_world_parent[:3, :3] @ anchor + T_world_parent[:3, 3]
-    return frame
+    return joint, frame

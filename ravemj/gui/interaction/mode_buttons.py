@@ -81,12 +81,7 @@ def tool_at(size: tuple[int, int], x: float, y: float) -> Tool | None:
 
 
 def panels(size: tuple[int, int], chosen: Tool) -> tuple[Panel, ...]:
-    """Return what to draw for the buttons and wheels.
-
-    Args:
-        size: Width and height of the view [points].
-        chosen: The button of the present mode.
-    """
+    """Return what to draw for the buttons and wheels on a view of some size [points], with one button chosen."""
     drawn: list[Panel] = []
     for tool, rect in tools(size).items():
         drawn.append(Panel(rect, _CHOSEN if tool is chosen else _BACK))

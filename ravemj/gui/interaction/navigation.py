@@ -1,9 +1,12 @@
 """The view of a window or a page, and the ways back from wherever the mouse has brought it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import Simulation
+from ravemj.graphics.rendering import bounding_sphere
 from ravemj.gui.interaction.viewpoint import View
 
 GLIDE = 0.2
@@ -31,29 +34,34 @@ class _Glide:
 
 
 class Navigation:
-    """Where a view is looked from. Nothing here needs the bodies, but for the spheres around them.
+    """Where a view is looked from. Nothing here waits for the bodies."""
 
-    Attributes:
-        changes: How often what is seen may have changed.
-    """
-
-    def __init__(self, view: View, scene: Callable[[], Sphere]) -> None:
-        """Begin.
-
-        Args:
-            view: The first view.
-            scene: Returns a sphere around everything.
-        """
+    def __init__(self, view: View, simulation: Simulation) -> None:
         self._view = self._home = view
-        self._scene = scene
+        self._simulation = simulation
+        self._sphere: Sphere = np.zeros(3), 1.0
         self._glide: _Glide | None = None
-        self.changes = 0
 
-    def another(self, scene: Callable[[], Sphere]) -> "Navigation":
-        """Return one that begins with this view, and has the same way home; argument as for the first one."""
-        other = Navigation(self.view, scene)
-        other._home = self._home
+    def another(self) -> "Navigation":
+        """Return one that begins with this view, and has the same way home."""
+        other = Navigation(self.view, self._simulation)
+        other._home, other._sphere = self._home, self._sphere
         return other
+
+    @property
+    def appearance(self) -> object:
+        """What is equal for as long as the view looks the same."""
+        return self._view, self._glide
+
+    def scene_sphere(self) -> Sphere:
+        """Return a sphere around everything: as it was last, while others have the simulation."""
+        if self._simulation.lock.acquire(blocking=False):
+            try:
+                compiled = self._simulation.compiled()
+                self._sphere = bounding_sphere(compiled.model, compiled.data)
+            finally:
+                self._simulation.lock.release()
+        return self._sphere
 
     @property
     def view(self) -> View:
@@ -63,7 +71,6 @@ class Navigation:
     @view.setter
     def view(self, view: View) -> None:
         self._view, self._glide = view, None
-        self.changes += 1
 
     @property
     def drawn(self) -> View:
@@ -78,18 +85,13 @@ class Navigation:
         self._home = self._view
 
     def pass_time(self, now: float) -> None:
-        """Let the view glide.
-
-        Args:
-            now: What ``time.monotonic`` says.
-        """
+        """Let the view glide; ``now`` as ``time.monotonic`` says."""
         glide = self._glide
         if glide is None:
             return
         begun = now if glide.begun is None else glide.begun
         part = (now - begun) / GLIDE
         self._glide = replace(glide, begun=begun, part=part * part * (3 - 2 * part)) if part < 1 else None
-        self.changes += 1
 
     def _glide_to(self, view: View) -> None:
         start = self.drawn
@@ -100,16 +102,12 @@ class Navigation:
         """Return the view with a focus: before one was set, as deep as the middle of the scene."""
         if self.view.distance > 0:
             return self.view
-        center, radius = self._scene()
+        center, radius = self.scene_sphere()
         depth = float((center - self.view.camera.position) @ self.view.camera.rotation[:, 2])
         return replace(self.view, distance=depth if depth > 0 else radius)
 
     def go(self, name: str) -> bool:
-        """Do what a button or a key asks for; return False where there is no such way.
-
-        Args:
-            name: ``home``, ``upright``, ``turntable`` or one of ``SIDES``.
-        """
+        """Go ``home``, ``upright``, ``turntable`` or to one of ``SIDES``; return False for other names."""
         if name == "home":
             self._glide_to(replace(self._home, size=self.view.size, is_upright=self.view.is_upright))
         elif name == "upright":
@@ -125,4 +123,4 @@ class Navigation:
 
     def fit(self, sphere: Sphere | None = None) -> None:
         """Show a sphere as large as it fits into the view; None: everything."""
-        self._glide_to(self.view.fitted(*(sphere or self._scene())))
+        self._glide_to(self.view.fitted(*(sphere or self.scene_sphere())))

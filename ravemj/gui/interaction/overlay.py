@@ -13,12 +13,7 @@ from ravemj.model.drawing import Primitives
 
 
 class Label(NamedTuple):
-    """A text at a point.
-
-    Attributes:
-        point: The point, in the world [m], shape (3,).
-        text: The text.
-    """
+    """A text at a point in the world [m], shape (3,)."""
 
     point: Floats
     text: str

@@ -49,25 +49,14 @@ def pick(simulation: Simulation, ray: Ray) -> Hit | None:
 
 @dataclass(frozen=True, eq=False)
 class VisibleBox:
-    """A box around what pictures show of some links.
-
-    Attributes:
-        center: Its centre in the frame that it is along [m], shape (3,).
-        half: Half of its sides [m], shape (3,).
-    """
+    """A box along the axes of a frame around what pictures show of some links: centre and half sides [m], (3,)."""
 
     center: Floats
     half: Floats
 
 
 def visible_box(body: BodyState, links: "list[int] | None", T_world_frame: Floats) -> VisibleBox | None:
-    """Return the box along the axes of a frame around some links; None where nothing of them is seen.
-
-    Args:
-        body: Their body.
-        links: Their indices; None: all.
-        T_world_frame: The frame, 4x4.
-    """
+    """Return the box along the axes of a frame (4x4) around links of a body (None: all); None where none is seen."""
     compiled = body.simulation.compiled()
     model, data, body_ids = compiled.model, compiled.data, compiled.part(body).body_ids
     if links is not None:

@@ -28,9 +28,6 @@ class Playback:
         >>> playback.seek(0.25)
         >>> robot.GetDOFValues()
         array([0.785, 0.   ])
-
-    Attributes:
-        changes: How often what it shows may have changed.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -40,7 +37,6 @@ class Playback:
         self._speed = 1.0
         self._playing = False
         self._last: float | None = None
-        self.changes = 0
 
     @property
     def motion(self) -> BodyMotion | None:
@@ -77,7 +73,6 @@ class Playback:
             raise ArgumentError(f"speed: is {speed}, and should be above 0")
         with self._simulation.lock:
             self._speed = float(speed)
-            self.changes += 1
 
     def load(self, motion: BodyMotion) -> None:
         """Take another motion, in place of the one before, and go to its start."""
@@ -98,13 +93,11 @@ class Playback:
             if self._time >= self.duration:
                 self.seek(0.0)
             self._playing, self._last = self.duration > 0, None
-            self.changes += 1
 
     def pause(self) -> None:
         """Stop where the motion is now."""
         with self._simulation.lock:
             self._playing = False
-            self.changes += 1
 
     def seek(self, time: float) -> None:
         """Go to a time of the motion [s]; before the start and after the end, to these.
@@ -115,7 +108,6 @@ class Playback:
         if math.isnan(time):
             raise ArgumentError("time: is nan, and should be a number of seconds")
         with self._simulation.lock:
-            self.changes += 1
             self._time = min(max(float(time), 0.0), self.duration)
             if self._motion is not None:
                 try:
@@ -131,11 +123,7 @@ class Playback:
             self.seek(self._time + count * STEP)
 
     def advance(self, now: float) -> None:
-        """Let time pass while it plays; who draws calls this before each picture.
-
-        Args:
-            now: What the clock shows [s], any clock that never goes back.
-        """
+        """Let time pass while it plays: before each picture, with the time [s] of any clock that never goes back."""
         with self._simulation.lock:
             if self.motion is None or not self._playing:
                 return

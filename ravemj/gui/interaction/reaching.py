@@ -110,20 +110,12 @@ class Reach:
         self.body.set_values(values)
 
     def sweep(self, steps: float) -> None:
-        """Let a redundant arm move while its link stays; nothing happens where no joint is free.
-
-        Args:
-            steps: How far the joints move, in steps of the wheel.
-        """
+        """Let a redundant arm move by steps of the wheel while its link stays; nothing happens to other arms."""
         if self._free is not None:
             self._come_near(self._values + _SWEEP * steps * self._self_motion(self._free))
 
     def sweep_to(self, value: float) -> None:
-        """Bring the free joint to a value, or as near as limits let it, while the link stays where it is now.
-
-        Args:
-            value: The value of the joint [rad or m].
-        """
+        """Bring the free joint to a value [rad or m], or as near as limits let it, while the link stays where it is."""
         free = self._free
         if free is None:
             return

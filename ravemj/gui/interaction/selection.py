@@ -1,5 +1,6 @@
 """What is selected, and what clicks and drags do with it."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -12,7 +13,6 @@ from ravemj.gui.interaction import dragging
 from ravemj.gui.interaction.cube import Cube, Grip
 from ravemj.gui.interaction.events import Press
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle, driving_dof, joint_and_axis
-from ravemj.gui.interaction.labels import body_line, joint_line, point_line
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.picking import Hit, pick, visible_box
 from ravemj.gui.interaction.viewpoint import Ray, View
@@ -81,7 +81,7 @@ class Selector:
             elif hit is not None:
                 self._select_joint(hit, ray, driving_dof(hit.body.scene, hit.link))
         elif self._handle_at(ray, hit) is None:
-            self._select_body(hit, ray, is_on_cube=self._grip_at(view, press, hit) is not None)
+            self._select_body(hit, ray, is_on_cube=self._cube_at(view, (press.x, press.y), hit) is not None)
 
     def _select_body(self, hit: Hit | None, ray: Ray, *, is_on_cube: bool) -> None:
         old = self.selection
@@ -156,16 +156,15 @@ class Selector:
             return None
         ray = view.ray(press.x, press.y)
         hit = pick(self.simulation, ray)
-        grip = self._grip_at(view, press, hit)
-        cube = self._cube()
-        if grip is not None and cube is not None:
+        on_cube, on_handle = self._cube_at(view, (press.x, press.y), hit), self._handle_at(ray, hit)
+        if on_cube is not None:
+            cube, grip = on_cube
             if grip.is_edge:
                 return dragging.turn_by_edge(selection.body, cube, grip, ray)
             return dragging.move_by_face(selection.body, cube, grip)
-        handle, point = self._handle(), self._handle_at(ray, hit)
-        if handle is None or point is None or selection.dof is None:
+        if on_handle is None or selection.dof is None:
             return None
-        return dragging.move_joint(selection.body, selection.dof, handle, point, ray)
+        return dragging.move_joint(selection.body, selection.dof, *on_handle, ray)
 
     def reach(self, view: View, press: Press) -> "Reach | None":
         """Take hold of the link where the button went down, so that the joints above it come along; None if none do."""
@@ -185,21 +184,12 @@ class Selector:
         return reach
 
     def mark(self, view: View, at: tuple[float, float], hit: Hit | None) -> Primitives | None:
-        """Return a figure on what a drag would take at a point of the screen; None where there is nothing to take.
-
-        Args:
-            view: The view.
-            at: The point [points].
-            hit: The body there.
-        """
-        press = Press(*at)
-        grip, cube = self._grip_at(view, press, hit), self._cube()
-        if grip is not None and cube is not None:
+        """Return a figure on what a drag would take at a point of the screen [points]; None where that is nothing."""
+        on_cube, on_handle = self._cube_at(view, at, hit), self._handle_at(view.ray(*at), hit)
+        if on_cube is not None:
+            cube, grip = on_cube
             return cube.mark(grip)
-        handle = self._handle()
-        if handle is None or self._handle_at(view.ray(*at), hit) is None:
-            return None
-        return handle.mark()
+        return None if on_handle is None else on_handle[0].mark()
 
     def _cube(self) -> Cube | None:
         selection = self.selection
@@ -211,17 +201,19 @@ class Selector:
             return None
         return JointHandle.at(selection.body, selection.dof, SIZES[selection.size])
 
-    def _grip_at(self, view: View, press: Press, hit: Hit | None) -> Grip | None:
-        """Return where the pointer is on the cube, unless another body hides it there."""
+    def _cube_at(self, view: View, at: tuple[float, float], hit: Hit | None) -> tuple[Cube, Grip] | None:
+        """Return the cube and where the pointer is on it; None where it is beside it, or another body hides it."""
         cube = self._cube()
-        grip = None if cube is None else cube.grip(view, press.x, press.y)
-        return None if grip is None or self._is_hidden(grip.point, view.ray(press.x, press.y), hit) else grip
+        grip = None if cube is None else cube.grip(view, *at)
+        if cube is None or grip is None or self._is_hidden(grip.point, view.ray(*at), hit):
+            return None
+        return cube, grip
 
-    def _handle_at(self, ray: Ray, hit: Hit | None) -> Floats | None:
-        """Return where the pointer is on the cylinder, unless another body hides it there."""
+    def _handle_at(self, ray: Ray, hit: Hit | None) -> tuple[JointHandle, Floats] | None:
+        """Return the cylinder and where the pointer is on it; None as for the cube."""
         handle = self._handle()
         point = None if handle is None else handle.hit(ray)
-        return None if point is None or self._is_hidden(point, ray, hit) else point
+        return None if handle is None or point is None or self._is_hidden(point, ray, hit) else (handle, point)
 
     def _is_hidden(self, point: Floats, ray: Ray, hit: Hit | None) -> bool:
         if hit is None or self.selection is None or hit.body is self.selection.body:
@@ -257,5 +249,21 @@ class Selector:
         selection = self.selection
         if selection is None:
             return []
-        joint = [] if selection.dof is None else [joint_line(selection.body, selection.dof)]
-        return [body_line(selection.body), *joint]
+        body = selection.body
+        joint = [] if selection.dof is None else [_joint_line(body, selection.dof)]
+        return [f"{'Robot' if body.scene.is_robot else 'Body'} {body.scene.name}", *joint]
+
+
+def point_line(body: BodyState, link: int, position: Floats, normal: Floats) -> str:
+    """Return a link's name, a point on it and the surface normal there, in the world [m]."""
+    point, direction = (", ".join(f"{value:z.3f}" for value in vector.tolist()) for vector in (position, normal))
+    return f"{body.scene.links[link].name}: (x, y, z) = ({point}), n = ({direction})"
+
+
+def _joint_line(body: BodyState, dof: int) -> str:
+    """Return the name of a joint, the index of a DOF of it, and its value [rad and degrees, for sliders m]."""
+    joint, axis = joint_and_axis(body, dof)
+    value = float(body.kinematics.values()[dof])
+    which = f", axis {axis}" if len(joint.axes) > 1 else ""
+    shown = f"{value:z.3f} m" if joint.slides(axis) else f"{value:z.3f} rad, {math.degrees(value):z.1f} deg"
+    return f"Joint {joint.name}{which}, DOF {dof}: {shown}"

@@ -65,12 +65,7 @@ KEYS = {key: shortcut.name for shortcut in (*VIEW, *DISPLAY, *OTHERS) for key in
 
 
 class Gesture(NamedTuple):
-    """What a gesture of the mouse does.
-
-    Attributes:
-        to: What it does.
-        do: The gesture.
-    """
+    """A gesture of the mouse, and what it does."""
 
     to: str
     do: str

@@ -1,40 +1,58 @@
 """The controls of a motion that is played, and those of simulation time."""
 
+import logging
 import math
 
+from ravemj.engine.simulation import Simulation
 from ravemj.gui.interaction.control import Control
+from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.playback import SPEEDS, Playback
-from ravemj.gui.interaction.simulation_time import SimulationTime
+
+_LOG = logging.getLogger("ravemj")
 
 _OF_TIME = {"play": "run", "forward": "step"}
 """What keys for a motion do to simulation time where there is no motion."""
+
+_MEASURED = 0.5
+"""Over how long it is measured how fast simulation time passes [s]."""
 
 
 class TimeControls:
     """A row for a motion, and one for simulation time; each is there while there is something to control.
 
+    The simulation is locked by who calls the methods.
+
     Attributes:
         playback: The motion.
-        simulation_time: Simulation time.
     """
 
-    def __init__(self, playback: Playback, simulation_time: SimulationTime) -> None:
-        self.playback = playback
-        self.simulation_time = simulation_time
+    def __init__(self, simulation: Simulation, notices: Notices) -> None:
+        self.playback = Playback(simulation)
+        self._simulation, self._notices = simulation, notices
+        self._sample: tuple[float, int] | None = None
+        self._factor = 0.0  # seconds of simulation that have passed in a second, as measured last
 
     @property
-    def changes(self) -> int:
-        """A number that grows with what is shown."""
-        return self.playback.changes + self.simulation_time.changes
+    def appearance(self) -> object:
+        """What is equal for as long as the controls look the same."""
+        playback, clock = self.playback, self._simulation.clock
+        motion = playback.time, playback.duration, playback.playing, playback.speed
+        if clock is None:
+            return motion
+        now = clock.now // 100_000 if clock.is_running else clock.now  # [us]; people read ten numbers in a second
+        return motion, clock.is_running, now, clock.pace, self._factor, self._simulation.physics is None
 
     def pass_time(self, now: float) -> None:
-        """Let a motion that plays go on, and see how fast simulation time passes.
-
-        Args:
-            now: What ``time.monotonic`` says.
-        """
+        """Let a motion that plays go on, and see how fast simulation time passes until ``now`` (``time.monotonic``)."""
         self.playback.advance(now)
-        self.simulation_time.pass_time(now)
+        clock = self._simulation.clock
+        if clock is None or not clock.is_running:
+            self._sample, self._factor = None, 0.0
+        elif self._sample is None:
+            self._sample = now, clock.now
+        elif now - self._sample[0] >= _MEASURED:
+            before, start = self._sample
+            self._sample, self._factor = (now, clock.now), (clock.now - start) / 1e6 / (now - before)
 
     def all(self) -> list[Control]:
         """Return the controls as they are now."""
@@ -54,35 +72,37 @@ class TimeControls:
         ]
 
     def _of_time(self) -> list[Control]:
-        time = self.simulation_time
-        if not time.is_shown:
+        clock = self._simulation.clock
+        if clock is None or not (self._simulation.physics is not None or clock.is_running or clock.now > 0):
             return []
-        label = "Stop simulation time" if time.is_running else "Let simulation time pass"
-        pace = "max" if math.isinf(time.pace) else f"{time.pace:g}x"
+        label = "Stop simulation time" if clock.is_running else "Let simulation time pass"
+        now = f"{clock.now / 1e6:.2f} s"
+        pace = "max" if math.isinf(clock.pace) else f"{clock.pace:g}x"
         return [
-            Control("run", label, group="time", is_on=time.is_running),
+            Control("run", label, group="time", is_on=clock.is_running),
             Control("step", "One step of simulation time", group="time"),
-            Control("clock", "Simulation time, and how fast it passes", time.text, group="time"),
+            Control(
+                "clock",
+                "Simulation time, and how fast it passes",
+                f"{now}, {self._factor:.2f}x" if clock.is_running else now,
+                group="time",
+            ),
             Control("pace", "Seconds of simulation in a second", pace, group="time"),
         ]
 
     def operate(self, name: str, value: float) -> bool:
         """Press a button, or move a slider to a value; return False where it is none of these."""
-        if not self.playback.duration > 0:
+        has_motion = self.playback.duration > 0
+        if not has_motion:
             name = _OF_TIME.get(name, name)
         names = {control.name for control in self.all()}
-        if names:
-            names |= {"slower", "faster"}
-        if name not in names:
-            return False
-        if name in {"run", "step"}:
-            getattr(self.simulation_time, name)()
-        elif name == "pace":
-            self.simulation_time.pace = _after(self.simulation_time.pace)
-        elif name in {"slower", "faster"}:
-            self._change_speed(is_faster=name == "faster")
-        else:
+        if name in names:
             self._operate_motion(name, value)
+            self._operate_time(name)
+        elif names and name in {"slower", "faster"}:
+            self._change_speed(has_motion=has_motion, is_faster=name == "faster")
+        else:
+            return False
         return True
 
     def _operate_motion(self, name: str, value: float) -> None:
@@ -97,18 +117,35 @@ class TimeControls:
         elif name == "speed":
             playback.speed = _after(playback.speed)
 
-    def _change_speed(self, *, is_faster: bool) -> None:
+    def _operate_time(self, name: str) -> None:
+        clock = self._simulation.clock
+        if clock is None:
+            return
+        if name == "pace":
+            clock.pace = _after(clock.pace)
+        elif name == "run" and not clock.is_running:
+            clock.resume()
+        elif name in {"run", "step"}:
+            clock.stop(wait=False)  # its thread may be waiting for the lock
+        if name == "step":
+            try:
+                clock.step(clock.timestep)
+            except Exception as error:  # of a user's module, say
+                _LOG.exception("a step of simulation time failed")
+                self._notices.say(f"The step failed: {error}")
+
+    def _change_speed(self, *, has_motion: bool, is_faster: bool) -> None:
         """Let the motion go faster or slower, or simulation time where there is no motion."""
-        has_motion = self.playback.duration > 0
-        speed = self.playback.speed if has_motion else self.simulation_time.pace
+        clock = self._simulation.clock
+        speed = self.playback.speed if has_motion or clock is None else clock.pace
         others = [other for other in SPEEDS if (other > speed if is_faster else other < speed)]
         if not others:
             return
         chosen = min(others) if is_faster else max(others)
         if has_motion:
             self.playback.speed = chosen
-        else:
-            self.simulation_time.pace = chosen
+        elif clock is not None:
+            clock.pace = chosen
 
 
 def _after(speed: float) -> float:

@@ -25,12 +25,7 @@ _ZOOM = 4.0
 
 
 class Ray(NamedTuple):
-    """Where a point of the screen looks at.
-
-    Attributes:
-        start: The eye, in the world [m], shape (3,).
-        direction: Unit vector, shape (3,).
-    """
+    """Where a point of the screen looks at: the eye in the world [m] and a unit vector, both of shape (3,)."""
 
     start: Floats
     direction: Floats
@@ -89,12 +84,7 @@ class View:
         return self._placed(_level(self.camera.rotation), self.focus)
 
     def fitted(self, center: Floats, radius: float) -> "View":
-        """Return the view from the same side that a sphere fits into, which it then turns about.
-
-        Args:
-            center: Its centre, in the world [m], shape (3,).
-            radius: Its radius [m].
-        """
+        """Return the view from the same side that a sphere [m] fits into, which it then turns about."""
         fx, fy, _, _ = self.camera.pinhole(*self.size)
         half = min(math.atan(0.5 * self.size[0] / fx), math.atan(0.5 * self.size[1] / fy))
         distance = min(max(radius / math.sin(half), _NEAREST), _FARTHEST)

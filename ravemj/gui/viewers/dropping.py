@@ -6,7 +6,7 @@ import shutil
 import tempfile
 import threading
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,20 +19,30 @@ _SHOWN = 20.0
 """How long it is said what is wrong with a file [s]."""
 
 
-def add_files(env: Any, paths: Sequence[str], notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
+def add_files(
+    env: Any,  # noqa: ANN401 - the API stands above viewers
+    paths: Sequence[str],
+    notices: Notices,
+    at_end: Callable[[], object] = lambda: None,
+) -> None:
     """Add files to an environment, in a thread of its own: reading may take long, and others may have the lock.
 
     Args:
         env: The environment, or None where it is gone.
         paths: The files. Where models are among them, meshes and pictures beside these are what they refer to.
         notices: Where it is said what was added, and what is wrong with a file.
+        at_end: Called when that is done.
     """
-    threading.Thread(target=_add, args=(env, list(paths), notices), name="ravemj drop", daemon=True).start()
+
+    def add() -> None:
+        if env is not None:
+            _add(env, paths, notices)
+        at_end()
+
+    threading.Thread(target=add, name="ravemj drop", daemon=True).start()
 
 
-def _add(env: Any, paths: list[str], notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
-    if env is None:
-        return
+def _add(env: Any, paths: Sequence[str], notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
     models = [path for path in paths if Path(path).suffix.lower() in _MODELS]
     for path in models or paths:
         try:
@@ -71,9 +81,4 @@ class Upload:
 
     def add_to(self, env: Any, notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
         """Add the files to an environment, unless that is gone, and remove them then."""
-
-        def add() -> None:
-            _add(env, self.paths, notices)
-            self._remove()
-
-        threading.Thread(target=add, name="ravemj drop", daemon=True).start()
+        add_files(env, self.paths, notices, self._remove)

@@ -91,24 +91,19 @@ class GlfwWindow:
 
     # --- what people do
 
-    def _on_size(self, window: object, width: int, height: int) -> None:
-        del window
+    def _on_size(self, _window: object, width: int, height: int) -> None:
         self.size = max(width, 1), max(height, 1)
 
-    def _on_pixels(self, window: object, width: int, height: int) -> None:
-        del window
+    def _on_pixels(self, _window: object, width: int, height: int) -> None:
         self.pixels = width, height
 
-    def _on_scale(self, window: object, x: float, y: float) -> None:
-        del window, y
+    def _on_scale(self, _window: object, x: float, _y: float) -> None:
         self.pixel_ratio = max(float(x), 0.5)
 
-    def _on_refresh(self, window: object) -> None:
-        del window
+    def _on_refresh(self, _window: object) -> None:
         self.is_lost = True
 
-    def _on_pointer(self, window: object, x: float, y: float) -> None:
-        del window
+    def _on_pointer(self, _window: object, x: float, y: float) -> None:
         self._pointer = self._in_points(x, y)
         self._move(*self._pointer)
 
@@ -122,8 +117,7 @@ class GlfwWindow:
         if not entered and not held:
             self._move(-1.0, -1.0)
 
-    def _on_button(self, window: object, button: int, action: int, mods: int) -> None:
-        del window
+    def _on_button(self, _window: object, button: int, action: int, mods: int) -> None:
         glfw = self._glfw
         if button not in self._buttons:
             return
@@ -134,12 +128,10 @@ class GlfwWindow:
         else:
             self.events.append(Release(x, y, self._buttons[button]))
 
-    def _on_scroll(self, window: object, aside: float, steps: float) -> None:
-        del window, aside
+    def _on_scroll(self, _window: object, _aside: float, steps: float) -> None:
         self.events.append(Wheel(steps))
 
-    def _on_key(self, window: object, key: int, scancode: int, action: int, mods: int) -> None:
-        del window
+    def _on_key(self, _window: object, key: int, scancode: int, action: int, mods: int) -> None:
         glfw = self._glfw
         if mods & (glfw.MOD_CONTROL | glfw.MOD_ALT | glfw.MOD_SUPER) and action == glfw.PRESS:
             return
@@ -149,19 +141,16 @@ class GlfwWindow:
         if name and (action != glfw.REPEAT or name == "backspace"):
             self.events.append(Key(name, action in (glfw.PRESS, glfw.REPEAT)))
 
-    def _on_letter(self, window: object, letter: int) -> None:
-        del window
+    def _on_letter(self, _window: object, letter: int) -> None:
         self.events.append(Type(chr(letter)))
         if chr(letter) == "?":  # it is with other keys on other keyboards
             self.events += [Key("?"), Key("?", False)]
 
-    def _on_focus(self, window: object, focused: int) -> None:
-        del window
+    def _on_focus(self, _window: object, focused: int) -> None:
         if not focused:
             self.events.append(Leave())
 
-    def _on_drop(self, window: object, paths: list[str]) -> None:
-        del window
+    def _on_drop(self, _window: object, paths: list[str]) -> None:
         self.dropped += paths
 
     # --- what it is
@@ -187,27 +176,15 @@ class GlfwWindow:
         columns, rows = self.points
         return x * columns / width, y * rows / height
 
-    def set_title(self, title: str) -> None:
-        """Set the title."""
-        self._glfw.set_window_title(self._window, title)
+    def call(self, function: str, *arguments: object) -> None:
+        """Call a function of GLFW for the window, such as ``set_window_title``; sizes are in units of the screen."""
+        getattr(self._glfw, function)(self._window, *arguments)
 
     def set_background(self, rgb: tuple[int, int, int]) -> None:
         """Set the colour, in 0..255, of what is new in a larger window until it is drawn."""
         if rgb != self._rgb and self._x is not None:
             self._x.keep_picture(self._glfw.get_x11_window(self._window), rgb)
         self._rgb = rgb
-
-    def resize(self, width: int, height: int) -> None:
-        """Set the size, in units of the screen."""
-        self._glfw.set_window_size(self._window, width, height)
-
-    def move(self, x: int, y: int) -> None:
-        """Set where its upper left corner is on the screen."""
-        self._glfw.set_window_pos(self._window, x, y)
-
-    def show_or_hide(self, shown: bool) -> None:
-        """Show the window, or hide it."""
-        (self._glfw.show_window if shown else self._glfw.hide_window)(self._window)
 
     def set_cursor(self, name: str) -> None:
         """Have the pointer look as ``Overlay.cursor`` says."""

@@ -24,12 +24,7 @@ def is_proxied() -> bool:
 
 
 def frame(url: str, path: str) -> str:
-    """Return the HTML that shows a page in a cell.
-
-    Args:
-        url: The page, as browsers of this machine know it.
-        path: Port and path of the page, as in ``8080/secret/``.
-    """
+    """Return the HTML that shows a page in a cell: its URL, or behind a proxy its port and path, ``8080/secret/``."""
     if is_proxied():
         url = f"{os.environ.get(_PREFIX, '/')}proxy/{path}"
     address = html.escape(url)

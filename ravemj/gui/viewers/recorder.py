@@ -77,12 +77,7 @@ class Recorder:
         self._start(free_path(".png"), lambda path: _write_picture(path, source))
 
     def record(self, source: FrameSource, playback: Playback) -> None:
-        """Begin a video, or end the one that is under way.
-
-        Args:
-            source: What is seen in it.
-            playback: The motion that it is of, if there is one.
-        """
+        """Begin a video of a motion if there is one, else of what happens; or end the one that is under way."""
         if self._recorder is not None and self._recorder.is_alive():
             self._stop.set()
             return

@@ -22,22 +22,12 @@ _INERTIA = 0.6
 
 
 def period(unchanged: float) -> float:
-    """Return after how long it is to be seen again whether something has changed [s].
-
-    Args:
-        unchanged: For how long nothing has changed [s].
-    """
+    """Return when to look again for a change [s], after so long without one [s]."""
     return _QUIET_PERIOD if unchanged > _QUIET else _PERIOD
 
 
 class Level(NamedTuple):
-    """How pictures are drawn.
-
-    Attributes:
-        scale: Their columns and rows as a part of the view's.
-        samples: Samples per pixel, 4 or 0.
-        cost: What they take as a part of what crisp ones take, on processors.
-    """
+    """Columns and rows as a part of the view's, samples per pixel, and the time as a part of that of crisp pictures."""
 
     scale: float
     samples: int

@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import threading
 import weakref
 
 import numpy as np
@@ -18,7 +19,7 @@ from ravemj.graphics.rendering.checks import checked_colour
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Resize
 from ravemj.gui.viewers.callbacks import Callback, Callbacks
-from ravemj.gui.viewers.player import Playing
+from ravemj.gui.viewers.interactive import Interactive
 from ravemj.gui.viewers.recorder import Recorder
 from ravemj.model.scene import View
 
@@ -38,7 +39,7 @@ PATIENCE = 1.0
 """How long that is [s]."""
 
 
-class Viewer(Playing):
+class Viewer(Interactive):
     """A point of view on an environment; ``env.SetViewer`` makes it and ``env.GetViewer()`` returns it.
 
     This one has no window: it draws when it is asked for a picture. The camera is OpenRAVE's: a 4x4 matrix
@@ -58,7 +59,6 @@ class Viewer(Playing):
     _internal = ("environment", "take_over")
 
     def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
-        self._simulation = simulation
         self._renderer = renderer
         self._name = name
         super().__init__(simulation, renderer.file_camera() or renderer.camera_from_above(), _SIZE)
@@ -72,6 +72,8 @@ class Viewer(Playing):
         self._thread_callbacks = Callbacks()
         self._image_callbacks = Callbacks()
         self._camera_of_nothing = None if simulation.bodies else self.camera
+        self._ended = threading.Event()  # set once the window or the page is closed; without either, from the start
+        self._ended.set()
 
     def GetXMLId(self) -> str:
         """Return the name that ``SetViewer`` was given."""
@@ -87,7 +89,8 @@ class Viewer(Playing):
         Args:
             title: The title.
         """
-        self._title = str(title)
+        self._title = title = str(title)
+        self._ask_window("set_window_title", title)
 
     def SetTitle(self, title: str) -> None:
         """Set the title, like ``SetName``.
@@ -108,8 +111,9 @@ class Viewer(Playing):
         Raises:
             ArgumentError: a size is no number from 1 to 16384.
         """
-        self._size = _checked_size(width, height, "SetSize")
-        self.interaction.handle(Resize(*self._size))
+        self._size = size = _checked_size(width, height, "SetSize")
+        self.interaction.handle(Resize(*size))
+        self._ask_window("set_window_size", *size)
 
     def Move(self, x: int, y: int) -> None:
         """Move the window; nothing happens without one.
@@ -125,6 +129,10 @@ class Viewer(Playing):
         Args:
             showtype: 0 hides it.
         """
+        self._ask_window("show_window" if showtype else "hide_window")
+
+    def _ask_window(self, function: str, *arguments: object) -> None:
+        """Have a function of GLFW called in the thread of the window; nothing happens without one."""
 
     def SetTextSize(self, size: float) -> None:
         """Set the size of the text in the corner.
@@ -165,7 +173,7 @@ class Viewer(Playing):
 
     @also_named(bShow="show")
     def main(self, show: bool = True, sig_thread_id: int = 0) -> int:
-        """Wait until the window is closed or ``quitmainloop`` is called; without a window, return at once.
+        """Wait until the viewer is closed or ``quitmainloop`` is called; without window and page, return at once.
 
         Args:
             show: False hides the window.
@@ -174,8 +182,20 @@ class Viewer(Playing):
         Returns:
             0.
         """
-        del show, sig_thread_id
+        del sig_thread_id
+        self.Show(int(show))
+        self.wait()
         return 0
+
+    def wait(self) -> None:
+        """Wait until the viewer is closed, by the user or by a script; without window and page, return at once."""
+        while not self._ended.wait(0.1):  # in slices, so that Ctrl-C gets through
+            pass
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is a window or a page server that is not closed yet."""
+        return not self._ended.is_set()
 
     def quitmainloop(self) -> None:
         """End ``main``; a window closes."""

@@ -5,12 +5,10 @@ import logging
 import threading
 import time
 import weakref
-from collections.abc import Callable
 from queue import SimpleQueue
 
 import numpy as np
 
-from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_vector
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, RavemjError, RenderingError
@@ -18,7 +16,7 @@ from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.interaction import Request, Resize
 from ravemj.gui.viewers.dropping import add_files
 from ravemj.gui.viewers.glfw_window import GlfwWindow
-from ravemj.gui.viewers.player import camera_line
+from ravemj.gui.viewers.interactive import camera_line
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.sharpness import period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE, Viewer
@@ -37,9 +35,6 @@ _FARTHEST = 32767
 _running: dict[threading.Thread, tuple[threading.Event, threading.Event]] = {}
 """The threads of windows; for each an event that closes it, and one that tells its end: Ctrl-C breaks ``join``."""
 
-_Request = Callable[[GlfwWindow], object]
-"""What other threads ask of a window: its methods belong to one thread."""
-
 
 class WindowViewer(Viewer):
     """A viewer in a window; it shows every change at once and stays until it is closed or forgotten."""
@@ -49,7 +44,7 @@ class WindowViewer(Viewer):
     def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
         super().__init__(simulation, renderer, name)
         self._size = _WIDTH, _HEIGHT
-        self._requests: SimpleQueue[_Request] = SimpleQueue()
+        self._requests: SimpleQueue[tuple[str, *tuple[object, ...]]] = SimpleQueue()
         self._awaited: SimpleQueue[threading.Event] = SimpleQueue()
         self._complaint = ""
         self._free_at = self._changed_at = time.monotonic()
@@ -66,39 +61,8 @@ class WindowViewer(Viewer):
             self._ended.wait()
             raise RenderingError(self._failure)
 
-    @property
-    def is_open(self) -> bool:
-        """False once the window is closed, by the user or by ``close``."""
-        return not self._ended.is_set()
-
-    def wait(self) -> None:
-        """Wait until the user closes the window."""
-        while not self._ended.wait(0.1):  # in slices, so that Ctrl-C gets through
-            pass
-
-    def SetName(self, title: str) -> None:
-        """Set the title of the window.
-
-        Args:
-            title: The title.
-        """
-        super().SetName(title)
-        self._requests.put(lambda window: window.set_title(str(title)))
-
-    @also_named(w="width", h="height")
-    def SetSize(self, width: int, height: int) -> None:
-        """Set the size of the window.
-
-        Args:
-            width: Columns [pixels].
-            height: Rows [pixels].
-
-        Raises:
-            ArgumentError: a size is no number from 1 to 16384.
-        """
-        super().SetSize(width, height)
-        size = self._size
-        self._requests.put(lambda window: window.resize(*size))
+    def _ask_window(self, function: str, *arguments: object) -> None:
+        self._requests.put((function, *arguments))
 
     def Move(self, x: int, y: int) -> None:
         """Move the window.
@@ -114,30 +78,7 @@ class WindowViewer(Viewer):
         if np.abs(place).max() > _FARTHEST:
             raise ArgumentError(f"Move: is {x}, {y}, and should be from {-_FARTHEST} to {_FARTHEST}")
         left, top = place.astype(int).tolist()
-        self._requests.put(lambda window: window.move(left, top))
-
-    def Show(self, showtype: int) -> None:
-        """Hide the window, or show it.
-
-        Args:
-            showtype: 0 hides it.
-        """
-        self._requests.put(lambda window: window.show_or_hide(bool(showtype)))
-
-    @also_named(bShow="show")
-    def main(self, show: bool = True, sig_thread_id: int = 0) -> int:
-        """Wait until the user closes the window or ``quitmainloop`` is called.
-
-        Args:
-            show: False hides the window.
-            sig_thread_id: Not used.
-
-        Returns:
-            0.
-        """
-        self.Show(int(show))
-        self.wait()
-        return 0
+        self._ask_window("set_window_pos", left, top)
 
     def quitmainloop(self) -> None:
         """Close the window, which ends ``main``."""
@@ -170,7 +111,7 @@ class WindowViewer(Viewer):
             self.interaction.let_go()
             return False
         for _ in range(self._requests.qsize()):
-            self._requests.get()(window)
+            window.call(*self._requests.get())
         waiting = [self._awaited.get() for _ in range(self._awaited.qsize())]
         self._size = window.size
         self._thread_callbacks.call()

@@ -21,13 +21,7 @@ _OFFSCREEN = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
 
 
 class Surface(NamedTuple):
-    """What is drawn on.
-
-    Attributes:
-        background: Colour where nothing is, in 0..1.
-        pixels: Width and height of the window.
-        ratio: How many pixels a point has.
-    """
+    """What is drawn on: its background in 0..1, width and height [pixels], and how many pixels a point has."""
 
     background: tuple[float, float, float]
     pixels: tuple[int, int]
@@ -79,7 +73,7 @@ class WindowRenderer:
         """
         compiled = simulation.compiled()
         looks = appearance(simulation)
-        seen = (looks, interaction.version, surface)
+        seen = (looks, interaction.appearance, surface)
         if seen == self._seen and not self._line:
             return False
         self._seen, self._line = seen, ""
@@ -134,20 +128,11 @@ class WindowRenderer:
         return self._gl_scene
 
     def is_due(self, now: float) -> bool:
-        """Return whether what has come to rest is to be drawn once more, crisp.
-
-        Args:
-            now: What ``time.monotonic`` says.
-        """
+        """Return whether what has come to rest is to be drawn once more, crisp; ``now`` as ``time.monotonic`` says."""
         return self._gl_scene is not None and self._sharpness.is_due(now)
 
     def draw(self, surface: Surface, now: float) -> None:
-        """Draw what was seen last, without text and buttons.
-
-        Args:
-            surface: What it is drawn on.
-            now: What ``time.monotonic`` says.
-        """
+        """Draw what was seen last, without text and buttons; ``now`` as ``time.monotonic`` says."""
         stage, view = self._gl_scene, self._view
         if stage is None or view is None:
             return

@@ -35,11 +35,7 @@ class XConnection:
     """
 
     def __init__(self, display: int) -> None:
-        """Guard a connection that is open.
-
-        Args:
-            display: Address of Xlib's ``Display``.
-        """
+        """Guard a connection that is open, by the address of Xlib's ``Display``."""
         self.is_broken = False
         self._xlib, self._display = xlib, address = ctypes.CDLL("libX11.so.6"), ctypes.c_void_p(display)
         self._number: int = xlib.XConnectionNumber(address)
@@ -48,8 +44,7 @@ class XConnection:
             xlib.XSetIOErrorHandler(self._callbacks[0])
             xlib.XSetIOErrorExitHandler(address, self._callbacks[1], None)
 
-    def _on_exit(self, display: object, data: object) -> None:
-        del display, data
+    def _on_exit(self, _display: object, _data: object) -> None:
         self.is_broken = True
 
     def wait(self, seconds: float) -> None:
@@ -60,14 +55,7 @@ class XConnection:
             self.is_broken |= bool(events & (select.POLLHUP | select.POLLERR | select.POLLNVAL))
 
     def keep_picture(self, window: int, rgb: tuple[int, int, int]) -> None:
-        """Have the server keep what is in a window that people resize, and fill what is new with a colour.
-
-        It would be black until the next picture.
-
-        Args:
-            window: The window's number.
-            rgb: The colour, in 0..255.
-        """
+        """Have the server keep what is in a window that people resize, and fill what is new with a colour (0..255)."""
         red, green, blue = rgb
         pixel = 0xFF << 24 | red << 16 | green << 8 | blue
         attributes = _WindowAttributes(background_pixel=pixel, bit_gravity=_NORTH_WEST)
@@ -81,7 +69,6 @@ class XConnection:
             self._xlib.XUnlockDisplay(self._display)
 
 
-def _ignore(display: object) -> int:
+def _ignore(_display: object) -> int:
     """Print nothing when a connection breaks."""
-    del display
     return 0

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
-from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay
+from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay, Resize
 from ravemj.gui.viewers.dropping import Upload
 from ravemj.gui.viewers.recorder import free_path
 from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness, period
@@ -20,8 +20,7 @@ from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
 from ravemj.gui.viewers.web.feed import Feed, Stage
 from ravemj.gui.viewers.web.frame_pacing import Link
-from ravemj.gui.viewers.web.messages import Draws, Piece, Ready, Shape, parse
-from ravemj.gui.viewers.web.rejections import Rejections
+from ravemj.gui.viewers.web.messages import Draws, Piece, Ready, Rejections, Shape, parse
 from ravemj.gui.viewers.web.scenes import Scenes
 from ravemj.gui.viewers.window_renderer import appearance
 
@@ -52,12 +51,7 @@ class Connection(Protocol):
 
 
 class PageStyle(NamedTuple):
-    """How all pages of a viewer look.
-
-    Attributes:
-        background: Colour where nothing is, in 0..1.
-        title: What the page is called.
-    """
+    """How all pages of a viewer look: the background in 0..1, and the title."""
 
     background: tuple[float, float, float]
     title: str
@@ -94,7 +88,7 @@ class Client:
         self._scenes = scenes
         self._feed: Feed | None = None  # pages that draw by themselves have one
         self._stage: Stage | None = None
-        self._heard = 0
+        self._acknowledged = 0
         self._link = Link()
         self._sharpness = Sharpness()
         self._overlay: Overlay | None = None
@@ -103,7 +97,7 @@ class Client:
         self._sees_bodies = False
         self._has_moved = False
         self._ratio = 1.0
-        self._waiting: deque[Event | Shape] = deque([Leave()])  # of what an earlier connection of the page has left
+        self._waiting: deque[Event] = deque([Leave()])  # of what an earlier connection of the page has left
         self._seen: object = None
         self._seen_view: object = None
         self._says_locked = False
@@ -134,19 +128,22 @@ class Client:
             try:
                 message = parse(text)
             except ValueError as error:
-                self._heard += 1
+                self._acknowledged += 1
                 complain(str(error), text)
                 continue
             if isinstance(message, Ready):
                 self._link.shown()
                 continue
-            self._heard += 1
+            self._acknowledged += 1
             if isinstance(message, Piece):
                 self._take_piece(message)
                 continue
             if isinstance(message, Draws):
                 self._feed, self._seen = Feed() if message.itself else None, None
                 continue
+            if isinstance(message, Shape):
+                self._ratio = message.ratio
+                message = Resize(message.width, message.height)
             if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
                 self._waiting.pop()  # only where the pointer is now counts
             self._waiting.append(message)
@@ -200,12 +197,12 @@ class Client:
             self.interaction.pass_time(now)
             before = self.interaction.view.camera
             while self._waiting:
-                self._do(self._waiting.popleft())
+                self.interaction.handle(self._waiting.popleft())
             self._has_moved |= self.interaction.view.camera is not before
             if not self._link.is_free:
                 return None
-            heard = self._heard if self._feed else 0  # what a page did by itself is waiting for an answer
-            seen = appearance(self._simulation), self.interaction.version, style, self._ratio, heard
+            acknowledged = self._acknowledged if self._feed else 0  # what a page did by itself is waiting for an answer
+            seen = appearance(self._simulation), self.interaction.appearance, style, self._ratio, acknowledged
             has_changed = seen != self._seen or self._says_locked
             if not self._is_due(now, has_changed=has_changed):
                 self.looks += 1
@@ -222,13 +219,8 @@ class Client:
 
     def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
         """Do what changes only the view, while others have the simulation; return what is to be sent if that is due."""
-        events: list[Event] = []
-        for message in self._waiting:
-            if isinstance(message, Shape):
-                self._ratio = message.ratio
-            events.append(message.resize if isinstance(message, Shape) else message)
         before = self.interaction.view.camera
-        self._waiting = deque(self.interaction.steer(events))
+        self._waiting = deque(self.interaction.steer(list(self._waiting)))
         self._has_moved |= self.interaction.view.camera is not before
         self.interaction.pass_time_without_bodies(now)
         is_long = now - self._free_at > PATIENCE
@@ -268,13 +260,6 @@ class Client:
             return CRISP
         level = self._sharpness.moving(now)
         return level._replace(scale=min(level.scale, _HALF)) if self._link.is_halved else level
-
-    def _do(self, message: Event | Shape) -> None:
-        if isinstance(message, Shape):
-            self._ratio = message.ratio
-            self.interaction.handle(message.resize)
-        else:
-            self.interaction.handle(message)
 
     def _picture(self, overlay: Overlay, style: PageStyle, level: Level = CRISP) -> Frame:
         begin = time.monotonic()
@@ -323,7 +308,7 @@ class Client:
         """Return what a page that draws by itself has not been sent yet."""
         labels = [(*label.point.tolist(), label.text) for label in overlay.labels]
         text = {**self._text(overlay, style), "labels": labels, "background": style.background, "crisp": True}
-        return feed.messages(stage, self.interaction.drawn_view, text, self._heard)
+        return feed.messages(stage, self.interaction.drawn_view, text, self._acknowledged)
 
     def _text(self, overlay: Overlay, style: PageStyle) -> dict[str, object]:
         """Return what stands beside pictures, by field."""

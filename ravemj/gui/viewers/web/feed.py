@@ -107,17 +107,10 @@ class Feed:
         self._text: dict[str, Any] = {}
         self._stage: Stage | None = None
         self._camera = b""
-        self._heard: int = 0
+        self._acknowledged: int = 0
 
-    def messages(self, stage: Stage, view: View, text: dict[str, object], heard: int) -> list[str | bytes]:
-        """Return what is new for the page; nothing where it has everything.
-
-        Args:
-            stage: What is seen.
-            view: Where from.
-            text: What stands beside it, by field.
-            heard: How many messages of the page have been acted on.
-        """
+    def messages(self, stage: Stage, view: View, text: dict[str, object], acknowledged: int) -> list[str | bytes]:
+        """Return what is new for a page, of whose messages so many were acted on; nothing where it has everything."""
         messages: list[str | bytes] = []
         text = {**text, "scene": stage.scene.name, "edges": stage.edges}
         said = _changed(self._text, text)
@@ -129,10 +122,10 @@ class Feed:
         if before is None or not _is_same(stage.figures, before.figures):
             messages.append(_drawn(FIGURES, stage.figures))
         news, camera = self._news(stage), _packed_camera(view)
-        if messages or news is not None or camera != self._camera or heard != self._heard:
-            messages.append(_frame(stage, news, camera if camera != self._camera else b"", heard))
+        if messages or news is not None or camera != self._camera or acknowledged != self._acknowledged:
+            messages.append(_frame(stage, news, camera if camera != self._camera else b"", acknowledged))
         self._text, self._stage = text, stage
-        self._camera, self._heard = camera, heard
+        self._camera, self._acknowledged = camera, acknowledged
         return messages
 
     def _news(self, stage: Stage) -> tuple[NDArray[np.intp], NDArray[np.intp]] | None:
@@ -162,11 +155,13 @@ def _difference(control: Control, before: Control) -> dict[str, object]:
     return {name: value for name, value in new.items() if name == "name" or value != old[name]}
 
 
-def _frame(stage: Stage, news: tuple[NDArray[np.intp], NDArray[np.intp]] | None, camera: bytes, heard: int) -> bytes:
+def _frame(
+    stage: Stage, news: tuple[NDArray[np.intp], NDArray[np.intp]] | None, camera: bytes, acknowledged: int
+) -> bytes:
     moved, painted = news or (np.empty(0, np.intp), np.empty(0, np.intp))
     return b"".join(
         (
-            struct.pack("<5I", FRAME, heard & 0xFFFFFFFF, moved.size, painted.size, camera != b""),
+            struct.pack("<5I", FRAME, acknowledged & 0xFFFFFFFF, moved.size, painted.size, camera != b""),
             camera,
             stage.positions[moved].tobytes(),
             stage.rotations[moved].tobytes(),

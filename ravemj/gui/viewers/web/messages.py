@@ -2,10 +2,11 @@
 
 import base64
 import json
+import logging
 import math
 import re
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ravemj.gui.interaction import (
     Button,
@@ -17,32 +18,29 @@ from ravemj.gui.interaction import (
     Operate,
     Press,
     Release,
-    Resize,
     Tool,
     Use,
     Wheel,
 )
+
+_LOG = logging.getLogger("ravemj")
 
 LONGEST = 1024
 """Longest message of a page [bytes]."""
 
 _FARTHEST = 100_000.0
 _LARGEST = 8192
-_LONGEST_KEY = 20
+_LONGEST_NAME = 20
 _MOST_BRACKETS = 8
 _FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
 """Names of files that a page may send; none of them leads to another folder."""
 
 
 class Shape(NamedTuple):
-    """The page has another size.
+    """The page has another size [points], or its screen other pixels for each point."""
 
-    Attributes:
-        resize: The size [points].
-        ratio: Pixels of the screen for each point.
-    """
-
-    resize: Resize
+    width: int
+    height: int
     ratio: float
 
 
@@ -51,13 +49,7 @@ class Ready(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A piece of a file that was dropped on the page.
-
-    Attributes:
-        name: The file's name, without a folder.
-        data: What comes next in it.
-        is_last: Whether all files of the drop are complete.
-    """
+    """A piece of a file that was dropped on the page; after the last one all files of the drop are complete."""
 
     name: str
     data: bytes
@@ -65,11 +57,7 @@ class Piece(NamedTuple):
 
 
 class Draws(NamedTuple):
-    """The page says who draws.
-
-    Attributes:
-        itself: Whether it draws by itself; False: it shows pictures.
-    """
+    """The page says who draws: it by itself, or the server, whose pictures it shows."""
 
     itself: bool
 
@@ -90,11 +78,11 @@ def parse(text: str | bytes) -> Message:
         if text.count("[") + text.count("{") > _MOST_BRACKETS:
             raise ValueError
         fields = json.loads(text)
-        parser = _PARSERS[fields["type"]]
+        message, readers = _KINDS[fields["type"]]
     except (KeyError, TypeError, ValueError):
         raise ValueError("this is not a message of a viewer's page") from None
     try:
-        return parser(fields)
+        return message(*(read(fields[name]) for name, read in readers.items()))
     except (KeyError, TypeError):
         raise ValueError("a field is missing, or of another kind") from None
 
@@ -119,72 +107,82 @@ def _button(name: object) -> Button:
     return _BUTTONS[name]
 
 
-def _press(fields: dict[str, Any]) -> Press:
-    at = _number(fields["x"]), _number(fields["y"])
-    return Press(*at, _button(fields["button"]), *(_flag(fields[name]) for name in ("ctrl", "shift", "touch")))
-
-
-def _release(fields: dict[str, Any]) -> Release:
-    return Release(_number(fields["x"]), _number(fields["y"]), _button(fields["button"]))
-
-
-def _key(fields: dict[str, Any]) -> Key:
-    name = fields["name"]
-    if not isinstance(name, str) or len(name) > _LONGEST_KEY:
-        raise ValueError("there is no such key")
-    return Key(name, _flag(fields["pressed"]))
-
-
-def _fingers(fields: dict[str, Any]) -> Fingers:
-    spread = _number(fields["spread"])
-    if spread <= 0:
+def _spread(value: object) -> float:
+    if _number(value) <= 0:
         raise ValueError("fingers are never so near")
-    x, y, right, down = (_number(fields[name]) for name in ("x", "y", "right", "down"))
-    return Fingers(x, y, right, down, spread)
+    return _number(value)
 
 
-def _use(fields: dict[str, Any]) -> Use:
-    name = fields["tool"]
+def _tool(name: object) -> Tool:
     if name not in _TOOLS:
         raise ValueError("there is no such tool")
-    return Use(_TOOLS[name], _number(fields["amount"]))
+    return _TOOLS[name]
 
 
-def _operate(fields: dict[str, Any]) -> Operate:
-    name = fields["name"]
-    if not isinstance(name, str) or len(name) > _LONGEST_KEY:
-        raise ValueError("there is no such control")
-    return Operate(name, _number(fields["value"]))
+def _name(kind: str) -> Callable[[object], str]:
+    """Return what reads the name of a key or a control."""
+
+    def read(name: object) -> str:
+        if not isinstance(name, str) or len(name) > _LONGEST_NAME:
+            raise ValueError(f"there is no such {kind}")
+        return name
+
+    return read
 
 
-def _shape(fields: dict[str, Any]) -> Shape:
-    width, height, ratio = (_number(fields[name]) for name in ("width", "height", "ratio"))
-    if not (1 <= width <= _LARGEST and 1 <= height <= _LARGEST and 0.1 <= ratio <= 10):
+def _length(value: object) -> int:
+    if not 1 <= _number(value) <= _LARGEST:
         raise ValueError("there are no pages of this size")
-    return Shape(Resize(round(width), round(height)), ratio)
+    return round(_number(value))
 
 
-def _piece(fields: dict[str, Any]) -> Piece:
-    name, data = fields["name"], fields["data"]
-    if not isinstance(name, str) or not _FILE.fullmatch(name) or not isinstance(data, str):
+def _ratio(value: object) -> float:
+    if not 0.1 <= _number(value) <= 10:
+        raise ValueError("there are no pages of this size")
+    return _number(value)
+
+
+def _file_name(name: object) -> str:
+    if not isinstance(name, str) or not _FILE.fullmatch(name):
         raise ValueError("there are no such files")
-    return Piece(name, base64.b64decode(data, validate=True), _flag(fields["last"]))
+    return name
+
+
+def _data(text: object) -> bytes:
+    if not isinstance(text, str):
+        raise ValueError("there are no such files")
+    return base64.b64decode(text, validate=True)
 
 
 _BUTTONS: dict[object, Button] = {button.value: button for button in Button}
 _TOOLS: dict[object, Tool] = {tool.value: tool for tool in Tool}
-_PARSERS: dict[str, Callable[[dict[str, Any]], Message]] = {
-    "press": _press,
-    "release": _release,
-    "move": lambda fields: Move(_number(fields["x"]), _number(fields["y"])),
-    "wheel": lambda fields: Wheel(_number(fields["steps"])),
-    "fingers": _fingers,
-    "use": _use,
-    "operate": _operate,
-    "key": _key,
-    "leave": lambda fields: Leave(),
-    "shape": _shape,
-    "piece": _piece,
-    "ready": lambda fields: Ready(),
-    "draws": lambda fields: Draws(_flag(fields["itself"])),
+_POINT: dict[str, Callable[[object], object]] = {"x": _number, "y": _number}
+_KINDS: dict[str, tuple[Callable[..., Message], dict[str, Callable[[object], object]]]] = {
+    "press": (Press, {**_POINT, "button": _button, "ctrl": _flag, "shift": _flag, "touch": _flag}),
+    "release": (Release, {**_POINT, "button": _button}),
+    "move": (Move, _POINT),
+    "wheel": (Wheel, {"steps": _number}),
+    "fingers": (Fingers, {**_POINT, "right": _number, "down": _number, "spread": _spread}),
+    "use": (Use, {"tool": _tool, "amount": _number}),
+    "operate": (Operate, {"name": _name("control"), "value": _number}),
+    "key": (Key, {"name": _name("key"), "pressed": _flag}),
+    "leave": (Leave, {}),
+    "shape": (Shape, {"width": _length, "height": _length, "ratio": _ratio}),
+    "piece": (Piece, {"name": _file_name, "data": _data, "last": _flag}),
+    "ready": (Ready, {}),
+    "draws": (Draws, {"itself": _flag}),
 }
+"""What each kind of message becomes, and its fields in the order of what that is made of."""
+
+
+class Rejections:
+    """Logs each kind of trouble with pages and strangers once, so that nobody can fill the log."""
+
+    def __init__(self) -> None:
+        self._known: set[str] = set()
+
+    def __call__(self, kind: str, detail: object = "") -> None:
+        """Log a kind of trouble, one of a few texts, with the beginning of what was sent; each kind once."""
+        if kind not in self._known:
+            self._known.add(kind)
+            _LOG.warning("viewer's page: %s%s (further cases are not logged)", kind, detail and f": {detail!r:.80}")

@@ -45,13 +45,7 @@ class Scenes:
         self._lock = threading.Lock()
 
     def of(self, model: mujoco.MjModel, version: int, style: Style) -> Scene:
-        """Return the scene of a model.
-
-        Args:
-            model: The compiled model.
-            version: A number that is another one for each model.
-            style: Which geoms are drawn, and whether as their hulls.
-        """
+        """Return the scene of a model in a style; each model has another version."""
         key = version, style.collision, style.hulls
         with self._lock:
             scene = self._scenes.pop(key, None) or _packed(model, style)

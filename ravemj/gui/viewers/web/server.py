@@ -20,8 +20,7 @@ from websockets.sync.server import ServerConnection, serve
 
 from ravemj.errors import ArgumentError, RenderingError
 from ravemj.gui.viewers.web.document import document
-from ravemj.gui.viewers.web.messages import LONGEST
-from ravemj.gui.viewers.web.rejections import Rejections
+from ravemj.gui.viewers.web.messages import LONGEST, Rejections
 
 LOOPBACK = "127.0.0.1"
 _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}

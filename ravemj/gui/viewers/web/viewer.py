@@ -12,14 +12,13 @@ from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.sync.server import ServerConnection
 
-from ravemj.core.arguments import also_named
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.rendering.style import AS_IT_IS
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.interaction import Interaction, Request
+from ravemj.gui.viewers.interactive import camera_line
 from ravemj.gui.viewers.notebook import frame
-from ravemj.gui.viewers.player import camera_line
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.viewer import Viewer
 from ravemj.gui.viewers.web.client import Client, PageStyle, receive
@@ -75,6 +74,7 @@ class WebViewer(Viewer):
         self._views: dict[str, Interaction] = {}
         self._lock = threading.Lock()
         self._scenes = Scenes()
+        self._ended = threading.Event()  # open: a page may come before the server is returned
         reference: weakref.ref[WebViewer] = weakref.ref(self)
         self.server = PageServer(
             host,
@@ -85,13 +85,9 @@ class WebViewer(Viewer):
             token=token,
             any_name=any_name or not is_local(host),
         )
+        self._ended = self.server.closed
         self.url = self.server.url(host)
         self._end = weakref.finalize(self, self.server.close)
-
-    @property
-    def is_open(self) -> bool:
-        """False once it is closed."""
-        return not self.server.closed.is_set()
 
     def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
         """Set the camera of all pages; see ``Viewer.SetCamera``."""
@@ -112,25 +108,9 @@ class WebViewer(Viewer):
         while any(client.looks < before + 2 for client, before in looks.items()) and time.monotonic() < end:
             time.sleep(_SYNC_STEP)
 
-    @also_named(bShow="show")
-    def main(self, show: bool = True, sig_thread_id: int = 0) -> int:
-        """Wait until ``quitmainloop`` is called or the viewer is closed.
-
-        Args:
-            sig_thread_id: Not used.
-            show: Without meaning.
-
-        Returns:
-            0.
-        """
-        del show
-        while not self.server.closed.wait(0.1):  # in slices, so that Ctrl-C gets through
-            pass
-        return 0
-
     def quitmainloop(self) -> None:
         """End ``main``; pages are told that the viewer has closed."""
-        self.server.closed.set()
+        self._ended.set()
 
     def close(self) -> None:
         """Close the viewer and its pages."""

@@ -1,10 +1,10 @@
 "use strict";
-// Playing a motion, saving, and a slider for each joint: made of what the other side says there is.
+// Playing a motion, saving, and a slider for each joint: built from what the server says there is.
 
-const QUIET = 400;  // after so long without a touch [ms], a slider shows what the other side says
+const QUIET = 400;  // after so long without a touch [ms], a slider shows what the server says
 const PLAYING = ["back", "play", "forward", "seek", "speed"];
-const UNFOLD = ["joints", "view", "display", "tree", "help"];
-const HOMES = { playing: "motion", time: "time", tools: "tools", menu: "menu", joints: "joints", "joint tools": "joint-tools" };
+const TOGGLES = ["joints", "view", "display", "tree", "help"];
+const CONTAINERS = { playing: "motion", time: "time", tools: "tools", menu: "menu", joints: "joints", "joint tools": "joint-tools" };
 const ICONS = {
   back: "M6 5h2.4v14H6zM19 5v14L9.5 12z",
   forward: "M15.6 5H18v14h-2.4zM5 5v14l9.5-7z",
@@ -12,19 +12,19 @@ const ICONS = {
   pause: "M6.5 5h3.8v14H6.5zM13.7 5h3.8v14h-3.8z",
 };
 [ICONS.run, ICONS.step] = [ICONS.play, ICONS.forward];
-const shown = new Map();  // the elements of the controls by their names
+const entries = new Map();  // by the names of controls: the row of each, and for sliders what is in it
 
 function showControls(controls) {
   const motion = document.getElementById("motion");
   const names = new Set(controls.map((control) => control.name));
-  for (const [name, control] of shown) {
+  for (const [name, entry] of entries) {
     if (names.has(name)) continue;
-    control.row.remove();
-    shown.delete(name);
+    entry.row.remove();
+    entries.delete(name);
   }
   for (const control of controls) {
-    if (!shown.has(control.name)) shown.set(control.name, make(control));
-    update(shown.get(control.name), control);
+    if (!entries.has(control.name)) entries.set(control.name, createControl(control));
+    updateControl(entries.get(control.name), control);
   }
   motion.hidden = !names.has("seek");
   document.getElementById("time").hidden = !names.has("run");
@@ -34,16 +34,16 @@ function showControls(controls) {
   document.body.classList.toggle("has-motion", !motion.hidden);
 }
 
-function make({ name, group, lower, upper }) {
-  const made = lower < upper ? makeSlider(name) : name === "clock" ? makeText(name) : makeButton(name);
-  const order = (element) => PLAYING.indexOf(element.dataset.name);
-  const home = document.getElementById(HOMES[group]);
-  const next = group === "playing" ? [...home.children].find((other) => order(other) > order(made.row)) : null;
-  home.insertBefore(made.row, next || null);
-  return made;
+function createControl({ name, group, lower, upper }) {
+  const entry = lower < upper ? createSlider(name) : name === "clock" ? createText(name) : createButton(name);
+  const order = (row) => PLAYING.indexOf(row.dataset.name);
+  const container = document.getElementById(CONTAINERS[group]);
+  const next = group === "playing" ? [...container.children].find((other) => order(other) > order(entry.row)) : null;
+  container.insertBefore(entry.row, next || null);
+  return entry;
 }
 
-function makeButton(name) {
+function createButton(name) {
   const row = document.createElement("button");
   row.type = "button";
   row.dataset.name = name;
@@ -51,13 +51,13 @@ function makeButton(name) {
   return { row };
 }
 
-function makeText(name) {
+function createText(name) {
   const row = document.createElement("output");
   row.dataset.name = name;
   return { row };
 }
 
-function makeSlider(name) {
+function createSlider(name) {
   const row = document.createElement("label"), title = document.createElement("span");
   const input = document.createElement("input");
   const output = document.createElement(name === "seek" ? "output" : "input");
@@ -65,9 +65,9 @@ function makeSlider(name) {
   row.dataset.name = name;
   input.type = "range";
   input.step = "any";
-  const made = { row, title, input, output, touched: -QUIET };
+  const entry = { row, title, input, output, touched: -QUIET };
   input.addEventListener("input", () => {
-    made.touched = performance.now();
+    entry.touched = performance.now();
     send({ type: "operate", name, value: Number(input.value) });
   });
   output.addEventListener("change", () => {  // a number was typed, in the unit that is shown
@@ -76,15 +76,15 @@ function makeSlider(name) {
     output.blur();
   });
   row.append(title, input, output);
-  return made;
+  return entry;
 }
 
-function update(made, control) {
-  if (made.input) {
-    const { input, title, output } = made;
+function updateControl(entry, control) {
+  if (entry.input) {
+    const { input, title, output } = entry;
     if (title.textContent !== control.label) title.textContent = control.label;
     [input.min, input.max] = [control.lower, control.upper];
-    const isHeld = input.matches(":active") || performance.now() - made.touched < QUIET;
+    const isHeld = input.matches(":active") || performance.now() - entry.touched < QUIET;
     if (!isHeld) input.value = control.value;
     input.setAttribute("aria-valuetext", control.text);
     if (output.className !== "number") output.textContent = control.text;
@@ -98,14 +98,14 @@ function update(made, control) {
     }
     return;
   }
-  const { row } = made;
+  const { row } = entry;
   const isRunning = ["play", "run"].includes(control.name) && control.is_on;
   const icon = ICONS[isRunning ? "pause" : control.name];
   const label = ["speed", "pace"].includes(control.name) ? `${control.label} ${control.text}` : control.label;
   row.title = label;
   row.setAttribute("aria-label", label);
   row.dataset.on = control.is_on === true;
-  if (UNFOLD.includes(control.name)) row.setAttribute("aria-expanded", control.is_on);
+  if (TOGGLES.includes(control.name)) row.setAttribute("aria-expanded", control.is_on);
   if (!icon) row.textContent = control.text;
   else if (row.dataset.icon !== icon) {
     row.dataset.icon = icon;
@@ -140,7 +140,7 @@ document.getElementById("help").addEventListener("click", () => send({ type: "op
 
 const KEYS = { " ": ["play", "run"], ArrowLeft: ["back"], ArrowRight: ["forward", "step"] };
 document.getElementById("view").addEventListener("keydown", (event) => {
-  const name = (KEYS[event.key] || []).find((one) => shown.has(one));
+  const name = (KEYS[event.key] || []).find((one) => entries.has(one));
   if (!name || event.ctrlKey || event.altKey || event.metaKey) return;
   event.preventDefault();
   if (!event.repeat || !["play", "run"].includes(name)) send({ type: "operate", name, value: 0 });
@@ -184,10 +184,10 @@ function copyOldWay(text) {  // where pages have no clipboard: on other machines
   return isCopied;
 }
 
-let toasting = 0;
+let toastTimer = 0;
 function toast(words) {
   const element = document.getElementById("toast");
   element.textContent = words;
-  clearTimeout(toasting);
-  toasting = setTimeout(() => { element.textContent = ""; }, 6000);
+  clearTimeout(toastTimer);
+  toastTimer = setTimeout(() => { element.textContent = ""; }, 6000);
 }

@@ -1,5 +1,5 @@
 "use strict";
-// Draws what the other side sends: surfaces once, then what has changed. The view turns at once; the answer corrects it.
+// Draws what the server sends: surfaces once, then what has changed. The view turns at once; the answer corrects it.
 
 const FRAME = 0, DRAWINGS = 1, LAST_KIND = 2;
 const CLICK = 4, NEARER = 0.9, ZOOM = 4;  // as in ravemj/gui/interaction
@@ -7,23 +7,23 @@ const CLICK = 4, NEARER = 0.9, ZOOM = 4;  // as in ravemj/gui/interaction
 const canvas = document.createElement("canvas");  // what WebGL draws on; the view is a copy of it
 canvas.addEventListener("webglcontextlost", (event) => {
   event.preventDefault();  // or it would not be restored
-  takePictures("WebGL has stopped");
+  showServerPictures("WebGL has stopped");
 });
-canvas.addEventListener("webglcontextrestored", () => { order = order.then(() => drawHere(overlay.scene)); });
+canvas.addEventListener("webglcontextrestored", () => { messageQueue = messageQueue.then(() => startDrawing(overlay.scene)); });
 
 class Drawing {
   /** Raises an error where there is no WebGL2. */
   constructor() {
     this.renderer = new Renderer(canvas);
     this.sharpness = new Sharpness(this.renderer, requestDrawing);
-    this.begin();
+    this.reset();
   }
 
   /** Begin a connection. */
-  begin() {
-    this.answer = this.foreseen = null;  // the view as the other side says, and as it should become
-    this.heard = this.foreseenBy = 0;  // numbers of messages
-    this.letGo();
+  reset() {
+    this.serverView = this.predicted = null;  // the view as the server says, and as it will become by what it was sent since
+    this.acknowledged = this.predictedBy = 0;  // numbers of messages
+    this.resetPointer();
   }
 
   /** Fetch surfaces; return whether they were there. */
@@ -37,14 +37,14 @@ class Drawing {
   }
 
   /** Take over a binary message; return whether it is a frame to be drawn. */
-  async take(bytes) {
+  async receive(bytes) {
     const { renderer } = this, [kind] = new Uint32Array(bytes, 0, 1);
     if (kind !== FRAME) {
       const { content, array } = await unpacked(new Uint8Array(bytes, 4));
       renderer.show(kind === DRAWINGS ? "drawings" : "figures", content.drawings, array);
       return false;
     }
-    const [, heard, bodies, shapes, cameras] = new Uint32Array(bytes, 0, 5);
+    const [, acknowledged, bodies, shapes, cameras] = new Uint32Array(bytes, 0, 5);
     let at = 20;
     const part = (Type, count) => {
       const made = new Type(bytes, at, count);
@@ -62,47 +62,47 @@ class Drawing {
     });
     if (cameras) {
       const [x, y, z, w, a, b, c, fovy, distance] = camera;
-      this.answer = new View({ rotation: rotationOf(w, a, b, c), position: [x, y, z], fovy, distance });
+      this.serverView = new View({ rotation: rotationOf(w, a, b, c), position: [x, y, z], fovy, distance });
     }
-    this.heard = heard;
+    this.acknowledged = acknowledged;
     return true;
   }
 
-  get view() { return this.foreseen && this.heard < this.foreseenBy ? this.foreseen : this.answer; }
+  get view() { return this.predicted && this.acknowledged < this.predictedBy ? this.predicted : this.serverView; }
 
-  /** Draw into another canvas. */
-  draw(paint) {
-    const { width, height } = paint.canvas;
+  /** Draw into the canvas of the page. */
+  draw() {
+    const { width, height } = context2d.canvas;
     if (!this.view || !this.name) return;
     this.sharpness.draw(this.view, -1, width, height);
-    paint.drawImage(canvas, 0, 0, width, height);
+    context2d.drawImage(canvas, 0, 0, width, height);
   }
 
-  // --- what the view becomes by what hands do, as in ravemj/gui/interaction/hand.py
+  // --- prediction of what the server does with the view, as in ravemj/gui/interaction/hand.py
 
-  letGo() {
+  resetPointer() {
     this.buttons = new Set();
     this.press = this.follow = null;
-    this.isCentring = false;
+    this.isCenterKeyDown = false;
   }
 
-  /** Do with the view what a message will do over there; return whether that changes anything. */
-  foresee(message, number, mode, height) {
-    const view = this.foreseeable(message, mode === "camera", height);
+  /** Do with the view what the server will do with it for a message; return whether that changes anything. */
+  predict(message, number, mode, height) {
+    const view = this.predictedView(message, mode === "camera", height);
     if (!view || !this.view || !this.view.distance) return false;
-    this.foreseen = view;
-    this.foreseenBy = number;
+    this.predicted = view;
+    this.predictedBy = number;
     return true;
   }
 
-  foreseeable(message, isCamera, height) {
+  predictedView(message, isCamera, height) {
     const { view } = this, { x, y, steps, tool, amount, button } = message;
     if (!view) return null;
     switch (message.type) {
       case "press":
         this.buttons.add(button);
         this.press = message;
-        this.follow = isCamera && !message.touch && !this.isCentring ? this.hold(message, view, height) : null;
+        this.follow = isCamera && !message.touch && !this.isCenterKeyDown ? this.dragFor(message, view, height) : null;
         return null;
       case "move":
       case "release": {
@@ -123,13 +123,13 @@ class Drawing {
         if (tool === "Dolly") return view.zoomed(-ZOOM * amount / height);
         if (tool.startsWith("Rot")) return tool === "RotX" ? view.turned(0, amount, height) : view.turned(amount, 0, height);
         return null;
-      case "key": if (message.name === "s") this.isCentring = message.pressed; return null;
-      case "leave": this.letGo(); return null;
+      case "key": if (message.name === "s") this.isCenterKeyDown = message.pressed; return null;
+      case "leave": this.resetPointer(); return null;
       default: return null;
     }
   }
 
-  hold({ button, shift }, view, height) {
+  dragFor({ button, shift }, view, height) {
     if (this.buttons.has("left") && this.buttons.has("middle")) {
       return (right, down) => view.zoomed(-ZOOM * down / height);
     }
@@ -138,20 +138,20 @@ class Drawing {
   }
 
   pinched(view, { x, y, right, down, spread }, height) {
-    const across = x - 0.5 * paint.canvas.clientWidth, along = y - 0.5 * height;
+    const across = x - 0.5 * context2d.canvas.clientWidth, along = y - 0.5 * height;
     return view.zoomed(-Math.log(spread))
       .shifted(across - spread * (across - right), along - spread * (along - down), height);
   }
 }
 
-let isNews = false, unanswered = 0, requested = 0;
+let isOverlayNew = false, unacknowledged = 0, frameRequest = 0;
 
 /** Draw with the screen's next picture, and say so for all frames that have come until then. */
 function requestDrawing() {
-  requested ||= requestAnimationFrame(() => {
-    requested = 0;
+  frameRequest ||= requestAnimationFrame(() => {
+    frameRequest = 0;
     draw();
-    for (; unanswered > 0; unanswered -= 1) ready();
+    for (; unacknowledged > 0; unacknowledged -= 1) ready();
   });
 }
 
@@ -159,28 +159,28 @@ function draw() {
   if (!drawing || !drawing.view) return;
   drawing.renderer.background = overlay.background;
   drawing.renderer.hasEdgesOnly = overlay.edges;
-  drawing.draw(paint);
-  label(overlay.labels.flatMap(([x, y, z, words]) => {
+  drawing.draw();
+  drawLabels(overlay.labels.flatMap(([x, y, z, words]) => {
     const place = drawing.view.projected([x, y, z], view.clientWidth, view.clientHeight);
     return place ? [[...place, words]] : [];
   }));
-  if (isNews) write(overlay);
-  isNews = false;
+  if (isOverlayNew) showOverlay(overlay);
+  isOverlayNew = false;
 }
 
 /** Let this page draw, from surfaces that are known by a name if any are; without WebGL, show pictures. */
-async function drawHere(scene) {
+async function startDrawing(scene) {
   try {
     drawing = new Drawing();
     document.getElementById("source").hidden = true;
     send({ type: "draws", itself: true });
     if (scene) await drawing.load(scene);
   } catch (error) {
-    takePictures(error.message);
+    showServerPictures(error.message);
   }
 }
 
-function takePictures(why) {
+function showServerPictures(why) {
   const source = document.getElementById("source");
   [source.hidden, source.title] = [false, why];
   drawing = null;

@@ -1,13 +1,13 @@
 "use strict";
 const view = document.getElementById("view"), text = document.getElementById("text");
-const notice = document.getElementById("notice"), paint = view.getContext("2d");
+const notice = document.getElementById("notice"), context2d = view.getContext("2d");
 const buttons = ["left", "middle", "right"];
 const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AWAY = 1001;
 
 // --- the connection
 
-let socket = null, overlay = {}, wait = FIRST_WAIT, retry = 0, owed = 0, said = 0;
-let drawing = null, order = Promise.resolve();  // what draws here, if anything does; what is done with messages
+let socket = null, overlay = {}, reconnectDelay = FIRST_WAIT, reconnectTimer = 0, pendingReadies = 0, sentCount = 0;
+let drawing = null, messageQueue = Promise.resolve();  // draws in this page; null: the server does. Messages are handled in order
 
 const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(3)).join("-");
 
@@ -15,72 +15,72 @@ function send(message) {
   if (!socket || socket.readyState !== WebSocket.OPEN) return;
   socket.send(JSON.stringify(message));
   if (message.type === "ready") return;
-  said += 1;
-  if (drawing && drawing.foresee(message, said, overlay.mode, view.clientHeight)) requestDrawing();
+  sentCount += 1;
+  if (drawing && drawing.predict(message, sentCount, overlay.mode, view.clientHeight)) requestDrawing();
 }
 
 function connect() {
-  clearTimeout(retry);
+  clearTimeout(reconnectTimer);
   const opened = socket = new WebSocket(new URL("socket?tab=" + tab, location.href.replace(/^http/, "ws")));
   opened.binaryType = "arraybuffer";
   opened.onopen = () => {
-    wait = FIRST_WAIT;
-    tell("");
-    [overlay, said] = [{}, 0];
-    if (drawing) drawing.begin();
-    shape();
+    reconnectDelay = FIRST_WAIT;
+    showNotice("");
+    [overlay, sentCount] = [{}, 0];
+    if (drawing) drawing.reset();
+    sendShape();
     send({ type: "draws", itself: drawing !== null });
     ready();
   };
   opened.onmessage = ({ data }) => {  // one after the other: some take time
-    order = order.then(() => (opened === socket ? take(data, opened) : null)).catch((error) => {
+    messageQueue = messageQueue.then(() => (opened === socket ? handleMessage(data, opened) : null)).catch((error) => {
       console.error(error);
-      if (drawing) takePictures(error.message);
+      if (drawing) showServerPictures(error.message);
     });
   };
   opened.onclose = (event) => {
     if (event.code === GOING_AWAY) {
-      tell("The viewer has been closed.");
+      showNotice("The viewer has been closed.");
       return;
     }
-    tell("Connection lost, reconnecting …");
-    retry = setTimeout(connect, wait);
-    wait = Math.min(1.7 * wait, LONGEST_WAIT);
+    showNotice("Connection lost, reconnecting …");
+    reconnectTimer = setTimeout(connect, reconnectDelay);
+    reconnectDelay = Math.min(1.7 * reconnectDelay, LONGEST_WAIT);
   };
 }
 
-function tell(words) {
+function showNotice(words) {
   notice.textContent = words;
   document.body.classList.toggle("is-lost", words !== "");
 }
 
 function ready() {  // pages that nobody sees take no pictures
-  if (document.hidden) owed += 1;
+  if (document.hidden) pendingReadies += 1;
   else send({ type: "ready" });
 }
 
 document.addEventListener("visibilitychange", () => {
-  for (; owed > 0 && !document.hidden; owed -= 1) send({ type: "ready" });
+  for (; pendingReadies > 0 && !document.hidden; pendingReadies -= 1) send({ type: "ready" });
 });
 
 window.addEventListener("online", () => {
   if (socket.readyState === WebSocket.CLOSED) connect();
 });
 
-async function take(data, from) {
+async function handleMessage(data, from) {
   if (typeof data === "string") {
-    const news = JSON.parse(data);
-    if (news.task) return doTask(news);
-    overlay = { ...overlay, ...news };
-    for (const one of news.changed || []) {
+    const message = JSON.parse(data);
+    if (message.task) return doTask(message);
+    overlay = { ...overlay, ...message };
+    for (const one of message.changed || []) {
       overlay.controls = overlay.controls.map((other) => (other.name === one.name ? { ...other, ...one } : other));
     }
-    isNews = true;
-    if (drawing && news.scene && !await drawing.load(news.scene)) from.close();
+    isOverlayNew = true;
+    if (drawing && message.scene && !await drawing.load(message.scene)) from.close();
   } else if (new Uint8Array(data)[0] > LAST_KIND) {
-    show(data, overlay, from);
-  } else if (!drawing || await drawing.take(data)) {
-    unanswered += 1;
+    showPicture(data, overlay, from);
+  } else if (!drawing || await drawing.receive(data)) {
+    unacknowledged += 1;
     requestDrawing();
   }
 }
@@ -89,15 +89,15 @@ async function take(data, from) {
 
 let received = 0, newest = 0;
 
-async function show(data, over, from) {
+async function showPicture(data, over, from) {
   const number = received += 1;
   try {
     const picture = await createImageBitmap(new Blob([data]));
     if (from === socket && number > newest) {  // a later one may have been decoded first
       newest = number;
-      paint.drawImage(picture, 0, 0, view.width, view.height);
-      write(over);
-      label(over.labels);
+      context2d.drawImage(picture, 0, 0, view.width, view.height);
+      showOverlay(over);
+      drawLabels(over.labels);
     }
     picture.close();
   } finally {
@@ -105,7 +105,7 @@ async function show(data, over, from) {
   }
 }
 
-function write(over) {
+function showOverlay(over) {
   const lines = over.lines.join("\n");
   if (text.innerText !== lines) text.innerText = lines;
   text.hidden = lines === "";
@@ -121,21 +121,21 @@ function write(over) {
   }
 }
 
-function label(labels) {  // texts in the world: [column, row, text]
+function drawLabels(labels) {  // texts in the world: [column, row, text]
   const ratio = view.width / Math.max(1, view.clientWidth);
-  paint.font = `${12 * ratio}px system-ui, sans-serif`;
-  paint.lineWidth = 3 * ratio;
-  paint.lineJoin = "round";
-  paint.textAlign = "center";
-  paint.strokeStyle = "rgba(255, 255, 255, 0.8)";
-  paint.fillStyle = "#20242c";
+  context2d.font = `${12 * ratio}px system-ui, sans-serif`;
+  context2d.lineWidth = 3 * ratio;
+  context2d.lineJoin = "round";
+  context2d.textAlign = "center";
+  context2d.strokeStyle = "rgba(255, 255, 255, 0.8)";
+  context2d.fillStyle = "#20242c";
   for (const [x, y, words] of labels) {
-    paint.strokeText(words, x * ratio, y * ratio);
-    paint.fillText(words, x * ratio, y * ratio);
+    context2d.strokeText(words, x * ratio, y * ratio);
+    context2d.fillText(words, x * ratio, y * ratio);
   }
 }
 
-function shape() {
+function sendShape() {
   const ratio = Math.min(Math.max(window.devicePixelRatio || 1, 0.1), 10);
   const width = Math.max(1, view.clientWidth), height = Math.max(1, view.clientHeight);
   const columns = Math.round(width * ratio), rows = Math.round(height * ratio);
@@ -144,21 +144,21 @@ function shape() {
     [kept.width, kept.height] = [view.width, view.height];
     kept.getContext("2d").drawImage(view, 0, 0);
     [view.width, view.height] = [columns, rows];
-    paint.drawImage(kept, 0, 0, columns, rows);
+    context2d.drawImage(kept, 0, 0, columns, rows);
     requestDrawing();
   }
   send({ type: "shape", width, height, ratio });
 }
 
-let resizing = 0;
+let resizeTimer = 0;
 window.addEventListener("resize", () => {
-  clearTimeout(resizing);
-  resizing = setTimeout(shape, 100);  // each size costs the other side new buffers
+  clearTimeout(resizeTimer);
+  resizeTimer = setTimeout(sendShape, 100);  // each size costs the server new buffers
 });
 
 // --- mouse and keys
 
-function mouse(type, event) {
+function sendMouse(type, event) {
   const button = buttons[event.button];
   if (!button) return;
   const held = { ctrl: event.ctrlKey || event.metaKey, shift: event.shiftKey, touch: false };
@@ -169,13 +169,13 @@ let pressed = false;
 view.addEventListener("mousedown", (event) => {
   view.focus({ focusVisible: false });
   pressed = true;
-  mouse("press", event);
+  sendMouse("press", event);
   event.preventDefault();
 });
 window.addEventListener("mouseup", (event) => {
   if (!pressed) return;
   pressed = event.buttons !== 0;
-  mouse("release", event);
+  sendMouse("release", event);
 });
 window.addEventListener("mousemove", (event) => {
   const inside = pressed || event.target === view;
@@ -192,15 +192,15 @@ view.addEventListener("wheel", (event) => {
   event.preventDefault();
 }, { passive: false });
 
-const known = /^(Escape|[a-z0-9?=+-]|Home|F1)$/i;  // Space and arrows are for what has the focus
+const KNOWN_KEYS = /^(Escape|[a-z0-9?=+-]|Home|F1)$/i;  // Space and arrows are for what has the focus
 window.addEventListener("keydown", (event) => {
   const isTyping = event.target.matches("input:not([type=range])") && event.key !== "Escape";
-  if (!known.test(event.key) || isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
+  if (!KNOWN_KEYS.test(event.key) || isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === "F1" || event.key === "Home") event.preventDefault();
   if (!event.repeat) send({ type: "key", name: event.key, pressed: true });
 });
 window.addEventListener("keyup", (event) => {
-  if (known.test(event.key)) send({ type: "key", name: event.key, pressed: false });
+  if (KNOWN_KEYS.test(event.key)) send({ type: "key", name: event.key, pressed: false });
 });
 window.addEventListener("blur", () => {
   pressed = false;
@@ -210,25 +210,25 @@ window.addEventListener("blur", () => {
 // --- fingers: one turns or drags, two shift and zoom, a tap selects, a long press is a click with Ctrl
 
 const fingers = new Map();
-let holding = 0, touched = null, several = false;
+let longPressTimer = 0, touchStart = null, isPinching = false;
 
-function touch(type, event, ctrl = false) {
+function sendTouch(type, event, ctrl = false) {
   send({ type, x: event.clientX, y: event.clientY, button: "left", ctrl, shift: false, touch: true });
 }
 
-function span() {
+function pinch() {
   const [one, other] = [...fingers.values()];
   const x = (one.x + other.x) / 2, y = (one.y + other.y) / 2;
   return { x, y, apart: Math.max(1, Math.hypot(one.x - other.x, one.y - other.y)) };
 }
 
-function pressLong() {
-  const event = touched;
-  touched = null;
+function longPress() {
+  const event = touchStart;
+  touchStart = null;
   if (navigator.vibrate) navigator.vibrate(15);
   send({ type: "leave" });
-  touch("press", event, true);
-  touch("release", event, true);
+  sendTouch("press", event, true);
+  sendTouch("release", event, true);
   send({ type: "leave" });
 }
 
@@ -237,15 +237,15 @@ view.addEventListener("pointerdown", (event) => {
   event.preventDefault();  // no events of a mouse in its wake
   view.setPointerCapture(event.pointerId);
   fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
-  clearTimeout(holding);
+  clearTimeout(longPressTimer);
   if (fingers.size === 1) {
-    touched = event;
-    several = false;
-    touch("press", event);
-    holding = setTimeout(pressLong, LONG_PRESS);
+    touchStart = event;
+    isPinching = false;
+    sendTouch("press", event);
+    longPressTimer = setTimeout(longPress, LONG_PRESS);
   } else {
-    touched = null;
-    several = true;
+    touchStart = null;
+    isPinching = true;
     send({ type: "leave" });
   }
 });
@@ -253,27 +253,27 @@ view.addEventListener("pointerdown", (event) => {
 view.addEventListener("pointermove", (event) => {
   const finger = fingers.get(event.pointerId);
   if (!finger) return;
-  const before = fingers.size === 2 ? span() : null;
+  const before = fingers.size === 2 ? pinch() : null;
   [finger.x, finger.y] = [event.clientX, event.clientY];
   if (before) {
-    const now = span();
+    const now = pinch();
     const [right, down, spread] = [now.x - before.x, now.y - before.y, now.apart / before.apart];
     send({ type: "fingers", x: now.x, y: now.y, right, down, spread });
-  } else if (touched && !several) {
-    if (Math.hypot(event.clientX - touched.clientX, event.clientY - touched.clientY) > FAR) clearTimeout(holding);
+  } else if (touchStart && !isPinching) {
+    if (Math.hypot(event.clientX - touchStart.clientX, event.clientY - touchStart.clientY) > FAR) clearTimeout(longPressTimer);
     send({ type: "move", x: event.clientX, y: event.clientY });
   }
 });
 
-function lift(event) {
+function endTouch(event) {
   if (!fingers.delete(event.pointerId)) return;
-  clearTimeout(holding);
-  if (touched && !several && event.type === "pointerup") touch("release", event);
-  touched = null;
+  clearTimeout(longPressTimer);
+  if (touchStart && !isPinching && event.type === "pointerup") sendTouch("release", event);
+  touchStart = null;
   send({ type: "leave" });  // a finger that is gone points at nothing
 }
-view.addEventListener("pointerup", lift);
-view.addEventListener("pointercancel", lift);
+view.addEventListener("pointerup", endTouch);
+view.addEventListener("pointercancel", endTouch);
 
 // --- buttons and wheels
 
@@ -285,7 +285,7 @@ class Wheel {
   constructor(element) {
     this.element = element;
     this.upright = element.getAttribute("aria-orientation") === "vertical";
-    this.turned = 0;  // to the right or down
+    this.offset = 0;  // to the right or down
     this.at = null;
     element.addEventListener("pointerdown", (event) => {
       element.setPointerCapture(event.pointerId);
@@ -314,10 +314,10 @@ class Wheel {
 
   turn(amount) {
     if (amount === 0) return;
-    this.turned += amount;
+    this.offset += amount;
     send({ type: "use", tool: this.element.dataset.tool, amount });
-    this.element.style.setProperty("--turn", this.turned + "px");
-    const value = this.upright ? -this.turned : this.turned;
+    this.element.style.setProperty("--turn", this.offset + "px");
+    const value = this.upright ? -this.offset : this.offset;
     if (this.element.dataset.tool === "Dolly") {
       this.element.setAttribute("aria-valuenow", Math.round(Math.max(-1000, Math.min(1000, value))));
       this.element.setAttribute("aria-valuetext", `${Math.abs(Math.round(value))} ${value < 0 ? "nearer" : "farther"}`);
@@ -332,5 +332,5 @@ class Wheel {
 
 for (const element of document.querySelectorAll("[role=slider]")) new Wheel(element);
 connect();  // which takes its time
-if (new URLSearchParams(location.search).has("pictures")) takePictures("the address asks for pictures");
-else order = drawHere(document.body.dataset.scene);  // most likely what the other side will name
+if (new URLSearchParams(location.search).has("pictures")) showServerPictures("the address asks for pictures");
+else messageQueue = startDrawing(document.body.dataset.scene);  // most likely what the server will name

@@ -1,23 +1,23 @@
 "use strict";
 // The bodies, links and joints: a click selects in the picture, and what is selected in the picture is marked here.
 
-const tree = document.getElementById("tree"), branches = tree.querySelector("[role=tree]");
+const tree = document.getElementById("tree"), rows = tree.querySelector("[role=tree]");
 const search = tree.querySelector("input");
 const MARKS = { body: "▣", link: "◆", joint: "↻" };
-let marked = "", listed = null;
+let selected = "", shownNodes = null;
 
 function showTree(nodes, chosen) {  // an empty list: it is folded
-  if (nodes !== listed) {
-    listed = nodes;
+  if (nodes !== shownNodes) {
+    shownNodes = nodes;
     tree.hidden = nodes.length === 0;
-    branches.replaceChildren(...nodes.map(branch));
-    marked = "";
-    sift();
+    rows.replaceChildren(...nodes.map(createRow));
+    selected = "";
+    filterRows();
   }
-  if (tree.hidden || marked === chosen.join()) return;
-  marked = chosen.join();
+  if (tree.hidden || selected === chosen.join()) return;
+  selected = chosen.join();
   let last = null;
-  for (const row of branches.children) {
+  for (const row of rows.children) {
     const isChosen = chosen.includes(row.dataset.name);
     row.setAttribute("aria-selected", isChosen);
     if (isChosen && row.dataset.name === chosen[chosen.length - 1]) last = row;
@@ -25,7 +25,7 @@ function showTree(nodes, chosen) {  // an empty list: it is folded
   if (last) last.scrollIntoView({ block: "nearest" });
 }
 
-function branch([name, text, kind, depth]) {
+function createRow([name, text, kind, depth]) {
   const row = document.createElement("button");
   row.type = "button";
   row.tabIndex = -1;
@@ -40,29 +40,29 @@ function branch([name, text, kind, depth]) {
   return row;
 }
 
-function sift() {  // show only what has the words of the search in its name
+function filterRows() {  // show only rows whose names contain all words of the search
   const words = search.value.toLowerCase().split(/\s+/);
   let first = null;
-  for (const row of branches.children) {
+  for (const row of rows.children) {
     const name = row.textContent.toLowerCase();
     row.hidden = !words.every((word) => name.includes(word));
     first ||= row.hidden ? null : row;
   }
   if (first) first.tabIndex = 0;
 }
-search.addEventListener("input", sift);
+search.addEventListener("input", filterRows);
 
-function walk(from, step) {  // from the search or a row to the next one that is shown
-  const rows = [search, ...[...branches.children].filter((row) => !row.hidden)];
-  const next = rows[rows.indexOf(from) + step];
+function moveFocus(from, step) {  // from the search or a row to the next one that is shown
+  const stops = [search, ...[...rows.children].filter((row) => !row.hidden)];
+  const next = stops[stops.indexOf(from) + step];
   if (next) next.focus();
 }
 
 tree.addEventListener("keydown", (event) => {
   const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-  if (step) walk(event.target, step);
+  if (step) moveFocus(event.target, step);
   else if (event.key === "Enter" && event.target === search) {
-    const first = [...branches.children].find((row) => !row.hidden);
+    const first = [...rows.children].find((row) => !row.hidden);
     if (first) first.click();
   } else return;
   event.preventDefault();

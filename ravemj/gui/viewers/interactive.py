@@ -1,0 +1,150 @@
+"""What every viewer has besides pictures: what people select in it, who is told, and what it plays."""
+
+import weakref
+from typing import Any, Protocol
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.handles import Handle
+from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.errors import ArgumentError
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction import Hit, Interaction, Playback, Ray
+from ravemj.gui.viewers.callbacks import Callback, Callbacks
+from ravemj.trajectories.body_motion import BodyMotion
+from ravemj.trajectories.motion import Motion
+from ravemj.trajectories.waypoints import Waypoints
+
+
+class _Trajectory(Protocol):
+    """A trajectory of the API, which stands above viewers."""
+
+    @property
+    def waypoints(self) -> Waypoints: ...
+
+
+class _Body(Protocol):
+    """A body of the API, which stands above viewers."""
+
+    @property
+    def simulation_state(self) -> BodyState: ...
+
+
+class Interactive(ApiObject):
+    """Part of every viewer: its mouse and keys, what they select, and a motion that it plays.
+
+    Attributes:
+        environment: What the viewer was made for; OpenRAVE's scripts ask ``GetEnv``.
+        interaction: Takes events of mouse and keys; ``ravemj.gui.interaction`` says how.
+    """
+
+    _internal = ("environment",)
+
+    environment: "weakref.ref[Any] | None" = None
+
+    def __init__(self, simulation: Simulation, camera: Camera, size: tuple[int, int]) -> None:
+        self._simulation = simulation
+        self._selection_callbacks = Callbacks()
+        self.interaction = Interaction(simulation, camera, size, self._may_select)
+
+    def GetEnv(self) -> Any:  # noqa: ANN401 - the API stands above viewers
+        """Return the environment that the viewer was made for."""
+        return None if self.environment is None else self.environment()
+
+    def GetSelectedBody(self) -> Any:  # noqa: ANN401 - the API stands above viewers
+        """Return the body that the user selected, also by one of its joints; None if there is none."""
+        selection, env = self.interaction.selection, self.GetEnv()
+        return None if selection is None or env is None else env.wrap(selection.body)
+
+    def GetSelectedLink(self) -> Any:  # noqa: ANN401 - the API stands above viewers
+        """Return the link that the user clicked on to select something; None if nothing is selected."""
+        selection, body = self.interaction.selection, self.GetSelectedBody()
+        return None if selection is None or body is None else body.GetLinks()[selection.link]
+
+    def GetSelectedJoint(self) -> Any:  # noqa: ANN401 - the API stands above viewers
+        """Return the joint that the user selected; None if there is none."""
+        selection, body = self.interaction.selection, self.GetSelectedBody()
+        if selection is None or body is None or selection.dof is None:
+            return None
+        return body.GetJointFromDOFIndex(selection.dof)
+
+    def RegisterItemSelectionCallback(self, callback: Callback) -> Handle:
+        """Have a function called when the user is about to select a link, in the thread of the window.
+
+        Args:
+            callback: The function. Its arguments are the link, the point on it in the world [m], shape (3,), and the
+                direction from the eye to it, a unit vector of shape (3,). Where it returns True, as in OpenRAVE, it
+                has dealt with the click, and nothing is selected.
+
+        Returns:
+            A handle; the function is forgotten when it is closed or dropped.
+
+        Raises:
+            ArgumentError: this cannot be called.
+
+        Example:
+            >>> handle = viewer.RegisterItemSelectionCallback(lambda link, point, direction: print(link.GetName()))
+        """
+        return self._selection_callbacks.add(callback)
+
+    def _may_select(self, hit: Hit, ray: Ray) -> bool:
+        env = self.GetEnv()
+        if env is None or not self._selection_callbacks:
+            return True
+        link = env.wrap(hit.body).GetLinks()[hit.link]
+        return not any(self._selection_callbacks.call(link, hit.position.copy(), ray.direction.copy()))
+
+    @property
+    def playback(self) -> Playback:
+        """The motion that is played, or was: where it is, how fast it goes."""
+        return self.interaction.controls.playback
+
+    def play(self, motion: Motion | _Trajectory, *, robot: _Body | None = None, speed: float = 1.0) -> Playback:
+        """Play a motion, and let people go through it: play and pause it, step, change the speed, drag its time.
+
+        This returns at once. Windows and pages play in real time while they show it. Without either nothing plays by
+        itself; ``playback.seek`` goes to any time.
+
+        Args:
+            motion: A ``Motion``, or a trajectory with times. Joints stop at their limits.
+            robot: Which body follows a ``Motion``; None: the first robot with joints. A trajectory names its bodies.
+            speed: Seconds of the motion in a second.
+
+        Returns:
+            The playback, which is ``viewer.playback`` too.
+
+        Raises:
+            ArgumentError: the motion does not fit the robot, the trajectory moves no body that is there, or has no
+                times. What was played before goes on then.
+
+        Example:
+            >>> viewer.play(ravemj.Motion.line([0, 0], [3.14, 0], duration=2))
+            >>> viewer.playback.pause()
+        """
+        with self._simulation.lock:
+            playback = self.playback
+            if isinstance(motion, Motion):
+                body = self._first_robot() if robot is None else robot.simulation_state
+                followed = BodyMotion.of_motion(body, motion)
+            else:
+                known = motion.waypoints
+                followed = BodyMotion.of_waypoints(self._simulation, Waypoints(known.groups, known.data.copy()))
+            before, playback.speed = playback.speed, speed
+            try:
+                playback.load(followed)
+            except Exception:
+                playback.speed = before
+                raise
+            playback.play()
+            return playback
+
+    def _first_robot(self) -> BodyState:
+        for body in self._simulation.bodies:
+            if body.scene.is_robot and body.scene.dof_axes:
+                return body
+        raise ArgumentError("there is no robot with joints to move")
+
+
+def camera_line(camera: Camera) -> str:
+    """Return the line of a script that sets a viewer's camera."""
+    rows = ", ".join(str([round(number, 8) + 0.0 for number in row]) for row in camera.T_world_camera.tolist())
+    return f"viewer.SetCamera([{rows}])"
