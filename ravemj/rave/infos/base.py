@@ -3,9 +3,11 @@
 # Users put anything into fields, which have the names that OpenRAVE gives them.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportPrivateUsage=false
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import MISSING, Field, dataclass, field, fields
 from enum import Enum
+from functools import partial
 from typing import Any, ClassVar, Self, TypeVar, cast, dataclass_transform
 
 import numpy as np
@@ -14,10 +16,10 @@ from numpy.typing import ArrayLike
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform
-from ravemj.core.transforms import Floats, Pose, Vec3, pose_of
+from ravemj.core.transforms import Pose, Vec3, pose_of
 from ravemj.errors import ArgumentError
 from ravemj.model.scene import Parameters
-from ravemj.rave.infos.json import Entry, Json, parameters
+from ravemj.rave.infos.json import PLAIN, TEXT, Entry, Form, Json, parameters
 from ravemj.rave.trimesh import TriMesh
 
 T = TypeVar("T")
@@ -27,14 +29,46 @@ class FieldOfClass:
     """A class attribute for a field that has no default value, so that ``dir(Class)`` and scripts find it there."""
 
 
-@dataclass_transform(eq_default=False, field_specifiers=(field,))
+def json_field(
+    key: str, form: Form = PLAIN, *, default: T, optional: bool = False, of: str = "", kw_only: bool = False
+) -> T:
+    """Declare a field of an info and its key in JSON.
+
+    Args:
+        key: The key; empty for a field that JSON leaves out, or has under keys that depend on other fields.
+        form: The conversion to JSON and back.
+        default: The value of new infos, which get copies of it.
+        optional: Whether the key is left out if the field is None or has its default value.
+        of: The attribute of the described object that holds the same value, for classes that look it up.
+        kw_only: Whether the constructor takes the field only by its name.
+    """
+    metadata = {"entry": Entry(key, "", form, optional, of)}
+    if isinstance(default, Hashable):
+        return field(default=default, metadata=metadata, kw_only=kw_only)
+    return field(default_factory=partial(deepcopy, default), metadata=metadata, kw_only=kw_only)  # lists, arrays
+
+
+@dataclass_transform(eq_default=False, field_specifiers=(json_field, field))
 def info_class(cls: type[T]) -> type[T]:
-    """Make a class a dataclass whose fields can be found on the class as well."""
-    made = dataclass(eq=False, repr=False)(cls)
-    for one in fields(cast("Any", made)):
+    """Make a class a dataclass whose fields can be found on the class as well, with a table of their JSON keys.
+
+    The key of a field with a mere default is its name in camel case; names with an underscore in front have none.
+    """
+    made: Any = dataclass(eq=False, repr=False)(cls)
+    for one in fields(made):
         if not hasattr(made, one.name):
             setattr(made, one.name, FieldOfClass())
+    entries = [(one.name, one.metadata.get("entry", Entry(_camel(one.name), "", PLAIN))) for one in fields(made)]
+    made._entries = tuple(entry._replace(field=name) for name, entry in entries if entry.key)
+    if "_called" not in vars(cls):
+        made._called = cls.__name__
     return made
+
+
+def _camel(name: str) -> str:
+    """Return the JSON key of a field: ``gearRatio`` for ``gear_ratio``, nothing for ``_name``."""
+    first, *rest = name.split("_")
+    return first and first + "".join(word.capitalize() for word in rest)
 
 
 @info_class
@@ -42,7 +76,9 @@ class Info(ApiObject):
     """The base class of infos. They compare by their fields, and print as the expression that makes them."""
 
     _called: ClassVar[str]
-    """The class as users write it, for ``repr`` and error messages."""
+    """The class as users write it, for ``repr`` and error messages; by default its name."""
+    _entries: ClassVar[tuple[Entry, ...]]
+    """The JSON keys, made from the fields."""
     _internal: ClassVar[tuple[str, ...]] = (
         *("of", "geometry", "draw", "link", "adjacent", "joint", "motor", "manipulator", "sensor", "camera"),
         *("named_values", "transform", "values_by_axis", "same_structure", "parameters", "with_parameters"),
@@ -71,7 +107,7 @@ class Info(ApiObject):
         del options
         new = type(self)()
         written = Json()
-        for key, name, form, optional in self._json():
+        for key, name, form, optional, _ in self._json():
             value = getattr(self, name)
             if not (optional and (_same(value, getattr(new, name)) or value is None)):
                 written[key] = form.write(value, unitScale)
@@ -90,7 +126,7 @@ class Info(ApiObject):
         """
         del options
         checked_kind(obj, Mapping, f"{self._called}.DeserializeJSON: obj", "a dict")
-        for key, name, form, _ in (entry for entry in self._json(obj) if entry.key in obj):
+        for key, name, form, *_ in (entry for entry in self._json(obj) if entry.key in obj):
             try:
                 setattr(self, name, form.read(obj[key], unitScale, getattr(self, name)))
             except KeyError as error:
@@ -100,7 +136,8 @@ class Info(ApiObject):
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
         """Return the table of the JSON keys; ``obj`` is the JSON to be read, or None for writing."""
-        raise NotImplementedError
+        del obj
+        return self._entries
 
     def __dir__(self) -> list[str]:
         shown = {one.name for one in fields(self) if one.repr}
@@ -108,12 +145,25 @@ class Info(ApiObject):
 
 
 @info_class
-class ParameterFields(Info):
+class IdentifiedInfo(Info):
+    """An info with an id."""
+
+    _id: str | None = json_field("id", TEXT, default=None, kw_only=True)
+
+
+@info_class
+class ParameterFields(IdentifiedInfo):
     """The parameters that users attach to links and joints: numbers, integers and texts by name."""
 
-    _mapFloatParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
-    _mapIntParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
-    _mapStringParameters: Mapping[str, str] = field(default_factory=dict[str, str])
+    _mapFloatParameters: Mapping[str, ArrayLike] = json_field(
+        "floatParameters", parameters("values"), default={}, optional=True
+    )
+    _mapIntParameters: Mapping[str, ArrayLike] = json_field(
+        "intParameters", parameters("values"), default={}, optional=True
+    )
+    _mapStringParameters: Mapping[str, str] = json_field(
+        "stringParameters", parameters("value"), default={}, optional=True
+    )
 
     def with_parameters(self, parameters: Parameters) -> Self:
         """Set the fields from parameters, and return this object."""
@@ -133,24 +183,6 @@ class ParameterFields(Info):
         )
 
 
-PARAMETERS_JSON = (
-    Entry("floatParameters", "_mapFloatParameters", parameters("values"), optional=True),
-    Entry("intParameters", "_mapIntParameters", parameters("values"), optional=True),
-    Entry("stringParameters", "_mapStringParameters", parameters("value"), optional=True),
-)
-"""The JSON keys of ``ParameterFields``."""
-
-
-def identity() -> Floats:
-    """Return a new 4x4 identity."""
-    return np.eye(4)
-
-
-def filled(value: float, count: int = 3) -> Callable[[], Floats]:
-    """Return a function that makes an array of ``count`` equal numbers, as the default of a field."""
-    return lambda: np.full(count, float(value))
-
-
 def vector(values: ArrayLike, name: str) -> Vec3:
     """Return the first three numbers of a field.
 
@@ -167,18 +199,6 @@ def vector(values: ArrayLike, name: str) -> Vec3:
 def pose(values: ArrayLike, name: str) -> Pose:
     """Return the pose of a field: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
     return pose_of(checked_transform(values, name))
-
-
-def per_axis(values: ArrayLike | None, count: int, default: float, name: str) -> list[float]:
-    """Return one number for each axis of a joint; the default stands for missing numbers.
-
-    Raises:
-        ArgumentError: a number is NaN.
-    """
-    numbers = np.zeros(0) if values is None else checked_numbers(values, name).ravel()
-    if np.isnan(numbers).any():
-        raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be numbers")
-    return [*numbers[:count].tolist(), *[default] * (count - len(numbers))]
 
 
 def _default(one: Field[Any]) -> object:

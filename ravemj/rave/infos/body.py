@@ -9,7 +9,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -21,10 +21,10 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import Info, identity, info_class
+from ravemj.rave.infos.base import IdentifiedInfo, info_class, json_field
 from ravemj.rave.infos.connected import ConnectedBodyInfo, GrabbedInfo
 from ravemj.rave.infos.joint import JointInfo
-from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Form, Json, infos
+from ravemj.rave.infos.json import POSE, TEXT, Form, infos
 from ravemj.rave.infos.link import LinkInfo
 from ravemj.rave.infos.robot import AttachedSensorInfo, GripperInfo, ManipulatorInfo
 
@@ -44,8 +44,17 @@ class ExtractInfoOptions(NamedFlag):
     """Leave out the joint values."""
 
 
+_DOF_VALUES = Form(
+    lambda values, scale: [
+        {"jointName": name, "value": float(value)} | ({"jointAxis": axis} if axis else {})
+        for (name, axis), value in values
+    ],
+    lambda items, scale, present: [((one["jointName"], one.get("jointAxis", 0)), one["value"]) for one in items],
+)
+
+
 @info_class
-class KinBodyInfo(Info):
+class KinBodyInfo(IdentifiedInfo):
     """The description of a body.
 
     Attributes:
@@ -59,16 +68,18 @@ class KinBodyInfo(Info):
 
     _called = "KinBody.KinBodyInfo"
 
-    _name: str = ""
-    _vLinkInfos: Sequence[LinkInfo] = field(default_factory=list[LinkInfo])
-    _vJointInfos: Sequence[JointInfo] = field(default_factory=list[JointInfo])
-    _vGrabbedInfos: Sequence[object] = field(default_factory=list[object])
-    _transform: ArrayLike = field(default_factory=identity)
-    _dofValues: Sequence[tuple[tuple[str, int], float]] = field(default_factory=list[tuple[tuple[str, int], float]])
-    _isRobot: bool = False
+    _id: str | None = json_field("id", TEXT, default="", optional=True, kw_only=True)
+    _name: str = json_field("name", TEXT, default="", optional=True)
+    _vLinkInfos: Sequence[LinkInfo] = json_field("links", infos(LinkInfo), default=[], optional=True)
+    _vJointInfos: Sequence[JointInfo] = json_field("joints", infos(JointInfo), default=[], optional=True)
+    _vGrabbedInfos: Sequence[object] = json_field("grabbed", infos(GrabbedInfo), default=[], optional=True)
+    _transform: ArrayLike = json_field("transform", POSE, default=np.eye(4))
+    _dofValues: Sequence[tuple[tuple[str, int], float]] = json_field(
+        "dofValues", _DOF_VALUES, default=[], optional=True
+    )
+    _isRobot: bool = json_field("isRobot", default=False)
     _uri: str = ""
-    _referenceUri: str = ""
-    _id: str = ""
+    _referenceUri: str = json_field("referenceUri", TEXT, default="", optional=True)
 
     def transform(self) -> Floats | None:
         """Return ``T_world_link0``, or None if the links stay at the poses of their infos."""
@@ -86,10 +97,6 @@ class KinBodyInfo(Info):
         return replace(
             self, _vLinkInfos=links, _vJointInfos=joints, _transform=np.eye(4), _dofValues=[], _vGrabbedInfos=[]
         )
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _BODY_JSON
 
     def values_by_axis(self) -> dict[tuple[str, int], float]:
         """Return the joint values of ``_dofValues`` by joint name and axis."""
@@ -109,41 +116,15 @@ class RobotBaseInfo(KinBodyInfo):
 
     _called = "Robot.RobotBaseInfo"
 
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return (*_BODY_JSON, *_ROBOT_JSON)
-
-    _isRobot: bool = True
-    _vManipInfos: Sequence[ManipulatorInfo] = field(default_factory=list[ManipulatorInfo])
-    _vAttachedSensorInfos: Sequence[AttachedSensorInfo] = field(default_factory=list[AttachedSensorInfo])
-    _vConnectedBodyInfos: Sequence[ConnectedBodyInfo] = field(default_factory=list[ConnectedBodyInfo])
-    _vGripperInfos: Sequence[GripperInfo] = field(default_factory=list[GripperInfo])
-
-
-_DOF_VALUES = Form(
-    lambda values, scale: [
-        {"jointName": name, "value": float(value)} | ({"jointAxis": axis} if axis else {})
-        for (name, axis), value in values
-    ],
-    lambda items, scale, present: [((one["jointName"], one.get("jointAxis", 0)), one["value"]) for one in items],
-)
-_BODY_JSON = (
-    Entry("id", "_id", TEXT, optional=True),
-    Entry("name", "_name", TEXT, optional=True),
-    Entry("referenceUri", "_referenceUri", TEXT, optional=True),
-    Entry("transform", "_transform", POSE),
-    Entry("isRobot", "_isRobot", PLAIN),
-    Entry("dofValues", "_dofValues", _DOF_VALUES, optional=True),
-    Entry("grabbed", "_vGrabbedInfos", infos(lambda item: GrabbedInfo()), optional=True),
-    Entry("links", "_vLinkInfos", infos(lambda item: LinkInfo()), optional=True),
-    Entry("joints", "_vJointInfos", infos(lambda item: JointInfo()), optional=True),
-)
-_ROBOT_JSON = (
-    Entry("tools", "_vManipInfos", infos(lambda item: ManipulatorInfo()), optional=True),
-    Entry("attachedSensors", "_vAttachedSensorInfos", infos(lambda item: AttachedSensorInfo()), optional=True),
-    Entry("connectedBodies", "_vConnectedBodyInfos", infos(lambda item: ConnectedBodyInfo()), optional=True),
-    Entry("gripperInfos", "_vGripperInfos", infos(lambda item: GripperInfo()), optional=True),
-)
+    _isRobot: bool = json_field("isRobot", default=True)
+    _vManipInfos: Sequence[ManipulatorInfo] = json_field("tools", infos(ManipulatorInfo), default=[], optional=True)
+    _vAttachedSensorInfos: Sequence[AttachedSensorInfo] = json_field(
+        "attachedSensors", infos(AttachedSensorInfo), default=[], optional=True
+    )
+    _vConnectedBodyInfos: Sequence[ConnectedBodyInfo] = json_field(
+        "connectedBodies", infos(ConnectedBodyInfo), default=[], optional=True
+    )
+    _vGripperInfos: Sequence[GripperInfo] = json_field("gripperInfos", infos(GripperInfo), default=[], optional=True)
 
 
 def _alike(first: object, second: object) -> bool:

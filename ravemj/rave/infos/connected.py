@@ -1,27 +1,23 @@
 """Descriptions of bodies that a robot holds, or that are connected to it."""
 
-# JSON and users put anything into the fields that the functions of forms take.
-# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
-# pyright: reportUnknownMemberType=false
-
 from collections.abc import Sequence
-from dataclasses import field
 from typing import Any, Self
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.model import hashes, scene
-from ravemj.rave.infos.base import Info, identity, info_class
+from ravemj.rave.infos.base import IdentifiedInfo, info_class, json_field
 from ravemj.rave.infos.joint import JointInfo
-from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, infos
+from ravemj.rave.infos.json import POSE, TEXT, infos
 from ravemj.rave.infos.link import LinkInfo
 from ravemj.rave.infos.robot import AttachedSensorInfo, GripperInfo, ManipulatorInfo
 
 
 @info_class
-class ConnectedBodyInfo(Info):
+class ConnectedBodyInfo(IdentifiedInfo):
     """A body that can be connected to a link of a robot. Once connected, it is part of the robot.
 
     Attributes:
@@ -37,42 +33,24 @@ class ConnectedBodyInfo(Info):
         _bIsActive: Whether the body is connected: 1 yes, 0 no, -1 undecided.
     """
 
-    _called = "ConnectedBodyInfo"
-
-    _id: str | None = None
-    _name: str | None = None
-    _linkname: str | None = None
-    _uri: str = ""
-    _trelative: ArrayLike = field(default_factory=identity)
-    _linkInfos: Sequence[LinkInfo] = field(default_factory=list[LinkInfo])
-    _jointInfos: Sequence[JointInfo] = field(default_factory=list[JointInfo])
-    _manipulatorInfos: Sequence[ManipulatorInfo] = field(default_factory=list[ManipulatorInfo])
-    _attachedSensorInfos: Sequence[AttachedSensorInfo] = field(default_factory=list[AttachedSensorInfo])
-    _gripperInfos: Sequence[GripperInfo] = field(default_factory=list[GripperInfo])
-    _bIsActive: int = 0
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _CONNECTED_JSON
-
-
-_CONNECTED_JSON = (
-    Entry("id", "_id", TEXT),
-    Entry("name", "_name", TEXT),
-    Entry("linkName", "_linkname", TEXT),
-    Entry("uri", "_uri", TEXT, optional=True),
-    Entry("transform", "_trelative", POSE),
-    Entry("links", "_linkInfos", infos(lambda item: LinkInfo()), optional=True),
-    Entry("joints", "_jointInfos", infos(lambda item: JointInfo()), optional=True),
-    Entry("tools", "_manipulatorInfos", infos(lambda item: ManipulatorInfo()), optional=True),
-    Entry("attachedSensors", "_attachedSensorInfos", infos(lambda item: AttachedSensorInfo()), optional=True),
-    Entry("gripperInfos", "_gripperInfos", infos(lambda item: GripperInfo()), optional=True),
-    Entry("isActive", "_bIsActive", PLAIN),
-)
+    _name: str | None = json_field("name", TEXT, default=None)
+    _linkname: str | None = json_field("linkName", TEXT, default=None)
+    _uri: str = json_field("uri", TEXT, default="", optional=True)
+    _trelative: ArrayLike = json_field("transform", POSE, default=np.eye(4))
+    _linkInfos: Sequence[LinkInfo] = json_field("links", infos(LinkInfo), default=[], optional=True)
+    _jointInfos: Sequence[JointInfo] = json_field("joints", infos(JointInfo), default=[], optional=True)
+    _manipulatorInfos: Sequence[ManipulatorInfo] = json_field(
+        "tools", infos(ManipulatorInfo), default=[], optional=True
+    )
+    _attachedSensorInfos: Sequence[AttachedSensorInfo] = json_field(
+        "attachedSensors", infos(AttachedSensorInfo), default=[], optional=True
+    )
+    _gripperInfos: Sequence[GripperInfo] = json_field("gripperInfos", infos(GripperInfo), default=[], optional=True)
+    _bIsActive: int = json_field("isActive", default=0)
 
 
 @info_class
-class GrabbedInfo(Info):
+class GrabbedInfo(IdentifiedInfo):
     """A grabbed body, and how its holder holds it; ``ResetGrabbed`` restores it from this.
 
     Attributes:
@@ -83,14 +61,12 @@ class GrabbedInfo(Info):
         _grabbedUserData: Data of the user, anything that JSON can hold. ravemj only stores it.
     """
 
-    _called = "GrabbedInfo"
-
-    _grabbedname: str = ""
-    _robotlinkname: str = ""
-    _trelative: Floats = field(default_factory=identity)
-    _setIgnoreRobotLinkNames: Sequence[str] = field(default_factory=list[str])
-    _grabbedUserData: Any = None
-    _id: str = ""
+    _id: str | None = json_field("id", TEXT, default="", optional=True, kw_only=True)
+    _grabbedname: str = json_field("grabbedName", TEXT, default="")
+    _robotlinkname: str = json_field("robotLinkName", TEXT, default="")
+    _trelative: Floats = json_field("transform", POSE, default=np.eye(4))
+    _setIgnoreRobotLinkNames: Sequence[str] = json_field("ignoreRobotLinkNames", default=[], optional=True)
+    _grabbedUserData: Any = json_field("grabbedUserData", default=None, optional=True)
 
     @classmethod
     def of(cls, holder: scene.KinBody, grab: GrabbedBody) -> Self:
@@ -102,17 +78,3 @@ class GrabbedInfo(Info):
     def GetGrabbedInfoHash(self) -> str:
         """Return a hash of the info, 32 hexadecimal digits; equal infos have equal hashes."""
         return hashes.of_text(repr(self.SerializeJSON()))
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _GRABBED_JSON
-
-
-_GRABBED_JSON = (
-    Entry("id", "_id", TEXT, optional=True),
-    Entry("grabbedName", "_grabbedname", TEXT),
-    Entry("robotLinkName", "_robotlinkname", TEXT),
-    Entry("transform", "_trelative", POSE),
-    Entry("ignoreRobotLinkNames", "_setIgnoreRobotLinkNames", PLAIN, optional=True),
-    Entry("grabbedUserData", "_grabbedUserData", PLAIN, optional=True),
-)

@@ -5,16 +5,27 @@
 # pyright: reportUnknownMemberType=false
 
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.engine.simulation import DEFAULT_GRAVITY
-from ravemj.rave.infos.base import Info, info_class
+from ravemj.rave.infos.base import Info, info_class, json_field
 from ravemj.rave.infos.body import KinBodyInfo, RobotBaseInfo
-from ravemj.rave.infos.json import PLAIN, TEXT, Entry, Form, Json, infos, parameters
+from ravemj.rave.infos.json import TEXT, Form, Json, infos, parameters
 from ravemj.rave.units import UnitInfo
+
+
+def _read_units(value: Json, scale: float, present: UnitInfo) -> UnitInfo:
+    del scale
+    changed = replace(present)
+    changed.DeserializeJSON(value)
+    return changed
+
+
+_UNITS = Form(lambda units, scale: units.SerializeJSON(), _read_units)
+_BODIES = infos(KinBodyInfo, robot=RobotBaseInfo)
 
 
 @info_class
@@ -29,38 +40,10 @@ class EnvironmentBaseInfo(Info):
         _unitInfo: The units, a ``UnitInfo``.
     """
 
-    _called = "EnvironmentBaseInfo"
-
-    _vBodyInfos: Sequence[KinBodyInfo] = field(default_factory=list[KinBodyInfo])
-    _gravity: ArrayLike = field(default_factory=lambda: np.array(DEFAULT_GRAVITY))
-    _description: str = ""
-    _keywords: Sequence[str] = field(default_factory=list[str])
-    _uInt64Parameters: dict[str, int] = field(default_factory=dict[str, int])
-    _unitInfo: UnitInfo = field(default_factory=UnitInfo)
+    _vBodyInfos: Sequence[KinBodyInfo] = json_field("bodies", _BODIES, default=[], optional=True)
+    _gravity: ArrayLike = json_field("gravity", default=np.array(DEFAULT_GRAVITY))
+    _description: str = json_field("description", TEXT, default="", optional=True)
+    _keywords: Sequence[str] = json_field("keywords", default=[])
+    _uInt64Parameters: dict[str, int] = json_field("uint64Parameters", parameters("value"), default={}, optional=True)
+    _unitInfo: UnitInfo = json_field("unitInfo", _UNITS, default=UnitInfo())
     _revision: int = 0
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _ENVIRONMENT_JSON
-
-
-_UNITS = Form(lambda units, scale: units.SerializeJSON(), lambda value, scale, present: _units(value, present))
-_ENVIRONMENT_JSON = (
-    Entry("keywords", "_keywords", PLAIN),
-    Entry("description", "_description", TEXT, optional=True),
-    Entry("unitInfo", "_unitInfo", _UNITS),
-    Entry("gravity", "_gravity", PLAIN),
-    Entry("uint64Parameters", "_uInt64Parameters", parameters("value"), optional=True),
-    Entry(
-        "bodies",
-        "_vBodyInfos",
-        infos(lambda item: RobotBaseInfo() if item.get("isRobot") else KinBodyInfo()),
-        optional=True,
-    ),
-)
-
-
-def _units(value: Json, present: UnitInfo) -> UnitInfo:
-    changed = replace(present)
-    changed.DeserializeJSON(value)
-    return changed

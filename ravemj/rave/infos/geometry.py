@@ -19,8 +19,9 @@ from ravemj.model import scene
 from ravemj.model.bounds import geometry_bounds
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import GeometryType
-from ravemj.rave.infos.base import filled, identity, info_class, pose, vector
-from ravemj.rave.infos.geometry_sizes import VECTORS, AxialSlice, GeometrySizes, SideWall
+from ravemj.rave.infos.base import info_class, json_field, pose, vector
+from ravemj.rave.infos.geometry_sizes import TYPE_FORM, VECTORS, AxialSlice, GeometrySizes, SideWall
+from ravemj.rave.infos.json import POSE, TEXT
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 if TYPE_CHECKING:
@@ -68,27 +69,26 @@ class GeometryInfo(GeometrySizes):
 
     _called = "KinBody.GeometryInfo"
 
-    _type: GeometryType = GeometryType.None_
-    _t: ArrayLike = field(default_factory=identity)
-    _vGeomData: ArrayLike = field(default_factory=filled(0, 4))
-    _vGeomData2: ArrayLike = field(default_factory=filled(0, 4))
-    _vGeomData3: ArrayLike = field(default_factory=filled(0, 4))
-    _vGeomData4: ArrayLike = field(default_factory=filled(0, 4))
-    _vCrossSection: ArrayLike = field(default_factory=lambda: np.zeros((0, 2)))
-    _vSideWalls: Sequence[SideWall] = field(default_factory=list[SideWall])
-    _vAxialSlices: Sequence[AxialSlice] = field(default_factory=list[AxialSlice])
+    _type: GeometryType = json_field("type", TYPE_FORM, default=GeometryType.None_)
+    _t: ArrayLike = json_field("transform", POSE, default=np.eye(4))
+    _vGeomData: ArrayLike = json_field("", default=np.zeros(4))
+    _vGeomData2: ArrayLike = json_field("", default=np.zeros(4))
+    _vGeomData3: ArrayLike = json_field("", default=np.zeros(4))
+    _vGeomData4: ArrayLike = json_field("", default=np.zeros(4))
+    _vCrossSection: ArrayLike = json_field("", default=np.zeros((0, 2)))
+    _vSideWalls: Sequence[SideWall] = json_field("", default=[])
+    _vAxialSlices: Sequence[AxialSlice] = json_field("", default=[])
     _meshcollision: TriMesh | None = None
-    _vDiffuseColor: ArrayLike = field(default_factory=filled(1))
-    _vAmbientColor: ArrayLike = field(default_factory=filled(0))
-    _fTransparency: float = 0.0
-    _bVisible: bool = True
-    _bModifiable: bool = True
-    _id: str | None = None
-    _name: str | None = None
+    _vDiffuseColor: ArrayLike = json_field("diffuseColor", default=np.ones(3), optional=True)
+    _vAmbientColor: ArrayLike = json_field("ambientColor", default=np.zeros(3), optional=True)
+    _fTransparency: float = json_field("transparency", default=0.0, optional=True)
+    _bVisible: bool = json_field("visible", default=True, optional=True)
+    _bModifiable: bool = json_field("modifiable", default=True, optional=True)
+    _name: str | None = json_field("name", TEXT, default=None)
     _filenamerender: str | None = None
     _filenamecollision: str | None = None
-    _vRenderScale: ArrayLike = field(default_factory=filled(1))
-    _vCollisionScale: ArrayLike = field(default_factory=filled(1))
+    _vRenderScale: ArrayLike = json_field("", default=np.ones(3))
+    _vCollisionScale: ArrayLike = json_field("", default=np.ones(3))
     _drawn: "tuple[str | None, tuple[scene.Surface, ...] | None]" = field(
         default=(None, None), repr=False, compare=False
     )

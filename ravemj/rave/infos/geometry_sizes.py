@@ -17,8 +17,8 @@ from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats
 from ravemj.model import scene
 from ravemj.rave.enums import GeometryType
-from ravemj.rave.infos.base import Info
-from ravemj.rave.infos.json import LENGTHS, PLAIN, POSE, TEXT, Entry, Form, Json, named
+from ravemj.rave.infos.base import IdentifiedInfo
+from ravemj.rave.infos.json import LENGTHS, POSE, Entry, Form, Json, named
 from ravemj.rave.trimesh import TriMesh
 
 VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
@@ -62,7 +62,7 @@ class AxialSlice:
     radius: float = 0.0
 
 
-class GeometrySizes(Info):
+class GeometrySizes(IdentifiedInfo):
     """The sizes of a shape by name. As in OpenRAVE, getters read the same numbers, whatever the type is."""
 
     _type: GeometryType
@@ -182,8 +182,8 @@ class GeometrySizes(Info):
         self._vCollisionScale = np.asarray(self._vCollisionScale, dtype=float) * unitScale
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        kind = GeometryType(self._type) if obj is None or "type" not in obj else _TYPES.read(obj["type"], 1.0, None)
-        return (*_COMMON_JSON, *_SIZES_JSON.get(kind, ()))
+        kind = GeometryType(self._type) if obj is None or "type" not in obj else TYPE_FORM.read(obj["type"], 1.0, None)
+        return (*self._entries, *_SIZES_JSON.get(kind, ()))
 
 
 def _first(numbers: ArrayLike) -> Floats:
@@ -191,19 +191,8 @@ def _first(numbers: ArrayLike) -> Floats:
     return np.array([*np.ravel(np.asarray(numbers, dtype=float)), 0.0, 0.0, 0.0])[:3]
 
 
-_TYPES = named({kind: kind.name.lower() for kind in GeometryType} | {GeometryType.None_: ""})
-
-_COMMON_JSON = (
-    Entry("id", "_id", TEXT),
-    Entry("name", "_name", TEXT),
-    Entry("transform", "_t", POSE),
-    Entry("type", "_type", _TYPES),
-    Entry("transparency", "_fTransparency", PLAIN, optional=True),
-    Entry("visible", "_bVisible", PLAIN, optional=True),
-    Entry("diffuseColor", "_vDiffuseColor", PLAIN, optional=True),
-    Entry("ambientColor", "_vAmbientColor", PLAIN, optional=True),
-    Entry("modifiable", "_bModifiable", PLAIN, optional=True),
-)
+TYPE_FORM = named({kind: kind.name.lower() for kind in GeometryType} | {GeometryType.None_: ""})
+"""The form of types of shapes."""
 
 _EXTENTS = Form(
     lambda numbers, scale: (_first(numbers) * scale).tolist(),

@@ -9,12 +9,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Vec3, add, conjugate, dot, rotate, scale
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import scene
@@ -22,7 +22,7 @@ from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from
 from ravemj.model.mimic import Equations
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import JointType
-from ravemj.rave.infos.base import PARAMETERS_JSON, ParameterFields, filled, info_class, per_axis, vector
+from ravemj.rave.infos.base import ParameterFields, info_class, json_field, vector
 from ravemj.rave.infos.json import LENGTHS, PLAIN, TEXT, Entry, Form, Json, info, named
 from ravemj.rave.infos.motor import (
     ElectricMotorActuatorInfo,
@@ -44,25 +44,32 @@ _KINDS: dict[JointType, scene.JointKind] = {
     JointType.PR: "pr",
     JointType.PP: "pp",
 }
-_AXIS_FIELDS = (
-    ("_vresolution", "resolution", 0.02),
-    ("_vmaxvel", "max_velocity", 10.0),
-    ("_vhardmaxvel", "hard_max_velocity", 0.0),
-    ("_vmaxaccel", "max_acceleration", 50.0),
-    ("_vhardmaxaccel", "hard_max_acceleration", 0.0),
-    ("_vmaxjerk", "max_jerk", 50000.0),
-    ("_vhardmaxjerk", "hard_max_jerk", 0.0),
-    ("_vmaxtorque", "max_torque", 0.0),
-    ("_vmaxinertia", "max_inertia", 0.0),
-    ("_vweights", "weight", 1.0),
-    ("_voffsets", "wrap_offset", 0.0),
-    ("_vlowerlimit", "lower", 0.0),
-    ("_vupperlimit", "upper", 0.0),
-    ("_bIsCircular", "circular", 0.0),
-)
-"""Fields with one number for each axis: their names here, their names in ``scene.Axis``, and OpenRAVE's defaults."""
-
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+_SPECIAL_AXES = {JointType.Universal: 2, JointType.Hinge2: 2, JointType.Spherical: 3, JointType.Trajectory: 1}
+_WORDS = named(
+    {
+        JointType(0): "",
+        JointType.Revolute: "revolute",
+        JointType.Prismatic: "prismatic",
+        **{
+            kind: kind.name.lower() for kind in (JointType.RR, JointType.RP, JointType.PR, JointType.PP, *_SPECIAL_AXES)
+        },
+    }
+)
+_CONTROL = named({mode: mode.name.removeprefix("JCM_") for mode in JointControlMode})
+_MIMICS = Form(
+    lambda mimics, scale: [{"equations": list(one) if one else ["", "", ""]} for one in mimics],
+    lambda items, scale, present: [[*one["equations"], "", ""][:3] for one in items],
+)
+_VALUES = Form(PLAIN.write, PLAIN.read)
+"""Joint values and their derivatives: plain numbers, or lengths if the joint is prismatic."""
+
+
+def _of_axes(key: str, of: str, default: float, form: Form = PLAIN) -> ArrayLike:
+    """Declare a field with one number for each axis, which ``scene.Axis`` calls ``of``."""
+    return json_field(key, form, default=np.full(3, default), of=of)
 
 
 @info_class
@@ -103,35 +110,42 @@ class JointInfo(ParameterFields):
 
     _called = "KinBody.JointInfo"
 
-    _type: JointType = field(default_factory=lambda: JointType(0))
-    _name: str | None = None
-    _linkname0: str | None = None
-    _linkname1: str | None = None
-    _vanchor: ArrayLike = field(default_factory=filled(0))
-    _vaxes: Sequence[ArrayLike] = field(default_factory=list[ArrayLike])
-    _vcurrentvalues: ArrayLike | None = None
-    _vresolution: ArrayLike = field(default_factory=filled(0.02))
-    _vmaxvel: ArrayLike = field(default_factory=filled(10))
-    _vhardmaxvel: ArrayLike = field(default_factory=filled(0))
-    _vmaxaccel: ArrayLike = field(default_factory=filled(50))
-    _vhardmaxaccel: ArrayLike = field(default_factory=filled(0))
-    _vmaxjerk: ArrayLike = field(default_factory=filled(5e4))
-    _vhardmaxjerk: ArrayLike = field(default_factory=filled(0))
-    _vmaxtorque: ArrayLike = field(default_factory=filled(0))
-    _vmaxinertia: ArrayLike = field(default_factory=filled(0))
-    _vweights: ArrayLike = field(default_factory=filled(1))
-    _voffsets: ArrayLike = field(default_factory=filled(0))
-    _vlowerlimit: ArrayLike = field(default_factory=filled(0))
-    _vupperlimit: ArrayLike = field(default_factory=filled(0))
-    _bIsCircular: ArrayLike = field(default_factory=list[bool])
-    _bIsActive: bool = True
-    _vmimic: Sequence[Sequence[str] | None] = field(default_factory=list[Sequence[str] | None])
-    _infoElectricMotor: ElectricMotorActuatorInfo | None = None
-    _controlMode: JointControlMode = JointControlMode.JCM_None
-    _jci_robotcontroller: JointControlInfo_RobotController | None = None
-    _jci_io: JointControlInfo_IO | None = None
-    _jci_externaldevice: JointControlInfo_ExternalDevice | None = None
-    _id: str | None = None
+    _type: JointType = json_field("type", _WORDS, default=JointType(0))
+    _name: str | None = json_field("name", TEXT, default=None)
+    _linkname0: str | None = json_field("parentLinkName", TEXT, default=None)
+    _linkname1: str | None = json_field("childLinkName", TEXT, default=None)
+    _vanchor: ArrayLike = json_field("anchors", LENGTHS, default=np.zeros(3))
+    _vaxes: Sequence[ArrayLike] = json_field("axes", default=[])
+    _vcurrentvalues: ArrayLike | None = json_field("currentValues", _VALUES, default=None, optional=True)
+    _vresolution: ArrayLike = _of_axes("resolutions", "resolution", 0.02)
+    _vmaxvel: ArrayLike = _of_axes("maxVel", "max_velocity", 10.0, _VALUES)
+    _vhardmaxvel: ArrayLike = _of_axes("hardMaxVel", "hard_max_velocity", 0.0, _VALUES)
+    _vmaxaccel: ArrayLike = _of_axes("maxAccel", "max_acceleration", 50.0, _VALUES)
+    _vhardmaxaccel: ArrayLike = _of_axes("hardMaxAccel", "hard_max_acceleration", 0.0, _VALUES)
+    _vmaxjerk: ArrayLike = _of_axes("maxJerk", "max_jerk", 5e4, _VALUES)
+    _vhardmaxjerk: ArrayLike = _of_axes("hardMaxJerk", "hard_max_jerk", 0.0, _VALUES)
+    _vmaxtorque: ArrayLike = _of_axes("maxTorque", "max_torque", 0.0)
+    _vmaxinertia: ArrayLike = _of_axes("maxInertia", "max_inertia", 0.0)
+    _vweights: ArrayLike = _of_axes("weights", "weight", 1.0)
+    _voffsets: ArrayLike = _of_axes("offsets", "wrap_offset", 0.0)
+    _vlowerlimit: ArrayLike = _of_axes("lowerLimit", "lower", 0.0, _VALUES)
+    _vupperlimit: ArrayLike = _of_axes("upperLimit", "upper", 0.0, _VALUES)
+    _bIsCircular: ArrayLike = json_field("isCircular", default=[], of="circular")
+    _bIsActive: bool = json_field("isActive", default=True)
+    _vmimic: Sequence[Sequence[str] | None] = json_field("mimics", _MIMICS, default=[], optional=True)
+    _infoElectricMotor: ElectricMotorActuatorInfo | None = json_field(
+        "electricMotorActuator", info(ElectricMotorActuatorInfo), default=None, optional=True
+    )
+    _controlMode: JointControlMode = json_field("controlMode", _CONTROL, default=JointControlMode.JCM_None)
+    _jci_robotcontroller: JointControlInfo_RobotController | None = json_field(
+        "jointControlInfoRobotController", info(JointControlInfo_RobotController), default=None, optional=True
+    )
+    _jci_io: JointControlInfo_IO | None = json_field(
+        "jointControlInfoIO", info(JointControlInfo_IO), default=None, optional=True
+    )
+    _jci_externaldevice: JointControlInfo_ExternalDevice | None = json_field(
+        "jointControlInfoExternalDevice", info(JointControlInfo_ExternalDevice), default=None, optional=True
+    )
 
     @classmethod
     def of(cls, body: scene.KinBody, index: int, values: Sequence[float]) -> Self:
@@ -145,7 +159,7 @@ class JointInfo(ParameterFields):
         joint = body.all_joints[index]
         mimic = joint.mimic
         of_axes: dict[str, Any] = {
-            field: np.array([getattr(axis, name) for axis in joint.axes]) for field, name, _ in _AXIS_FIELDS
+            one.field: np.array([getattr(axis, one.of) for axis in joint.axes]) for one in cls._entries if one.of
         }
         return cls(
             _type=type_of(joint.kind),
@@ -172,7 +186,8 @@ class JointInfo(ParameterFields):
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
         kind = JointType(self._type) if obj is None or not obj.get("type") else _WORDS.read(obj["type"], 1.0, None)
-        return _joint_json(kind == JointType.Prismatic)
+        form = LENGTHS if kind == JointType.Prismatic else PLAIN
+        return [one._replace(form=form) if one.form is _VALUES else one for one in self._entries]
 
     def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
         """Return the joint in OpenRAVE's JSON format, see ``Info``. Its lists have one number for each axis.
@@ -182,7 +197,7 @@ class JointInfo(ParameterFields):
             options: Not used.
         """
         written = super().SerializeJSON(unitScale, options)
-        return {key: value[: self.GetDOF()] if key in _OF_AXES else value for key, value in written.items()}
+        return written | {one.key: written[one.key][: self.GetDOF()] for one in self._entries if one.of}
 
     def named_values(self) -> list[tuple[tuple[str, int], float]]:
         """Return the current values, each as ((joint name, axis), value)."""
@@ -210,7 +225,7 @@ class JointInfo(ParameterFields):
                 message = f"names a link '{name}'; there are {', '.join(map(repr, names))}"
                 raise ArgumentError(f"joint '{self._name}' {message}, and one of them should have that name")
         first, second = names.index(self._linkname0 or ""), names.index(self._linkname1 or "")
-        values = per_axis(self._vcurrentvalues, len(scene.AXES[kind]), 0.0, "JointInfo._vcurrentvalues")
+        values = self._per_axis("_vcurrentvalues", len(scene.AXES[kind]))
         axes = self._made_axes(kind, values)
         anchor = vector(self._vanchor, "JointInfo._vanchor")
         T_first_second = links[first].pose.inverse() @ links[second].pose
@@ -241,10 +256,7 @@ class JointInfo(ParameterFields):
         directions = [vector(axis, "JointInfo._vaxes") for axis in self._vaxes[:count]]
         directions += [(0.0, 0.0, 1.0)] * (count - len(directions))
         motor = None if self._infoElectricMotor is None else self._infoElectricMotor.motor()
-        columns = {
-            name: per_axis(getattr(self, field), count, default, f"JointInfo.{field}")
-            for field, name, default in _AXIS_FIELDS
-        }
+        columns = {one.of: self._per_axis(one.field, count) for one in self._entries if one.of}
         axes = list[scene.Axis]()
         for i, numbers in enumerate(zip(*columns.values(), strict=True)):
             fields: dict[str, Any] = dict(zip(columns, numbers, strict=True))
@@ -257,9 +269,25 @@ class JointInfo(ParameterFields):
             axes.append(axis if motor is None else motor.driven(axis))
         return tuple(axes)
 
+    def _per_axis(self, field: str, count: int) -> list[float]:
+        """Return one number for each axis of the joint; that of a new info stands for missing numbers.
+
+        Raises:
+            ArgumentError: a number is NaN.
+        """
+        values = getattr(self, field)
+        numbers = np.zeros(0) if values is None else checked_numbers(values, f"JointInfo.{field}").ravel()
+        if np.isnan(numbers).any():
+            raise ArgumentError(f"JointInfo.{field}: is {numbers.tolist()}, and should be numbers")
+        return [*numbers[:count].tolist(), *[_DEFAULTS.get(field, 0.0)] * (count - len(numbers))]
+
     def _equations(self) -> Equations | None:
         first = self._vmimic[0] if self._vmimic else None
         return Equations(*map(str, first)) if first and any(first) else None
+
+
+_DEFAULTS = {one.field: float(next(iter(getattr(JointInfo(), one.field)), 0.0)) for one in JointInfo._entries if one.of}
+"""The values of new infos, for each axis."""
 
 
 def _motor_of(axis: scene.Axis) -> ElectricMotorActuatorInfo | None:
@@ -270,65 +298,6 @@ def _motor_of(axis: scene.Axis) -> ElectricMotorActuatorInfo | None:
 def type_of(kind: scene.JointKind) -> JointType:
     """Return OpenRAVE's number for a kind of joint."""
     return next(number for number, known in _KINDS.items() if known == kind)
-
-
-_SPECIAL_AXES = {JointType.Universal: 2, JointType.Hinge2: 2, JointType.Spherical: 3, JointType.Trajectory: 1}
-_WORDS = named(
-    {
-        JointType(0): "",
-        JointType.Revolute: "revolute",
-        JointType.Prismatic: "prismatic",
-        **{
-            kind: kind.name.lower() for kind in (JointType.RR, JointType.RP, JointType.PR, JointType.PP, *_SPECIAL_AXES)
-        },
-    }
-)
-_CONTROL = named({mode: mode.name.removeprefix("JCM_") for mode in JointControlMode})
-_MIMICS = Form(
-    lambda mimics, scale: [{"equations": list(one) if one else ["", "", ""]} for one in mimics],
-    lambda items, scale, present: [[*one["equations"], "", ""][:3] for one in items],
-)
-_OF_AXES = {f"{kind}{quantity}" for kind in ("max", "hardMax") for quantity in ("Vel", "Accel", "Jerk")} | {
-    *("maxTorque", "maxInertia", "resolutions", "weights", "offsets", "lowerLimit", "upperLimit", "isCircular"),
-}
-"""JSON keys whose lists have one number for each axis."""
-
-
-def _joint_json(slides: bool) -> Sequence[Entry]:
-    """Return the JSON table of a joint. The values of a sliding joint are lengths, which unit scales multiply."""
-    value = LENGTHS if slides else PLAIN
-    return (
-        Entry("type", "_type", _WORDS),
-        Entry("id", "_id", TEXT),
-        Entry("name", "_name", TEXT),
-        Entry("anchors", "_vanchor", LENGTHS),
-        Entry("parentLinkName", "_linkname0", TEXT),
-        Entry("childLinkName", "_linkname1", TEXT),
-        Entry("axes", "_vaxes", PLAIN),
-        Entry("currentValues", "_vcurrentvalues", value, optional=True),
-        Entry("resolutions", "_vresolution", PLAIN),
-        Entry("maxVel", "_vmaxvel", value),
-        Entry("hardMaxVel", "_vhardmaxvel", value),
-        Entry("maxAccel", "_vmaxaccel", value),
-        Entry("hardMaxAccel", "_vhardmaxaccel", value),
-        Entry("maxJerk", "_vmaxjerk", value),
-        Entry("hardMaxJerk", "_vhardmaxjerk", value),
-        Entry("maxTorque", "_vmaxtorque", PLAIN),
-        Entry("maxInertia", "_vmaxinertia", PLAIN),
-        Entry("weights", "_vweights", PLAIN),
-        Entry("offsets", "_voffsets", PLAIN),
-        Entry("lowerLimit", "_vlowerlimit", value),
-        Entry("upperLimit", "_vupperlimit", value),
-        Entry("mimics", "_vmimic", _MIMICS, optional=True),
-        *PARAMETERS_JSON,
-        Entry("electricMotorActuator", "_infoElectricMotor", info(ElectricMotorActuatorInfo), optional=True),
-        Entry("isCircular", "_bIsCircular", PLAIN),
-        Entry("isActive", "_bIsActive", PLAIN),
-        Entry("controlMode", "_controlMode", _CONTROL),
-        Entry("jointControlInfoRobotController", "_jci_robotcontroller", info(JointControlInfo_RobotController), True),
-        Entry("jointControlInfoIO", "_jci_io", info(JointControlInfo_IO), True),
-        Entry("jointControlInfoExternalDevice", "_jci_externaldevice", info(JointControlInfo_ExternalDevice), True),
-    )
 
 
 def _unit(direction: Vec3) -> Vec3:

@@ -1,7 +1,7 @@
 """OpenRAVE's JSON format of infos: which key holds which field, and in which form.
 
-Each class of infos has a table of entries. Writing and reading both multiply lengths by a given scale. Poses are
-[w, x, y, z, tx, ty, tz], and arrays are lists.
+The fields of infos declare their keys, see ``base``. Writing and reading both multiply lengths by a given scale. Poses
+are [w, x, y, z, tx, ty, tz], and arrays are lists.
 """
 
 # Fields have the names that OpenRAVE gives them, and users put anything into them.
@@ -54,12 +54,14 @@ class Entry(NamedTuple):
         field: The name of the field.
         form: The conversion.
         optional: Whether the key is left out if the field is None or has its default value.
+        of: The attribute of the described object that holds the same value, for classes that look it up.
     """
 
     key: str
     field: str
     form: Form
     optional: bool = False
+    of: str = ""
 
 
 def plain(value: Any) -> Any:  # noqa: ANN401 - what JSON can hold
@@ -139,14 +141,15 @@ def info(kind: Callable[[], Described]) -> Form:
     return Form(lambda value, scale: None if value is None else value.SerializeJSON(scale), read)
 
 
-def infos(kind: Callable[[Json], Described]) -> Form:
+def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None = None) -> Form:
     """Return the form of a list of infos.
 
     Reading changes the info of the list that has the same id, or else the same name. Without one, it adds an info. An
     item with ``__deleted__`` removes its info.
 
     Args:
-        kind: A function of an item that makes an empty info of its class.
+        kind: The class of the infos.
+        robot: The class for items with ``isRobot``, if it is another one.
     """
 
     def read(items: Sequence[Json], scale: float, present: Sequence[Described]) -> list[Described]:
@@ -160,7 +163,7 @@ def infos(kind: Callable[[Json], Described]) -> Form:
                 continue
             if any(one is known for one in read_before):
                 raise ValueError(f"two are called '{item.get('id') or item['name']}'; give each a name of its own")
-            changed = known or kind(item)
+            changed = known or (robot if robot and item.get("isRobot") else kind)()
             read_before.append(changed)
             changed.DeserializeJSON(item, scale)
             if known is None:

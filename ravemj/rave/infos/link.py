@@ -8,9 +8,9 @@
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_vector
@@ -19,12 +19,19 @@ from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import PARAMETERS_JSON, ParameterFields, filled, identity, info_class, pose
+from ravemj.rave.infos.base import ParameterFields, info_class, json_field, pose
 from ravemj.rave.infos.geometry import GeometryInfo
-from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Form, Json, infos, lengths
+from ravemj.rave.infos.json import POSE, TEXT, Form, infos, lengths
 
 if TYPE_CHECKING:
     from ravemj.model.builder import LinkBuilder
+
+
+_SHAPES = infos(GeometryInfo)
+_GROUPS = Form(
+    lambda groups, scale: {name: _SHAPES.write(group, scale) for name, group in groups.items()},
+    lambda value, scale, present: {name: _SHAPES.read(group, scale, []) for name, group in value.items()},
+)
 
 
 @info_class
@@ -48,19 +55,20 @@ class LinkInfo(ParameterFields):
 
     _called = "KinBody.LinkInfo"
 
-    _name: str | None = None
-    _t: ArrayLike = field(default_factory=identity)
-    _mass: float = 1e-10
-    _tMassFrame: ArrayLike = field(default_factory=identity)
-    _vinertiamoments: ArrayLike = field(default_factory=filled(1))
-    _vgeometryinfos: Sequence[GeometryInfo] = field(default_factory=list[GeometryInfo])
-    _mapExtraGeometries: dict[str, Sequence[GeometryInfo]] = field(default_factory=dict[str, Sequence[GeometryInfo]])
-    _vForcedAdjacentLinks: Sequence[str] = field(default_factory=list[str])
-    _bStatic: bool = False
-    _bIsEnabled: bool = True
+    _name: str | None = json_field("name", TEXT, default=None)
+    _t: ArrayLike = json_field("transform", POSE, default=np.eye(4))
+    _mass: float = json_field("mass", default=1e-10)
+    _tMassFrame: ArrayLike = json_field("massTransform", POSE, default=np.eye(4))
+    _vinertiamoments: ArrayLike = json_field("inertiaMoments", lengths(2), default=np.ones(3))
+    _vgeometryinfos: Sequence[GeometryInfo] = json_field("geometries", _SHAPES, default=[], optional=True)
+    _mapExtraGeometries: dict[str, Sequence[GeometryInfo]] = json_field(
+        "extraGeometries", _GROUPS, default={}, optional=True
+    )
+    _vForcedAdjacentLinks: Sequence[str] = json_field("forcedAdjacentLinks", default=[], optional=True)
+    _bStatic: bool = json_field("isStatic", default=False)
+    _bIsEnabled: bool = json_field("isEnabled", default=True)
     _bVisible: bool = True
-    _bIgnoreSelfCollision: bool = False
-    _id: str | None = None
+    _bIgnoreSelfCollision: bool = json_field("isSelfCollisionIgnored", default=False, optional=True)
 
     @classmethod
     def of(cls, body: scene.KinBody, index: int, T_world_link: Floats, *, enabled: bool) -> Self:
@@ -110,35 +118,9 @@ class LinkInfo(ParameterFields):
             self_collision_ignored=bool(self._bIgnoreSelfCollision),
         )
 
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _LINK_JSON
-
     def adjacent(self, names: Sequence[str]) -> list[int]:
         """Return the indices of the links that collision checks never test against this one."""
         return [names.index(name) for name in self._vForcedAdjacentLinks if name in names]
-
-
-_SHAPES = infos(lambda item: GeometryInfo())
-_GROUPS = Form(
-    lambda groups, scale: {name: _SHAPES.write(group, scale) for name, group in groups.items()},
-    lambda value, scale, present: {name: _SHAPES.read(group, scale, []) for name, group in value.items()},
-)
-_LINK_JSON = (
-    Entry("id", "_id", TEXT),
-    Entry("name", "_name", TEXT),
-    Entry("transform", "_t", POSE),
-    Entry("massTransform", "_tMassFrame", POSE),
-    Entry("mass", "_mass", PLAIN),
-    Entry("inertiaMoments", "_vinertiamoments", lengths(2)),
-    *PARAMETERS_JSON,
-    Entry("forcedAdjacentLinks", "_vForcedAdjacentLinks", PLAIN, optional=True),
-    Entry("geometries", "_vgeometryinfos", _SHAPES, optional=True),
-    Entry("extraGeometries", "_mapExtraGeometries", _GROUPS, optional=True),
-    Entry("isStatic", "_bStatic", PLAIN),
-    Entry("isEnabled", "_bIsEnabled", PLAIN),
-    Entry("isSelfCollisionIgnored", "_bIgnoreSelfCollision", PLAIN, optional=True),
-)
 
 
 def geometries_of(infos: Sequence[GeometryInfo], *, visible: bool = True) -> tuple[scene.Geometry, ...]:

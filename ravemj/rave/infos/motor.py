@@ -1,21 +1,13 @@
 """Descriptions of what drives a joint: its electric motor, and the hardware that commands it."""
 
 from collections.abc import Sequence
-from dataclasses import field, fields
 from typing import TYPE_CHECKING
 
 from ravemj.core.enumerations import NamedInt
-from ravemj.rave.infos.base import Info, info_class
-from ravemj.rave.infos.json import PLAIN, Entry, Json
+from ravemj.rave.infos.base import Info, info_class, json_field
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.actuator import Motor
-
-
-def _camel(name: str) -> str:
-    """Return the JSON key of a field: ``gearRatio`` for ``gear_ratio``."""
-    first, *rest = name.split("_")
-    return first + "".join(word.capitalize() for word in rest)
 
 
 class JointControlMode(NamedInt):
@@ -40,8 +32,6 @@ class ElectricMotorActuatorInfo(Info):
         viscous_friction: The viscous friction at the joint [N m s/rad].
     """
 
-    _called = "ElectricMotorActuatorInfo"
-
     model_type: str = ""
     gear_ratio: float = 0.0
     assigned_power_rating: float = 0.0
@@ -49,8 +39,8 @@ class ElectricMotorActuatorInfo(Info):
     no_load_speed: float = 0.0
     stall_torque: float = 0.0
     max_instantaneous_torque: float = 0.0
-    nominal_speed_torque_points: Sequence[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
-    max_speed_torque_points: Sequence[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
+    nominal_speed_torque_points: Sequence[tuple[float, float]] = json_field("nominalSpeedTorquePoints", default=[])
+    max_speed_torque_points: Sequence[tuple[float, float]] = json_field("maxSpeedTorquePoints", default=[])
     nominal_torque: float = 0.0
     rotor_inertia: float = 0.0
     torque_constant: float = 0.0
@@ -61,18 +51,11 @@ class ElectricMotorActuatorInfo(Info):
     coloumb_friction: float = 0.0
     viscous_friction: float = 0.0
 
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _MOTOR_JSON
-
     def motor(self) -> "Motor":
         """Return the torque limit, inertia and friction that the motor has at the joint."""
         from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS, motor_of  # noqa: PLC0415 - rarely wanted
 
         return motor_of({name: float(getattr(self, name)) for name in ACTUATOR_TAGS})
-
-
-_MOTOR_JSON = tuple(Entry(_camel(one.name), one.name, PLAIN) for one in fields(ElectricMotorActuatorInfo))
 
 
 @info_class
@@ -88,18 +71,12 @@ class JointControlInfo_RobotController(Info):  # noqa: N801 - OpenRAVE's name
         robotControllerAxisProductCode: The product code of each axis' drive.
     """
 
-    _called = "JointControlInfo_RobotController"
-
     controllerType: str = ""
     robotControllerAxisIndex: Sequence[int] = (-1, -1, -1)
     robotControllerAxisMult: Sequence[float] = (1.0, 1.0, 1.0)
     robotControllerAxisOffset: Sequence[float] = (0.0, 0.0, 0.0)
     robotControllerAxisManufacturerCode: Sequence[str] = ("", "", "")
     robotControllerAxisProductCode: Sequence[str] = ("", "", "")
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return [Entry(one.name, one.name, PLAIN) for one in fields(self)]
 
 
 @info_class
@@ -115,18 +92,12 @@ class JointControlInfo_IO(Info):  # noqa: N801 - OpenRAVE's name
         lowerLimitSensorIsOn: The values of these inputs at the lower limit.
     """
 
-    _called = "JointControlInfo_IO"
-
     deviceType: str = ""
     moveIONames: Sequence[Sequence[str]] = ((), (), ())
     upperLimitIONames: Sequence[Sequence[str]] = ((), (), ())
     upperLimitSensorIsOn: Sequence[Sequence[int]] = ((), (), ())
     lowerLimitIONames: Sequence[Sequence[str]] = ((), (), ())
     lowerLimitSensorIsOn: Sequence[Sequence[int]] = ((), (), ())
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return [Entry(one.name, one.name, PLAIN) for one in fields(self)]
 
 
 @info_class
@@ -137,10 +108,4 @@ class JointControlInfo_ExternalDevice(Info):  # noqa: N801 - OpenRAVE's name
         externalDeviceType: The type of the device.
     """
 
-    _called = "JointControlInfo_ExternalDevice"
-
     externalDeviceType: str = ""
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return [Entry("externalDeviceType", "externalDeviceType", PLAIN)]

@@ -4,7 +4,6 @@
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -14,8 +13,8 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import Info, identity, info_class, pose, vector
-from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, info
+from ravemj.rave.infos.base import IdentifiedInfo, info_class, json_field, pose, vector
+from ravemj.rave.infos.json import POSE, TEXT, Entry, Json, info
 from ravemj.rave.infos.sensor import CameraGeomData, SensorGeometry
 from ravemj.rave.infos.sensor_devices import device_of, geometry_of
 
@@ -23,12 +22,8 @@ if TYPE_CHECKING:
     from ravemj.model.manipulators import ManipulatorBuilder
 
 
-def _ahead() -> ArrayLike:
-    return np.array([0.0, 0.0, 1.0])
-
-
 @info_class
-class ManipulatorInfo(Info):
+class ManipulatorInfo(IdentifiedInfo):
     """The description of a manipulator: a chain of links with a tool at its end.
 
     Attributes:
@@ -46,16 +41,15 @@ class ManipulatorInfo(Info):
 
     _called = "Robot.ManipulatorInfo"
 
-    _name: str | None = None
-    _sBaseLinkName: str | None = None
-    _sEffectorLinkName: str | None = None
-    _tLocalTool: ArrayLike = field(default_factory=identity)
-    _vChuckingDirection: ArrayLike = field(default_factory=list[float])
-    _vdirection: ArrayLike = field(default_factory=_ahead)
-    _sIkSolverXMLId: str = ""
-    _vGripperJointNames: Sequence[str] = field(default_factory=list[str])
-    _grippername: str = ""
-    _id: str | None = None
+    _name: str | None = json_field("name", TEXT, default=None)
+    _sBaseLinkName: str | None = json_field("baseLinkName", TEXT, default=None)
+    _sEffectorLinkName: str | None = json_field("effectorLinkName", TEXT, default=None)
+    _tLocalTool: ArrayLike = json_field("transform", POSE, default=np.eye(4))
+    _vChuckingDirection: ArrayLike = json_field("chuckingDirections", default=[], optional=True)
+    _vdirection: ArrayLike = json_field("direction", default=np.array([0.0, 0.0, 1.0]))
+    _sIkSolverXMLId: str = json_field("ikSolverType", TEXT, default="")
+    _vGripperJointNames: Sequence[str] = json_field("gripperJointNames", default=[], optional=True)
+    _grippername: str = json_field("grippername", TEXT, default="")
 
     @property
     def _vClosingDirection(self) -> ArrayLike:
@@ -101,27 +95,9 @@ class ManipulatorInfo(Info):
             gripper_name=self._grippername or "",
         )
 
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _MANIPULATOR_JSON
-
-
-_MANIPULATOR_JSON = (
-    Entry("id", "_id", TEXT),
-    Entry("name", "_name", TEXT),
-    Entry("transform", "_tLocalTool", POSE),
-    Entry("chuckingDirections", "_vChuckingDirection", PLAIN, optional=True),
-    Entry("direction", "_vdirection", PLAIN),
-    Entry("baseLinkName", "_sBaseLinkName", TEXT),
-    Entry("effectorLinkName", "_sEffectorLinkName", TEXT),
-    Entry("ikSolverType", "_sIkSolverXMLId", TEXT),
-    Entry("gripperJointNames", "_vGripperJointNames", PLAIN, optional=True),
-    Entry("grippername", "_grippername", TEXT),
-)
-
 
 @info_class
-class AttachedSensorInfo(Info):
+class AttachedSensorInfo(IdentifiedInfo):
     """The description of a sensor on a link.
 
     Attributes:
@@ -135,12 +111,11 @@ class AttachedSensorInfo(Info):
 
     _called = "Robot.AttachedSensorInfo"
 
-    _name: str | None = None
-    _linkname: str | None = None
-    _trelative: ArrayLike = field(default_factory=identity)
-    _sensorname: str | None = None
-    _sensorgeometry: SensorGeometry | None = None
-    _id: str | None = None
+    _name: str | None = json_field("name", TEXT, default=None)
+    _linkname: str | None = json_field("linkName", TEXT, default=None)
+    _trelative: ArrayLike = json_field("transform", POSE, default=np.eye(4))
+    _sensorname: str | None = json_field("type", TEXT, default=None)
+    _sensorgeometry: SensorGeometry | None = json_field("", default=None)
 
     @classmethod
     def of(cls, body: scene.KinBody, sensor: scene.AttachedSensor) -> Self:
@@ -181,20 +156,11 @@ class AttachedSensorInfo(Info):
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
         kind = scene.sensor_kind(str((obj or {}).get("type", self._sensorname) or "BaseCamera"))
         described = CameraGeomData if kind is None else type(geometry_of(kind.device))
-        return (*_SENSOR_JSON, Entry("sensorGeometry", "_sensorgeometry", info(described), optional=True))
-
-
-_SENSOR_JSON = (
-    Entry("id", "_id", TEXT),
-    Entry("name", "_name", TEXT),
-    Entry("linkName", "_linkname", TEXT),
-    Entry("transform", "_trelative", POSE),
-    Entry("type", "_sensorname", TEXT),
-)
+        return (*self._entries, Entry("sensorGeometry", "_sensorgeometry", info(described), optional=True))
 
 
 @info_class
-class GripperInfo(Info):
+class GripperInfo(IdentifiedInfo):
     """The description of a gripper. Manipulators name it in ``ManipulatorInfo._grippername``.
 
     Attributes:
@@ -203,21 +169,6 @@ class GripperInfo(Info):
         _gripperJointNames: The names of its joints.
     """
 
-    _called = "GripperInfo"
-
-    _id: str | None = None
-    _name: str | None = None
-    _grippertype: str = ""
-    _gripperJointNames: Sequence[str] = field(default_factory=list[str])
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _GRIPPER_JSON
-
-
-_GRIPPER_JSON = (
-    Entry("id", "_id", TEXT),
-    Entry("name", "_name", TEXT),
-    Entry("grippertype", "_grippertype", TEXT),
-    Entry("gripperJointNames", "_gripperJointNames", PLAIN),
-)
+    _name: str | None = json_field("name", TEXT, default=None)
+    _grippertype: str = json_field("grippertype", TEXT, default="")
+    _gripperJointNames: Sequence[str] = json_field("gripperJointNames", default=[])

@@ -1,8 +1,10 @@
 """The constant properties of sensors: resolution, range, calibration."""
 
+# Users put anything into fields.
+# pyright: reportUnknownArgumentType=false, reportUnknownLambdaType=false
+
 from collections.abc import Sequence
-from dataclasses import field
-from typing import ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,8 +12,23 @@ from numpy.typing import ArrayLike
 from ravemj.core.transforms import Floats
 from ravemj.errors import RavemjError
 from ravemj.rave.enums import SensorType
-from ravemj.rave.infos.base import Info, info_class
-from ravemj.rave.infos.json import PLAIN, TEXT, Entry, Json, info
+from ravemj.rave.infos.base import Info, info_class, json_field
+from ravemj.rave.infos.json import TEXT, Entry, Form, Json, info
+
+PINHOLE = {"fx": (0, 0), "fy": (1, 1), "cx": (0, 2), "cy": (1, 2)}
+"""The numbers of a camera matrix and their places in it."""
+
+
+def _number_of_matrix(place: tuple[int, int]) -> Form:
+    """Return the JSON form of one number of a matrix."""
+
+    def read(value: float, scale: float, present: Any) -> Floats:  # noqa: ANN401 - what users put into the field
+        del scale
+        matrix = np.array(present, dtype=float)
+        matrix[place] = value
+        return matrix
+
+    return Form(lambda matrix, scale: float(np.asarray(matrix, dtype=float)[place]), read)
 
 
 @info_class
@@ -27,53 +44,13 @@ class CameraIntrinsics(Info):
 
     _called = "Sensor.CameraIntrinsics"
 
-    K: ArrayLike = field(default_factory=lambda: np.eye(3))
-    distortion_model: str = ""
+    K: ArrayLike = json_field("", default=np.eye(3))
+    distortion_model: str = json_field("distortionModel", TEXT, default="")
     distortion_coeffs: Sequence[float] = ()
     focal_length: float = 0.01
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _INTRINSICS_JSON
-
-    def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
-        """Return the intrinsics in OpenRAVE's JSON format, see ``Info``.
-
-        Args:
-            unitScale: Multiplies all lengths.
-            options: Not used.
-        """
-        matrix = np.asarray(self.K, dtype=float)
-        numbers = {"fx": matrix[0, 0], "fy": matrix[1, 1], "cx": matrix[0, 2], "cy": matrix[1, 2]}
-        return {key: float(number) for key, number in numbers.items()} | super().SerializeJSON(unitScale, options)
-
-    def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None:
-        """Set fields from OpenRAVE's JSON format, see ``Info``.
-
-        Args:
-            obj: A result of ``SerializeJSON``, or a part of one.
-            unitScale: Multiplies all lengths.
-            options: Not used.
-        """
-        super().DeserializeJSON(obj, unitScale, options)
-        matrix = np.array(self.K, dtype=float)
-        for key, place in {"fx": (0, 0), "fy": (1, 1), "cx": (0, 2), "cy": (1, 2)}.items():
-            matrix[place] = obj.get(key, matrix[place])
-        self.K = matrix  # pyright: ignore[reportConstantRedefinition] - OpenRAVE's name, no constant
-
-
-_INTRINSICS_JSON = (
-    Entry("focalLength", "focal_length", PLAIN),
-    Entry("distortionModel", "distortion_model", TEXT),
-    Entry("distortionCoeffs", "distortion_coeffs", PLAIN),
-)
-
-
-_PINHOLE_JSON = (
-    Entry("intrinsics", "intrinsics", info(CameraIntrinsics)),
-    Entry("width", "width", PLAIN),
-    Entry("height", "height", PLAIN),
-)
+        return (*(Entry(key, "K", _number_of_matrix(place)) for key, place in PINHOLE.items()), *super()._json(obj))
 
 
 @info_class
@@ -84,28 +61,16 @@ class SensorGeometry(Info):
         hardware_id: The manufacturer's identifier.
     """
 
-    _called = "SensorGeometry"
-    _internal = ("sensor_type",)
     _type = SensorType.Invalid
-    _keys: ClassVar[Sequence[tuple[str, str]]] = ()
 
     hardware_id: str = ""
 
     def __init__(self, *args: object, **kwargs: object) -> None:
         raise RavemjError("SensorGeometry stands for all kinds of geometry: make a CameraGeomData, for instance")
 
-    @classmethod
-    def sensor_type(cls) -> SensorType:
-        """Return the kind of sensor that objects of this class describe."""
-        return cls._type
-
     def GetType(self) -> SensorType:
         """Return the kind of sensor."""
         return self._type
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return [Entry(key, name, PLAIN) for key, name in (("hardwareId", "hardware_id"), *self._keys)]
 
 
 @info_class
@@ -121,15 +86,14 @@ class CameraGeomData(SensorGeometry):
         target_region: The name of the region that the camera looks at.
     """
 
-    _called = "CameraGeomData"
     _type = SensorType.Camera
 
-    intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
+    intrinsics: CameraIntrinsics = json_field("intrinsics", info(CameraIntrinsics), default=CameraIntrinsics())
     width: int = 0
     height: int = 0
     measurement_time: float = 1.0
     gain: float = 1.0
-    target_region: str = ""
+    target_region: str = json_field("targetRegion", TEXT, default="")
 
     @property
     def KK(self) -> Floats:
@@ -139,15 +103,6 @@ class CameraGeomData(SensorGeometry):
     @KK.setter
     def KK(self, matrix: ArrayLike) -> None:
         self.intrinsics.K = np.array(matrix, dtype=float)  # pyright: ignore[reportConstantRedefinition] - as above
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        return [
-            *super()._json(obj),
-            *_PINHOLE_JSON,
-            Entry("measurementTime", "measurement_time", PLAIN),
-            Entry("gain", "gain", PLAIN),
-            Entry("targetRegion", "target_region", TEXT),
-        ]
 
 
 @info_class
@@ -164,13 +119,7 @@ class LaserGeomData(SensorGeometry):
         time_scan: Time between two scans [s].
     """
 
-    _called = "LaserGeomData"
     _type = SensorType.Laser
-    _keys = (
-        *(("minAngle", "min_angle"), ("maxAngle", "max_angle"), ("resolution", "resolution")),
-        *(("minRange", "min_range"), ("maxRange", "max_range")),
-        *(("timeIncrement", "time_increment"), ("timeScan", "time_scan")),
-    )
 
     min_angle: Sequence[float] = (0.0, 0.0)
     max_angle: Sequence[float] = (0.0, 0.0)
@@ -193,12 +142,6 @@ class SpinningLaserGeomData(LaserGeomData):
         spin_speed: The angular velocity of the plane [rad/s].
     """
 
-    _called = "SpinningLaserGeomData"
-    _keys = (
-        *LaserGeomData._keys,
-        *(("spinAxis", "spin_axis"), ("spinPosition", "spin_position"), ("spinSpeed", "spin_speed")),
-    )
-
     spin_axis: Sequence[float] = (1.0, 0.0, 0.0)
     spin_position: Sequence[float] = (0.0, 0.0, 0.0)
     spin_speed: float = 0.0
@@ -216,14 +159,9 @@ class FlashLidarGeomData(LaserGeomData):
         height: The number of rows of rays.
     """
 
-    _called = "FlashLidarGeomData"
-
-    intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
+    intrinsics: CameraIntrinsics = json_field("intrinsics", info(CameraIntrinsics), default=CameraIntrinsics())
     width: int = 0
     height: int = 0
-
-    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        return [*super()._json(obj), *_PINHOLE_JSON]
 
 
 @info_class
@@ -234,9 +172,7 @@ class JointEncoderGeomData(SensorGeometry):
         resolution: The step of each DOF of the joint [rad or m].
     """
 
-    _called = "JointEncoderGeomData"
     _type = SensorType.JointEncoder
-    _keys = (("resolution", "resolution"),)
 
     resolution: Sequence[float] = ()
 
@@ -250,9 +186,7 @@ class Force6DGeomData(SensorGeometry):
         correction_matrix: The 6x6 matrix that multiplies a measurement, 36 numbers row by row.
     """
 
-    _called = "Force6DGeomData"
     _type = SensorType.Force6D
-    _keys = (("polarity", "polarity"), ("correctionMatrix", "correction_matrix"))
 
     polarity: int = 1
     correction_matrix: Sequence[float] = ()
@@ -266,9 +200,7 @@ class IMUGeomData(SensorGeometry):
         time_measurement: Time between two measurements [s].
     """
 
-    _called = "IMUGeomData"
     _type = SensorType.IMU
-    _keys = (("timeMeasurement", "time_measurement"),)
 
     time_measurement: float = 0.0
 
@@ -281,11 +213,9 @@ class OdometryGeomData(SensorGeometry):
         targetid: The name of the body.
     """
 
-    _called = "OdometryGeomData"
     _type = SensorType.Odometry
-    _keys = (("targetId", "targetid"),)
 
-    targetid: str = ""
+    targetid: str = json_field("targetId", default="")
 
 
 @info_class
@@ -296,9 +226,7 @@ class TactileGeomData(SensorGeometry):
         thickness: The thickness of the skin [m].
     """
 
-    _called = "TactileGeomData"
     _type = SensorType.Tactile
-    _keys = (("thickness", "thickness"),)
 
     thickness: float = 0.0
 
@@ -318,14 +246,13 @@ class ActuatorGeomData(SensorGeometry):
         viscousfriction: The viscous friction [N m s/rad].
     """
 
-    _called = "ActuatorGeomData"
     _type = SensorType.Actuator
 
-    maxtorque: float = 0.0
-    maxcurrent: float = 0.0
-    nominalcurrent: float = 0.0
-    maxvelocity: float = 0.0
-    maxacceleration: float = 0.0
-    maxjerk: float = 0.0
-    staticfriction: float = 0.0
-    viscousfriction: float = 0.0
+    maxtorque: float = json_field("maxTorque", default=0.0)
+    maxcurrent: float = json_field("maxCurrent", default=0.0)
+    nominalcurrent: float = json_field("nominalCurrent", default=0.0)
+    maxvelocity: float = json_field("maxVelocity", default=0.0)
+    maxacceleration: float = json_field("maxAcceleration", default=0.0)
+    maxjerk: float = json_field("maxJerk", default=0.0)
+    staticfriction: float = json_field("staticFriction", default=0.0)
+    viscousfriction: float = json_field("viscousFriction", default=0.0)

@@ -1,23 +1,23 @@
 """Converts the sensors of a scene to infos, and back."""
 
-# Users put anything into the fields of infos.
-# pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportUnknownMemberType=false
-# pyright: reportUnknownLambdaType=false
+# The tables of infos are theirs, and users put anything into their fields.
+# pyright: reportPrivateUsage=false
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, replace
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Vec3
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.base import vector
 from ravemj.rave.infos.sensor import (
+    PINHOLE,
     CameraGeomData,
     CameraIntrinsics,
     FlashLidarGeomData,
@@ -31,15 +31,41 @@ from ravemj.rave.infos.sensor import (
     TactileGeomData,
 )
 
+_DESCRIBED: Mapping[type, type[SensorGeometry]] = {
+    scene.Intrinsics: CameraGeomData,
+    scene.Laser: LaserGeomData,
+    scene.FlashLidar: FlashLidarGeomData,
+    scene.ForceTorque: Force6DGeomData,
+    scene.Imu: IMUGeomData,
+    scene.Odometry: OdometryGeomData,
+    scene.JointEncoder: JointEncoderGeomData,
+    scene.Tactile: TactileGeomData,
+}
+"""The classes of infos that describe devices."""
+
+_OTHER_NAMES = {
+    "correction_matrix": "correction",
+    "targetid": "target",
+    "time_measurement": "scan_time",
+    "time_scan": "scan_time",
+}
+"""The fields of infos that have another name in devices; fields without a counterpart there are only stored."""
+
 
 def geometry_of(device: scene.Device) -> SensorGeometry:
     """Return the constant properties of a device as a new info."""
-    return _CONVERSIONS[type(device)].write(device)
+    made = _described(device)()
+    for field, name, kind in _shared(made, device):
+        value = getattr(device, name)
+        setattr(made, field, (value, 0.0) if _is_angle(field, kind) else value)
+    if isinstance(device, scene.Intrinsics | scene.FlashLidar):
+        cast("CameraGeomData", made).intrinsics = intrinsics_of(device)
+    return made
 
 
 def sensor_type(device: scene.Device) -> SensorType:
     """Return OpenRAVE's sensor type of a device."""
-    return _CONVERSIONS[type(device)].described.sensor_type()
+    return _DESCRIBED[type(device)]._type
 
 
 def device_of(geometry: SensorGeometry, before: scene.Device) -> scene.Device | None:
@@ -55,48 +81,15 @@ def device_of(geometry: SensorGeometry, before: scene.Device) -> scene.Device | 
     Raises:
         ArgumentError: a field has wrong numbers.
     """
-    conversion = _CONVERSIONS[type(before)]
-    return conversion.read(geometry, before) if isinstance(geometry, conversion.described) else None
-
-
-def _laser_geometry(laser: scene.Laser) -> LaserGeomData:
-    made = SpinningLaserGeomData() if laser.spins else LaserGeomData()
-    if isinstance(made, SpinningLaserGeomData):
-        made.spin_axis, made.spin_position, made.spin_speed = laser.spin_axis, laser.spin_position, laser.spin_speed
-    made.min_angle, made.max_angle, made.resolution = (
-        (angle, 0.0) for angle in (laser.min_angle, laser.max_angle, laser.resolution)
-    )
-    made.min_range, made.max_range = laser.min_range, laser.max_range
-    made.time_increment, made.time_scan = laser.time_increment, laser.scan_time
-    return made
-
-
-def _laser(geometry: LaserGeomData, before: scene.Laser) -> scene.Laser | None:
-    if isinstance(geometry, FlashLidarGeomData):
+    if type(geometry) not in {_described(before), _DESCRIBED[type(before)]}:  # a plain laser's keeps how one spins
         return None
-    if isinstance(geometry, SpinningLaserGeomData):
-        if not before.spins:
-            return None
-        before = replace(
-            before,
-            spin_axis=vector(geometry.spin_axis, "spin_axis"),
-            spin_position=vector(geometry.spin_position, "spin_position"),
-            spin_speed=_number(geometry.spin_speed, "spin_speed"),
-        )
-    angles = [_numbers(getattr(geometry, name), name) for name in ("min_angle", "max_angle", "resolution")]
-    if not all(angles):
-        raise ArgumentError("LaserGeomData: min_angle, max_angle and resolution should hold a number each, or two")
-    min_range, max_range, scan_time = _reach(geometry)
-    return replace(
-        before,
-        min_angle=angles[0][0],
-        max_angle=angles[1][0],
-        resolution=angles[2][0],
-        min_range=min_range,
-        max_range=max_range,
-        scan_time=scan_time,
-        time_increment=_number(geometry.time_increment, "time_increment"),
-    )
+    changes: dict[str, Any] = {}
+    if isinstance(geometry, CameraGeomData | FlashLidarGeomData):
+        changes |= _pinhole(geometry.intrinsics)
+    for field, name, kind in _shared(geometry, before):
+        read = _first_angle if _is_angle(field, kind) else _READERS[kind]
+        changes[name] = read(getattr(geometry, field), field)
+    return replace(before, **changes)
 
 
 def intrinsics_of(camera: scene.Intrinsics | scene.FlashLidar) -> CameraIntrinsics:
@@ -104,18 +97,37 @@ def intrinsics_of(camera: scene.Intrinsics | scene.FlashLidar) -> CameraIntrinsi
     return CameraIntrinsics(np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]]))
 
 
-def _pinhole(geometry: CameraGeomData | FlashLidarGeomData) -> tuple[float, float, float, float, int, int]:
-    K = checked_numbers(geometry.intrinsics.K, "intrinsics.K")
+def _described(device: scene.Device) -> type[SensorGeometry]:
+    spins = isinstance(device, scene.Laser) and device.spins
+    return SpinningLaserGeomData if spins else _DESCRIBED[type(device)]
+
+
+def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[str, str, Any]]:
+    """Yield the names that an info and a device have for what both know, and the type that it has in the device."""
+    types = {one.name: one.type for one in fields(device)}
+    for one in fields(geometry):
+        name = _OTHER_NAMES.get(one.name, one.name)
+        if name in types:
+            yield one.name, name, types[name]
+
+
+def _is_angle(field: str, kind: Any) -> bool:  # noqa: ANN401 - a type
+    """Return whether a field has angles about two axes, and the device that about the first."""
+    return kind is float and field in {"min_angle", "max_angle", "resolution"}
+
+
+def _first_angle(values: ArrayLike, name: str) -> float:
+    angles = _numbers(values, name)
+    if not angles:
+        raise ArgumentError("LaserGeomData: min_angle, max_angle and resolution should hold a number each, or two")
+    return angles[0]
+
+
+def _pinhole(intrinsics: CameraIntrinsics) -> dict[str, float]:
+    K = checked_numbers(intrinsics.K, "intrinsics.K")
     if K.shape != (3, 3):
         raise ArgumentError(f"intrinsics.K: has shape {K.shape}, and should have shape (3, 3)")
-    fx, fy, cx, cy = (float(K[place]) for place in ((0, 0), (1, 1), (0, 2), (1, 2)))
-    return fx, fy, cx, cy, _count(geometry.width, "width"), _count(geometry.height, "height")
-
-
-def _reach(geometry: LaserGeomData) -> tuple[float, float, float]:
-    """Return the smallest and greatest distance that rays measure [m], and the time between scans [s]."""
-    least, greatest = _number(geometry.min_range, "min_range"), _number(geometry.max_range, "max_range")
-    return least, greatest, _number(geometry.time_scan, "time_scan")
+    return {name: float(K[place]) for name, place in PINHOLE.items()}
 
 
 def _numbers(values: ArrayLike, name: str) -> tuple[float, ...]:
@@ -136,66 +148,11 @@ def _count(value: float, name: str) -> int:
     return int(number)
 
 
-class _Conversion(NamedTuple):
-    """The conversion between devices of one class and their infos.
-
-    Attributes:
-        described: The class of the infos.
-        write: A function of a device that returns its info.
-        read: A function of an info and the device so far that returns the new device, or None.
-    """
-
-    described: type[SensorGeometry]
-    write: Callable[[Any], SensorGeometry]
-    read: Callable[[Any, Any], scene.Device | None]
-
-
-_CONVERSIONS: Mapping[type, _Conversion] = MappingProxyType(
-    {
-        scene.Intrinsics: _Conversion(
-            CameraGeomData,
-            lambda camera: CameraGeomData(intrinsics=intrinsics_of(camera), width=camera.width, height=camera.height),
-            lambda geometry, before: scene.Intrinsics(*_pinhole(geometry)),
-        ),
-        scene.Laser: _Conversion(LaserGeomData, _laser_geometry, _laser),
-        scene.FlashLidar: _Conversion(
-            FlashLidarGeomData,
-            lambda lidar: FlashLidarGeomData(
-                intrinsics=intrinsics_of(lidar),
-                width=lidar.width,
-                height=lidar.height,
-                min_range=lidar.min_range,
-                max_range=lidar.max_range,
-                time_scan=lidar.scan_time,
-            ),
-            lambda geometry, before: scene.FlashLidar(*_pinhole(geometry), *_reach(geometry)),
-        ),
-        scene.ForceTorque: _Conversion(
-            Force6DGeomData,
-            lambda sensor: Force6DGeomData(polarity=sensor.polarity, correction_matrix=sensor.correction),
-            lambda geometry, before: scene.ForceTorque(
-                _count(geometry.polarity, "polarity"), _numbers(geometry.correction_matrix, "correction_matrix")
-            ),
-        ),
-        scene.Imu: _Conversion(
-            IMUGeomData,
-            lambda sensor: IMUGeomData(time_measurement=sensor.scan_time),
-            lambda geometry, before: replace(before, scan_time=_number(geometry.time_measurement, "time_measurement")),
-        ),
-        scene.Odometry: _Conversion(
-            OdometryGeomData,
-            lambda sensor: OdometryGeomData(targetid=sensor.target),
-            lambda geometry, before: replace(before, target=str(geometry.targetid)),
-        ),
-        scene.JointEncoder: _Conversion(
-            JointEncoderGeomData,
-            lambda sensor: JointEncoderGeomData(resolution=sensor.resolution),
-            lambda geometry, before: scene.JointEncoder(_numbers(geometry.resolution, "resolution")),
-        ),
-        scene.Tactile: _Conversion(
-            TactileGeomData,
-            lambda sensor: TactileGeomData(thickness=sensor.thickness),
-            lambda geometry, before: scene.Tactile(_number(geometry.thickness, "thickness")),
-        ),
-    }
-)
+_READERS: Mapping[Any, Callable[[Any, str], Any]] = {
+    float: _number,
+    int: _count,
+    str: lambda value, name: str(value),
+    Vec3: vector,
+    tuple[float, ...]: _numbers,
+}
+"""The conversions of fields, by the types that they have in devices."""
