@@ -25,21 +25,13 @@ _BODY, _JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 
 
 class Configuration(NamedTuple):
-    """Where the links of a body are, and why: what ``BodyKinematics.restore`` needs.
+    """Where the links of a body are, and why: what ``BodyKinematics.restore`` needs."""
 
-    Attributes:
-        qpos: MuJoCo's, of the body's own model.
-        positions: Positions of the links in their parents at rest, in MuJoCo's order.
-        quaternions: Their orientations, wxyz.
-        passive: The values of the passive joints; those of mimic joints that move a link are in ``qpos``.
-        displaced: Whether links are where their joints do not place them.
-    """
-
-    qpos: Floats
-    positions: Floats
-    quaternions: Floats
-    passive: list[list[float]]
-    displaced: bool
+    qpos: Floats  # of the body's own model
+    positions: Floats  # of the links in their parents at rest, in MuJoCo's order
+    quaternions: Floats  # their orientations there, wxyz
+    passive: list[list[float]]  # values of the passive joints; those of mimic joints that move a link are in ``qpos``
+    displaced: bool  # whether links are where their joints do not place them
 
 
 class BodyKinematics:

@@ -27,31 +27,19 @@ _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
 
 class GrabbedBody(NamedTuple):
-    """One body held by a link of another.
+    """One body held by a link of another."""
 
-    Attributes:
-        body: The held body.
-        link: Index of the link that holds it.
-        T_link_body: Its pose in the link.
-        ignored: Indices of the holder's links that it does not collide with.
-    """
-
-    body: "BodyState"
-    link: int
+    body: "BodyState"  # the held one
+    link: int  # index of the link that holds it
     T_link_body: Floats
-    ignored: frozenset[int] = frozenset()
+    ignored: frozenset[int] = frozenset()  # indices of the holder's links that it does not collide with
 
 
 class SavedConfiguration(NamedTuple):
-    """State of joints and links.
+    """State of joints and links."""
 
-    Attributes:
-        configuration: That of MuJoCo's model.
-        scene: The body that the model was made of, for one that has other joints by then.
-    """
-
-    configuration: Configuration
-    scene: KinBody
+    configuration: Configuration  # of MuJoCo's model
+    scene: KinBody  # what the model was made of, for a body that has other joints by then
 
 
 class BodyState:
@@ -210,11 +198,7 @@ class BodyState:
             self.set_values(self._kinematics.limits.clamp(values))
 
     def set_transform(self, T_world_link0: Floats) -> None:
-        """Move the body rigidly, with the joint values as they are.
-
-        Args:
-            T_world_link0: Pose of the first link, shape (4, 4).
-        """
+        """Move the body rigidly, with the joint values as they are, by the pose of its first link, shape (4, 4)."""
         self.own_kinematics.set_transform(T_world_link0)
         self.moved()
 
@@ -248,12 +232,9 @@ class BodyState:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
     def link_velocities(self) -> Floats:
-        """Return the velocities of the links, in world axes: of the origin [m/s] and angular [rad/s]; a copy.
+        """Return the velocities of the links in world axes, (links, 6): of the origin [m/s], angular [rad/s]; a copy.
 
         Moving links does not change them, as in OpenRAVE.
-
-        Returns:
-            Shape (links, 6).
         """
         return self._velocities.copy()
 
@@ -276,12 +257,7 @@ class BodyState:
         grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
 
     def set_velocity(self, linear: Floats, angular: Floats) -> None:
-        """Let all links move as one.
-
-        Args:
-            linear: Velocity of the first link's origin [m/s], shape (3,).
-            angular: Angular velocity [rad/s], shape (3,).
-        """
+        """Let all links move as one, by the velocity of the first link's origin [m/s] and an angular one [rad/s]."""
         origins = self.link_transforms()[:, :3, 3]
         velocities = np.empty((len(origins), 6))
         velocities[:, :3] = linear + cross_rows(angular, origins - origins[:1])

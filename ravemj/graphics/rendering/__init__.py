@@ -82,6 +82,7 @@ class Renderer(Protocol):
             ArgumentError: the data are of another model, or the background is no colour.
             RenderingError: the renderer is closed.
         """
+        ...
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
         """Say which geom each pixel centre shows; drawings hide nothing.
@@ -91,6 +92,7 @@ class Renderer(Protocol):
         Returns:
             A new array (height, width) of geom ids, -1 where nothing is. Transparent geoms count.
         """
+        ...
 
     def resize(self, width: int, height: int, samples: int) -> None:
         """Draw pictures of another size from now on, or with other samples per pixel; that takes a millisecond."""
@@ -104,6 +106,7 @@ class Renderer(Protocol):
             A new array (height, width) of distances along the viewing direction [m], infinite where nothing is.
             Transparent geoms count.
         """
+        ...
 
     def close(self) -> None:
         """Free what the renderer holds. Also done at the end of a ``with`` block."""
