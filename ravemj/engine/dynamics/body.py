@@ -24,11 +24,6 @@ class BodyDynamics:
     """Derivatives of one body's motion.
 
     Velocities of links are six numbers in world axes: that of the link's origin [m/s] and the angular one [rad/s].
-
-    Attributes:
-        tree: Which joint carries which.
-        couplings: How the velocity coordinates follow the DOFs.
-        motors: What motors need for themselves; None where no joint has one.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:
@@ -85,15 +80,7 @@ class BodyDynamics:
         return rows.of_dofs(self._matrix(self._coupling()) if matrix is None else matrix)
 
     def translation_jacobian(self, link: int, point: Floats) -> Floats:
-        """Return the derivative of the position of a link's point by the DOF values.
-
-        Args:
-            link: Index of the link.
-            point: The point, in world coordinates [m], shape (3,).
-
-        Returns:
-            Shape (3, dof).
-        """
+        """Return the derivative of the position of a link's point, in the world, by the DOF values, shape (3, dof)."""
         self._kinematics.place_coms()
         mujoco.mj_jac(self._model, self._data, self._moving.matrix, None, point, self._body_ids[link])
         return self._of_dofs(self._moving)

@@ -46,24 +46,18 @@ class BodyState:
     """A body and its state; what the API objects of one body share.
 
     Joint values and poses are those of a MuJoCo model of the body alone (``own_kinematics``), whether the body is in
-    the world or not. It is compiled when first asked for; until then the body is where its description has it.
-
-    Attributes:
-        scene: What it consists of; what files say, and what setters of the API changed since.
-        dof: Number of its degrees of freedom.
-        simulation: The world that it was made for.
-        index: Its index in the world, from 1; 0 while it is not in the world.
-        stamp: Grows with every change of pose.
-        rest_poses: The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the
-            body was added, or that of the body of which it is a copy.
+    the world or not. It is compiled when first asked for; until then the body is where its description has it. That is
+    ``scene``: what files say, and what setters of the API changed since.
     """
 
     def __init__(self, scene: KinBody, simulation: "Simulation") -> None:
-        self.simulation = simulation
-        self.index = 0
-        self.stamp = 0
+        self.simulation = simulation  # the world that it was made for
+        self.index = 0  # in the world, from 1; 0 while it is not in the world
+        self.stamp = 0  # grows with every change of pose
         self._grabs: tuple[GrabbedBody, ...] = ()
         self._link_enabled: tuple[bool, ...] = ()
+        # The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the body was
+        # added, or that of the body of which it is a copy.
         self.rest_poses: Floats | None = None
         self._made: dict[object, tuple[object, Any]] = {}
         self.rebuild(scene)

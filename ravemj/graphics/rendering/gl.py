@@ -31,7 +31,13 @@ class GlRenderer(Renderer):
         self._viewport = mujoco.MjrRect(0, 0, quality.width, quality.height)
         self._context = context
         with context.current():
-            self._gl_scene = _offscreen_stage(model, quality)
+            stage = GlScene(model, quality)
+            offscreen = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
+            mujoco.mjr_setBuffer(offscreen, stage.context)
+            if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, and there is none
+                stage.close()
+                raise RenderingError("the OpenGL driver has no offscreen framebuffers")
+            self._gl_scene = stage
         close_at_exit(self)
 
     def render(
@@ -116,16 +122,6 @@ class GlRenderer(Renderer):
         stage.context.readDepthMap = _DEPTH_ZERO_FAR
         mujoco.mjr_readPixels(pixels, depth, self._viewport, stage.context)
         return pixels[::-1].copy()
-
-
-def _offscreen_stage(model: mujoco.MjModel, quality: Quality) -> GlScene:
-    stage = GlScene(model, quality)
-    offscreen = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
-    mujoco.mjr_setBuffer(offscreen, stage.context)
-    if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, and there is none
-        stage.close()
-        raise RenderingError("the OpenGL driver has no offscreen framebuffers")
-    return stage
 
 
 _never_freed: list[GlScene] = []
