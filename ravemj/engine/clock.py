@@ -34,7 +34,7 @@ class Clock:
     def __init__(self, lock: RLock, step: Callable[[float], None]) -> None:
         """Make a clock that stands at 0; with the lock held, it calls ``step`` for each time step [s]."""
         self.now = 0  # simulation time since the start [microseconds]
-        self.is_allowed = True  # to pass by itself; ``stop`` ends that
+        self.is_allowed = True  # whether time passes by itself; ``stop`` ends that
         self._lock = lock
         self._step = step
         self._rhythm = _Rhythm(lock, Event(), DEFAULT_STEP, 1.0)

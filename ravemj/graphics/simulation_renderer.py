@@ -125,7 +125,7 @@ class SimulationRenderer:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
 
         Bodies are where they were then, or where they were published since; there are shadows if there were some.
-        Returned is a picture as by ``render``, or None where this thread has drawn nothing yet.
+        The picture is one as ``render`` returns it, or None where this thread has drawn nothing yet.
         """
         if getattr(self._kept, "key", None) is None:
             return None

@@ -127,7 +127,7 @@ class BodyKinematics:
 
     def _find_mimic_joints(self, body: KinBody) -> None:
         """Find the mimic joints, and those among them that are a multiple of a DOF."""
-        # None in a body without DOFs, where OpenRAVE never sets a value.
+        # A body without DOFs has no mimic joints: OpenRAVE never sets a value there.
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self._mimic_qpos = {one.joint: places[0] for one in self.mimic.joints if (places := self.joint_qpos[one.joint])}
         self._multiples = [
