@@ -57,6 +57,7 @@ def load(scene) -> list[ravemj.KinBody]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ravemj.RavemjWarning)
         assert env.LoadData(xml(scene_node(scene)))
+        env.simulation.compiled()  # which warns as well
     return env.GetBodies()
 
 
