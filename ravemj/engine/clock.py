@@ -29,16 +29,12 @@ class Clock:
 
     Time may pass from the start, as in OpenRAVE, but the thread comes with the first ``wake``. It holds the clock by
     a weak reference, and so ends when whatever owns the clock is gone.
-
-    Attributes:
-        now: Simulation time since the start [microseconds].
-        is_allowed: Whether time passes by itself; ``stop`` ends that.
     """
 
     def __init__(self, lock: RLock, step: Callable[[float], None]) -> None:
         """Make a clock that stands at 0; with the lock held, it calls ``step`` for each time step [s]."""
-        self.now = 0
-        self.is_allowed = True
+        self.now = 0  # simulation time since the start [microseconds]
+        self.is_allowed = True  # whether time passes by itself; ``stop`` ends that
         self._lock = lock
         self._step = step
         self._rhythm = _Rhythm(lock, Event(), DEFAULT_STEP, 1.0)

@@ -23,12 +23,9 @@ _LONGEST_CHAIN = 496  # links; MuJoCo's reader of XML takes 500 elements inside 
 
 
 class Compiled:
-    """A scene in MuJoCo.
+    """A scene in MuJoCo: the text, MuJoCo's editable form of it, and the model.
 
-    Attributes:
-        mjcf: The text that was compiled.
-        spec: MuJoCo's editable form of it.
-        model: The compiled model; masses and inertias that MuJoCo refuses are the nearest legal ones there.
+    Masses and inertias that MuJoCo refuses are the nearest legal ones in the model.
     """
 
     def __init__(

@@ -26,17 +26,3 @@ def still_possible(holder: BodyState, grabs: Sequence[GrabbedBody]) -> list[Grab
         for grab, body in zip(grabs, bodies, strict=True)
         if body is not None and world.holds(holder) and world.holds(body) and not body.carries(holder)
     ]
-
-
-def attached_bodies(start: BodyState) -> list[BodyState]:
-    """Return a body and all that are connected to it by grabbing, in whichever direction."""
-    found, pending = [start], [start]
-    while pending:
-        body = pending.pop()
-        near = [grab.body for grab in body.grabs]
-        near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
-        for one in near:
-            if one not in found:
-                found.append(one)
-                pending.append(one)
-    return found

@@ -16,29 +16,20 @@ _WIDTHS = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BA
 
 
 class ModelPart:
-    """The part of a model that is one body: its links and joints, in the order of the model that is the body's own.
-
-    Attributes:
-        names: What links and joints are called in the model.
-        body_ids: MuJoCo's index of each link, shape (links,).
-        qpos: Where the body is in ``qpos``.
-        qvel: Where it is in ``qvel``.
-        is_free: Whether its roots have free joints, as in its own model; else the world holds them.
-        stamp: ``BodyKinematics.stamp`` of what was last taken over; -1 before.
-    """
+    """The part of a model that is one body: its links and joints, in the order of the model that is the body's own."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, names: "BodyNames") -> None:
         self._model = model
-        self.names = names
+        self.names = names  # of links and joints in the model
         found = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names.links]
-        self.body_ids: Ints = np.array(found, dtype=int)
+        self.body_ids: Ints = np.array(found, dtype=int)  # MuJoCo's index of each link
         first = min(found, default=0)
         bodies = slice(first, first + len(found))
         self._positions, self._quaternions = model.body_pos[bodies], model.body_quat[bodies]  # views of the model
         self._roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         joints = np.flatnonzero((model.jnt_bodyid >= first) & (model.jnt_bodyid < first + len(found)))
-        self.qpos = self.qvel = slice(0, 0)
-        self.is_free = False
+        self.qpos = self.qvel = slice(0, 0)  # where the body is in ``qpos`` and ``qvel``
+        self.is_free = False  # whether its roots have free joints, as in its own model; else the world holds them
         if len(joints):
             start, last = int(joints[0]), int(joints[-1])
             width, speeds = _WIDTHS.get(int(model.jnt_type[last]), (1, 1))
@@ -46,7 +37,7 @@ class ModelPart:
             self.qvel = slice(int(model.jnt_dofadr[start]), int(model.jnt_dofadr[last]) + speeds)
             self.is_free = model.jnt_type[start] == mujoco.mjtJoint.mjJNT_FREE
         self._qpos = data.qpos[self.qpos]
-        self.stamp = -1
+        self.stamp = -1  # ``BodyKinematics.stamp`` of what was last taken over
 
     def take(self, kinematics: BodyKinematics) -> bool:
         """Go where the body is, and return whether more than joint values changed."""

@@ -35,21 +35,13 @@ _MOST_PIXELS = 8_300_000
 
 
 class Format(NamedTuple):
-    """The size [pixels] and the quality of a picture.
+    """The size and the quality of a picture."""
 
-    Attributes:
-        width: Its columns.
-        height: Its rows.
-        shadows: Whether lights cast shadows; too slow for videos without a graphics card.
-        samples: Samples per pixel against jagged edges: 4, or 0 for speed.
-        scale: Its columns as a part of those that it is shown with: points and lines are so much narrower.
-    """
-
-    width: int = 640
-    height: int = 480
-    shadows: bool = False
-    samples: int = 4
-    scale: float = 1.0
+    width: int = 640  # [pixels]
+    height: int = 480  # [pixels]
+    shadows: bool = False  # whether lights cast some; too slow for videos without a graphics card
+    samples: int = 4  # per pixel against jagged edges: 4, or 0 for speed
+    scale: float = 1.0  # columns as a part of those that it is shown with: points and lines are so much narrower
 
     @property
     def aspect(self) -> float:
@@ -133,7 +125,7 @@ class SimulationRenderer:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
 
         Bodies are where they were then, or where they were published since; there are shadows if there were some.
-        Returned is a picture as by ``render``, or None where this thread has drawn nothing yet.
+        The picture is one as ``render`` returns it, or None where this thread has drawn nothing yet.
         """
         if getattr(self._kept, "key", None) is None:
             return None
@@ -185,7 +177,7 @@ class SimulationRenderer:
 
     def camera_for_stills(self, aspect: float) -> Camera:
         """Return the file's camera, else a view of the whole scene that fits: width divided by height is ``aspect``."""
-        return self.file_camera() or fitting_view(*self.bounding_sphere(), aspect)
+        return self.file_camera() or three_quarter_view(*self.bounding_sphere(), aspect)
 
     def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
         """Return centre (3,) and radius [m] of a sphere around all that is drawn."""
@@ -199,11 +191,3 @@ def _averaged(picture: Frame, finer: int) -> Frame:
     height, width = picture.shape[0] // finer, picture.shape[1] // finer
     blocks = picture.reshape(height, finer, width, finer, 3)
     return np.rint(blocks.mean(axis=(1, 3), dtype=np.float32)).astype(np.uint8)
-
-
-def fitting_view(center: NDArray[np.float64], radius: float, aspect: float) -> Camera:
-    """Return a view from the front left and above in which a sphere fits; arguments as for ``three_quarter_view``.
-
-    ``aspect`` is the width of the picture divided by its height.
-    """
-    return three_quarter_view(center, radius / min(1.0, aspect))

@@ -82,14 +82,11 @@ def write_frames(
     copied when it arrives, so that one buffer may serve for all of them.
 
     Args:
-        path: The target; its suffix selects the format.
+        path: The target, which is returned as it was given; its suffix selects the format.
         frames: uint8 arrays (height, width, 3) of one size. Videos repeat the last row or column of an odd size.
         fps: Frames a second, from 0.01 to 1000; to 50 for GIF and to 90 for WebP, since browsers play shorter delays
             at 10 frames a second; to 30 for MPG.
         on_frame: Called in the caller's thread after each frame with the number of frames so far.
-
-    Returns:
-        The path, as it was given.
 
     Raises:
         ArgumentError: Unknown suffix, unusable fps, a frame of wrong type or size, or no frames at all.

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_numbers
-from ravemj.engine.grabbing import attached_bodies, grab_as_it_stands
+from ravemj.engine.grabbing import grab_as_it_stands
 from ravemj.engine.simulation import BodyState, both_locks
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.model.shape_bodies import empty_body
@@ -295,20 +295,20 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
 
     def GetAttached(self) -> "list[KinBody]":
         """Return this body, those that it holds, those that hold it, and so on."""
-        return [self._env.wrap(state) for state in attached_bodies(self._state)]
+        return [self._env.wrap(state) for state in self._simulation.attached(self._state)]
 
     def HasAttached(self) -> bool:
         """Return whether the body holds others or is held."""
-        return len(attached_bodies(self._state)) > 1
+        return len(self._simulation.attached(self._state)) > 1
 
     def GetAttachedEnvironmentBodyIndices(self) -> list[int]:
         """Return ``GetEnvironmentBodyIndex()`` of all bodies of ``GetAttached()``, in ascending order."""
-        return sorted(state.index for state in attached_bodies(self._state))
+        return sorted(state.index for state in self._simulation.attached(self._state))
 
     def IsAttached(self, body: "KinBody") -> bool:
         """Return whether a body is among ``GetAttached()``."""
         other = checked_kind(body, KinBody, "IsAttached: body").simulation_state
-        return other in attached_bodies(self._state)
+        return other in self._simulation.attached(self._state)
 
     def _link_index(self, link: Link | int | str) -> int:
         return link.GetIndex() if isinstance(link, Link) else link_index(self._state, link)

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
-from ravemj.graphics.rendering import Camera
+from ravemj.graphics.rendering import Camera, three_quarter_view
 from ravemj.graphics.rendering.checks import checked_colour
-from ravemj.graphics.simulation_renderer import Format, Frame, fitting_view
+from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.trajectories.motion import Motion
 
@@ -147,4 +147,4 @@ def camera_for_motion(env: "Environment", body: "KinBody", motion: Motion, aspec
     highest = np.max([center + radius for center, radius in spheres], axis=0)
     center = (lowest + highest) / 2
     reach = max(float(np.linalg.norm(part - center)) + radius for part, radius in spheres)
-    return fitting_view(center, reach, aspect)
+    return three_quarter_view(center, reach, aspect)

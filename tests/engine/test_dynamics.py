@@ -1,13 +1,11 @@
 """Velocities, derivatives and dynamics: against difference quotients, against MuJoCo, and by hand."""
 
-import warnings
-
 import mujoco
 import numpy as np
 import pytest
 from hypothesis import assume, given
-from strategies import Taste, choices, examples, number, scene_node, scenes, xml
-from test_properties import SMOOTH, Kinematics, draw_smooth, draw_values, is_determined, spin
+from strategies import Taste, choices, examples, number, scenes
+from test_properties import SMOOTH, Kinematics, draw_smooth, draw_values, is_determined, load, spin
 
 import ravemj
 from ravemj.engine import batch
@@ -17,26 +15,7 @@ Nothing = ravemj.CheckLimitsAction.Nothing
 STEP = 1e-6
 
 
-@pytest.fixture
-def write(tmp_path):
-    def write(content: str) -> str:
-        (tmp_path / "model.xml").write_text(content, encoding="utf-8")
-        return str(tmp_path / "model.xml")
-
-    return write
-
-
-@pytest.fixture
-def load(write):
-    def load(scene) -> list[ravemj.KinBody]:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ravemj.RavemjWarning)
-            return ravemj.load(write(xml(scene_node(scene)))).GetBodies()
-
-    return load
-
-
-def smooth_body(load, scene, choices):
+def smooth_body(scene, choices):
     """Load a body, put it into a configuration where everything moves smoothly, and return both with velocities."""
     (body,), (model,) = load(scene), scene.bodies
     values = draw_smooth(body, Kinematics(model), choices)
@@ -75,8 +54,8 @@ def close(actual, expected, tolerance=1e-7):
 class TestHessians:
     @examples(60)
     @given(scenes(SMOOTH), choices())
-    def test_they_are_the_derivatives_of_the_jacobians(self, load, scene, choices):
-        body, values, _ = smooth_body(load, scene, choices)
+    def test_they_are_the_derivatives_of_the_jacobians(self, scene, choices):
+        body, values, _ = smooth_body(scene, choices)
         local = np.array([0.3, -0.2, 0.1, 1.0])
         for link, found in enumerate(body.GetLinks()):
 
@@ -129,8 +108,8 @@ class TestJacobians:
 
     @examples(40)
     @given(scenes(SMOOTH), choices())
-    def test_centre_of_mass(self, load, scene, choices):
-        body, values, _ = smooth_body(load, scene, choices)
+    def test_centre_of_mass(self, scene, choices):
+        body, values, _ = smooth_body(scene, choices)
         masses = [link.GetMass() for link in body.GetLinks()]
         assume(sum(masses) > 1e-3 and min(masses) >= 0)
         close(body.com_jacobian(), quotient(body, values, body.GetCenterOfMass).T)
@@ -139,8 +118,8 @@ class TestJacobians:
 class TestVelocities:
     @examples(60)
     @given(scenes(SMOOTH), choices())
-    def test_links_move_as_their_velocities_say(self, load, scene, choices):
-        body, values, rates = smooth_body(load, scene, choices)
+    def test_links_move_as_their_velocities_say(self, scene, choices):
+        body, values, rates = smooth_body(scene, choices)
         body.SetDOFVelocities(rates, 0)
         np.testing.assert_allclose(body.GetDOFVelocities(), rates, rtol=0, atol=1e-9)
         velocities = body.GetLinkVelocities()
@@ -259,8 +238,8 @@ def test_active_jacobians(robot, rotation):
 class TestAccelerations:
     @examples(60)
     @given(scenes(SMOOTH), choices())
-    def test_they_are_the_derivatives_of_the_velocities(self, load, scene, choices):
-        body, values, rates = smooth_body(load, scene, choices)
+    def test_they_are_the_derivatives_of_the_velocities(self, scene, choices):
+        body, values, rates = smooth_body(scene, choices)
         growths = np.array([number(choices, -1, 1) for _ in values])
 
         def velocities(time):
@@ -282,8 +261,8 @@ class TestAccelerations:
 
     @examples(40)
     @given(scenes(SMOOTH), choices())
-    def test_hessians_are_their_velocity_part(self, load, scene, choices):
-        body, _, rates = smooth_body(load, scene, choices)
+    def test_hessians_are_their_velocity_part(self, scene, choices):
+        body, _, rates = smooth_body(scene, choices)
         body.SetDOFVelocities(rates, [0, 0, 0], [0, 0, 0], Nothing)
         accelerations = body.GetLinkAccelerations(None)
         for link, transform in enumerate(body.link_transforms()):
@@ -300,8 +279,8 @@ PLAIN = Taste(bodies=1, trees=True, mimics=False, kinds=("hinge", "slider", "hin
 class TestInverseDynamics:
     @examples(60)
     @given(scenes(PLAIN), choices())
-    def test_mujoco_says_the_same(self, load, scene, choices):
-        body, values, rates = smooth_body(load, scene, choices)
+    def test_mujoco_says_the_same(self, scene, choices):
+        body, values, rates = smooth_body(scene, choices)
         assume(is_determined(body))
         growths = np.array([number(choices, -1, 1) for _ in values])
         body.SetDOFVelocities(rates, 0)
@@ -317,8 +296,8 @@ class TestInverseDynamics:
 
     @examples(60)
     @given(scenes(SMOOTH), choices())
-    def test_power_becomes_energy(self, load, scene, choices):
-        body, values, rates = smooth_body(load, scene, choices)
+    def test_power_becomes_energy(self, scene, choices):
+        body, values, rates = smooth_body(scene, choices)
         assume(is_determined(body))
         growths = np.array([number(choices, -1, 1) for _ in values])
         gravity = body.GetEnv().GetPhysicsEngine().GetGravity()
@@ -343,8 +322,8 @@ class TestInverseDynamics:
 
     @examples(60)
     @given(scenes(SMOOTH), choices())
-    def test_components_and_pushes(self, load, scene, choices):
-        body, _, rates = smooth_body(load, scene, choices)
+    def test_components_and_pushes(self, scene, choices):
+        body, _, rates = smooth_body(scene, choices)
         assume(is_determined(body))
         growths = np.array([number(choices, -1, 1) for _ in rates])
         base = [number(choices, -1, 1) for _ in range(6)]
@@ -379,7 +358,7 @@ class TestInverseDynamics:
 class TestBatch:
     @examples(80)
     @given(scenes(Taste(bodies=2)), choices())
-    def test_many_are_one_after_the_other(self, load, scene, choices):
+    def test_many_are_one_after_the_other(self, scene, choices):
         bodies = load(scene)
         body, kinematics = bodies[-1], Kinematics(scene.bodies[-1])
         body.SetTransform(ravemj.matrixFromPose([0.5, 0.5, -0.5, 0.5, 1, -2, 3]))

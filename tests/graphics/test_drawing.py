@@ -95,7 +95,7 @@ def test_lines_keep_their_width_far_away_and_are_cut_off_behind_the_eye(how):
 def test_spheres_have_a_radius_in_metres(how, center):
     radius = 0.25
     shown = mask_of(picture_of(how, drawing.spheres(np.array([center]), radius, many(RED, 1))))
-    rays = AHEAD.rays(WIDTH, HEIGHT)
+    rays = sum(AHEAD.ray_parts(WIDTH, HEIGHT))
     rays /= np.linalg.norm(rays, axis=2, keepdims=True)
     distance = np.linalg.norm(np.cross(rays, center), axis=2)
     assert shown[distance < 0.97 * radius].all()

@@ -110,7 +110,7 @@ def test_tutorial_camera_looks_back_at_the_origin_with_y_right_and_z_up():
 def test_rays_project_to_the_centres_of_their_pixels(size):
     width, height = size
     camera = Camera.from_matrix(SAVED, math.radians(60))
-    rays = camera.rays(width, height)
+    rays = sum(camera.ray_parts(width, height))
     assert rays.shape == (height, width, 3)
     pixels, depth = camera.project(camera.position + 2.5 * rays.reshape(-1, 3), width, height)
     rows, columns = np.mgrid[:height, :width] + 0.5

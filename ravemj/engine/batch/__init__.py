@@ -44,12 +44,7 @@ class Batch:
             yield slice(part * count // parts, (part + 1) * count // parts)
 
     def link_transforms(self, values: Floats, out: Floats) -> None:
-        """Write the poses of the links.
-
-        Args:
-            values: Joint values [rad or m], shape (N, dof).
-            out: Takes ``T_world_link``, shape (N, links, 4, 4).
-        """
+        """Write the poses ``T_world_link`` for joint values [rad or m], (N, dof), into an array (N, links, 4, 4)."""
         for part in self._chunks(len(values)):
             poses = out[part]
             for step, frame in self._chain.frames(np.ascontiguousarray(values[part].T)):
@@ -58,13 +53,8 @@ class Batch:
                     np.matmul(axes_last, self._chain.T_step_links[link], out=poses[:, link, :3].transpose(1, 0, 2))
                     poses[:, link, 3] = (0.0, 0.0, 0.0, 1.0)
 
-    def _state(self, values: Floats, *, second: bool = False) -> KinematicState:
-        """Return where links and axes are.
-
-        Args:
-            values: Joint values [rad or m], shape (dof, N).
-            second: Whether second derivatives of mimic and spherical joints are wanted.
-        """
+    def _state(self, values: Floats) -> KinematicState:
+        """Return where links and axes are for joint values [rad or m], shape (dof, N)."""
         tree, count = self._dynamics.tree, values.shape[1]
         axes, anchors = np.zeros((tree.count, 3, count)), np.zeros((tree.count, 3, count))
         links = np.zeros((len(self._kinematics.body_ids), 4, 3, count))
@@ -78,7 +68,7 @@ class Batch:
             elif step.kind != "root":
                 axes[first], anchors[first] = frame[2], frame[3]
         reference = self._kinematics.link_transform(0)[:3, 3:]  # near the body, so that no digits are lost far away
-        coupling = self._dynamics.couplings.at(values, second=second)
+        coupling = self._dynamics.couplings.at(values)
         return KinematicState(tree, coupling, axes, anchors - reference, links[:, 3] - reference, links[:, :3])
 
     def jacobians(self, values: Floats, link: int, point: Floats, out: Floats) -> None:
@@ -132,7 +122,7 @@ class Batch:
             return
         for part in self._chunks(len(values), MOTIONS):
             now, speed, change = (np.ascontiguousarray(one[part].T) for one in (values, rates, accelerations))
-            state = self._state(now, second=True)
+            state = self._state(now)
             coupling = state.coupling
             velocities = coupling.forward(speed)
             speeding = coupling.forward(change) + coupling.bias(speed)

@@ -20,29 +20,17 @@ ROOT = -1
 
 @dataclass(slots=True)
 class Step:
-    """A root link, a moving axis, with a frame whose z it is, or a spherical joint, with a frame in its parent's axes.
+    """A root link, an axis, with a frame whose z it is, or a spherical joint, with a frame in its parent's axes."""
 
-    Attributes:
-        kind: ``root``, ``hinge``, ``slider`` or ``spherical``.
-        parent: The step that it hangs on.
-        T_parent_frame: Its frame in the parent's at the value ``reference``, shape (4, 4).
-        source: Where its value comes from: a DOF, a mimic joint, or what ``qpos`` has now.
-        reference: What is subtracted from the value.
-        coordinate: Its first velocity coordinate.
-        child: The link that it moves.
-        links: The links that are fixed to its frame, in which they are at ``Chain.T_step_links``.
-        last: The last step that hangs on it.
-    """
-
-    kind: str
-    parent: int
-    T_parent_frame: Floats
-    source: tuple[Literal["dof", "mimic", "qpos"], int]
-    reference: float
-    coordinate: int
-    child: int
-    links: list[int] = field(default_factory=list[int])
-    last: int = ROOT
+    kind: str  # ``root``, ``hinge``, ``slider`` or ``spherical``
+    parent: int  # the step that it hangs on
+    T_parent_frame: Floats  # its frame in the parent's at the value ``reference``, shape (4, 4)
+    source: tuple[Literal["dof", "mimic", "qpos"], int]  # of its value: a DOF, a mimic joint, or what ``qpos`` has now
+    reference: float  # what is subtracted from the value
+    coordinate: int  # its first velocity coordinate
+    child: int  # the link that it moves
+    links: list[int] = field(default_factory=list[int])  # fixed to its frame, in which they are at ``T_step_links``
+    last: int = ROOT  # the last step that hangs on it
 
 
 class Chain:

@@ -39,15 +39,10 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
 
 
 def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDArray[np.bool_]:
-    """Return for each configuration whether the body collides. The caller holds the lock.
+    """Return for each configuration [rad or m], shape (n, dof), whether the body collides; shape (n,).
 
-    Args:
-        body: The body; it is back in its configuration afterwards, and so is what it holds.
-        values: Joint values [rad or m], shape (n, dof).
-        itself_too: Whether collisions of the body with itself count.
-
-    Returns:
-        Shape (n,).
+    With ``itself_too``, collisions with itself count. The caller holds the lock. The body is back in its configuration
+    afterwards, and so is what it holds.
     """
     before, stamp = body.configuration(), body.stamp
     held = [(grab.body, grab.body.configuration()) for grab in body.grabs]

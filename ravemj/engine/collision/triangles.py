@@ -101,9 +101,9 @@ class TriangleTests:
         return self._least(mesh, _OTHER_TRIANGLE, candidates, limit, segment)
 
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
-        """Put a shape that is no mesh into the scratch model.
+        """Put a shape that is no mesh into the scratch model, and return a box around it, along the axes of the mesh.
 
-        Returned are centre and half the edges of a box around it along the axes of the mesh, in the mesh's frame.
+        The box is its centre and half its edges, in the mesh's frame.
         """
         rotation, position = self._pose_in(mesh, solid)
         self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]

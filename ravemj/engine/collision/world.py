@@ -48,7 +48,6 @@ class CollisionWorld:
         self._kept: dict[Hashable, Any] = {}
         self._pair_count = 0
         self._find_owners(model.model)
-        self._groups = _groups(self.bodies)
 
     def _find_owners(self, model: mujoco.MjModel) -> None:
         """Find body and link of each geom; the arrays have a place for each MuJoCo body first."""
@@ -64,8 +63,7 @@ class CollisionWorld:
 
     def group(self, body: BodyState) -> list[BodyState]:
         """Return a body and all that are connected to it by grabbing; it comes first."""
-        group = self._groups.get(body, [body])
-        return [body, *(one for one in group if one is not body)]
+        return self.kept(("group", body), lambda: body.simulation.attached(body))
 
     def geoms_of_body(self, body: BodyState, *, enabled_only: bool = True) -> Ints:
         """Return the geoms of a body that collide, or would if all its links were enabled."""
@@ -240,20 +238,5 @@ def cross(first: Ints, second: Ints) -> tuple[Ints, Ints]:
 
 def joined(pairs: Iterable[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
     """Return the pairs of several sets of pairs, one after the other."""
-    sets = list(pairs)
-    empty = np.zeros(0, dtype=int)
-    return np.concatenate([empty, *(first for first, _ in sets)]), np.concatenate(
-        [empty, *(other for _, other in sets)]
-    )
-
-
-def _groups(bodies: Iterable[BodyState]) -> dict[BodyState, list[BodyState]]:
-    """Return for each body that holds others or is held the bodies that are connected to it by grabbing."""
-    groups: dict[BodyState, list[BodyState]] = {}
-    for holder in bodies:
-        for grab in holder.grabs:
-            ours, theirs = groups.setdefault(holder, [holder]), groups.setdefault(grab.body, [grab.body])
-            if ours is not theirs:
-                ours += theirs
-                groups.update((one, ours) for one in theirs)
-    return groups
+    first, second = np.concatenate([np.zeros((2, 0), dtype=int), *map(np.array, pairs)], axis=1)
+    return first, second

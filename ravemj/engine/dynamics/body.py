@@ -24,11 +24,6 @@ class BodyDynamics:
     """Derivatives of one body's motion.
 
     Velocities of links are six numbers in world axes: that of the link's origin [m/s] and the angular one [rad/s].
-
-    Attributes:
-        tree: Which joint carries which.
-        couplings: How the velocity coordinates follow the DOFs.
-        motors: What motors need for themselves; None where no joint has one.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:
@@ -85,15 +80,7 @@ class BodyDynamics:
         return rows.of_dofs(self._matrix(self._coupling()) if matrix is None else matrix)
 
     def translation_jacobian(self, link: int, point: Floats) -> Floats:
-        """Return the derivative of the position of a link's point by the DOF values.
-
-        Args:
-            link: Index of the link.
-            point: The point, in world coordinates [m], shape (3,).
-
-        Returns:
-            Shape (3, dof).
-        """
+        """Return the derivative of the position of a link's point, in the world, by the DOF values, shape (3, dof)."""
         self._kinematics.place_coms()
         mujoco.mj_jac(self._model, self._data, self._moving.matrix, None, point, self._body_ids[link])
         return self._of_dofs(self._moving)
@@ -143,11 +130,9 @@ class BodyDynamics:
         return self._of_dofs(self._moving)
 
     def qvel(self, velocities: Floats, rates: Floats) -> Floats:
-        """Return MuJoCo's velocities in the body's own model, shape (nv,).
+        """Return MuJoCo's velocities in the body's own model, shape (nv,), from those of the roots among the links.
 
-        Args:
-            velocities: Those of the links, of which those of the roots count, shape (links, 6).
-            rates: Those of the DOFs [rad/s or m/s], shape (dof,).
+        ``rates`` are those of the DOFs [rad/s or m/s], shape (dof,).
         """
         qvel = np.zeros(self._model.nv)
         if rates.any():
@@ -175,14 +160,9 @@ class BodyDynamics:
         return np.concatenate((motions[:, 3:] + cross_rows(spins, arms), spins), axis=1)
 
     def link_velocities(self, rates: Floats, base: Floats) -> Floats:
-        """Return the velocities of the links.
+        """Return the velocities of the links, shape (links, 6), for those of the DOFs and of the first link, (6,).
 
-        Args:
-            rates: Those of the DOFs [rad/s or m/s], shape (dof,).
-            base: That of the first link, shape (6,); other links that no joint places are at rest.
-
-        Returns:
-            Shape (links, 6).
+        Other links that no joint places are at rest.
         """
         velocities = np.zeros((len(self._body_ids), 6))
         velocities[0] = base
@@ -205,12 +185,8 @@ class BodyDynamics:
     ) -> Floats:
         """Return the accelerations of the links, of their origins and angular, shape (links, 6).
 
-        Links that no joint places go on turning as they do, so that their origins accelerate by ``w x v``.
-
-        Args:
-            velocities: Those of the links, shape (links, 6).
-            accelerations: Those of the DOFs [rad/s^2 or m/s^2], shape (dof,).
-            external: Further accelerations of links that no joint places, shape (6,), linear first.
+        Links that no joint places go on turning as they do, so that their origins accelerate by ``w x v``; ``external``
+        are further accelerations of these, shape (6,), linear first.
         """
         data = self._data
         self._set_velocities(velocities)
@@ -265,12 +241,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write accelerations into MuJoCo's data, on top of those that velocities make.
-
-        Args:
-            accelerations: Those of the DOFs, shape (dof,); None: none.
-            external: Further accelerations of roots, by link, shape (6,).
-        """
+        """Write accelerations of the DOFs, and further ones of roots, (6,), on top of those that velocities make."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0
@@ -294,16 +265,9 @@ class BodyDynamics:
         gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> Floats:
-        """Return the generalised forces for given accelerations.
+        """Return the generalised forces [N m or N], shape (dof,), for velocities of links and accelerations of DOFs.
 
-        Args:
-            velocities: Those of the links, shape (links, 6).
-            accelerations: Those of the DOFs [rad/s^2 or m/s^2], shape (dof,).
-            gravity: Acceleration of free fall [m/s^2], shape (3,).
-            external: Forces and moments on links at their centres of mass, in world axes, shape (6,), that are added.
-
-        Returns:
-            Torques and forces [N m or N], shape (dof,).
+        ``external`` are forces and moments on links at their centres of mass, in world axes, (6,), that are added.
         """
         self._set_gravity(gravity)
         self._set_velocities(velocities)

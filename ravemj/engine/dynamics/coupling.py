@@ -61,12 +61,7 @@ class Coupling:
 
 
 class CouplingMap:
-    """The coupling matrix of a body at any joint values.
-
-    Attributes:
-        constant: The coupling, if it is the same at all joint values, else None.
-        is_one_to_one: Whether every velocity coordinate is that of one DOF.
-    """
+    """The coupling matrix of a body at any joint values."""
 
     def __init__(self, kinematics: BodyKinematics, tree: Tree) -> None:
         self._kinematics = kinematics
@@ -78,10 +73,10 @@ class CouplingMap:
             (one.joint, self._coordinate(tree, one.joint), _Partials(one.expression)) for one in kinematics.mimic.joints
         ]
         is_affine = all(one.expression.affine is not None for one in kinematics.mimic.joints)
-        self.constant: Coupling | None = None
+        self.constant: Coupling | None = None  # the coupling, if it is the same at all joint values
         if is_affine and not self._spherical:
             self.constant = self._at(np.zeros(kinematics.dof), second=False)
-        self.is_one_to_one = not (self._spherical or self._mimic)
+        self.is_one_to_one = not (self._spherical or self._mimic)  # every velocity coordinate is that of one DOF
 
     def _coordinate(self, tree: Tree, joint: int) -> int:
         places = self._kinematics.joint_qpos[joint]

@@ -15,16 +15,6 @@ class Tree:
     A coordinate is one velocity of MuJoCo's: that of a hinge, a slider, an axis of a ``hinge2``, or one of the three of
     a spherical joint; mimic joints have some, too. Coordinates are counted in the order of ``qvel`` without the free
     joints of the roots. One comes after those that carry it.
-
-    Attributes:
-        count: How many coordinates there are.
-        slides: For each one, whether it is a slider's, shape (count,).
-        parents: For each one the one that carries it, or -1.
-        carriers: For each one the last one that moves its axis: itself, and for the axes of a spherical joint, which
-            turn with it, the joint's third.
-        last: For each link the last coordinate that moves it, or -1.
-        moves: 1 where a coordinate moves a link, else 0; shape (links, count).
-        of_qpos: The first coordinate of each joint, by the joint's place in ``qpos``.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:
@@ -35,14 +25,17 @@ class Tree:
         joints = model.dof_jntid[dofs]
         kinds = model.jnt_type[joints]
         self.slides = kinds == mujoco.mjtJoint.mjJNT_SLIDE
+        # For each coordinate the one that carries it, or NONE.
         self.parents = [index_of.get(int(model.dof_parentid[dof]), NONE) for dof in dofs]
+        # For each one the last one that moves its axis: itself, and for the axes of a spherical joint, which turn with
+        # it, the joint's third.
         thirds = model.jnt_dofadr[joints] + 2 - dofs
         self.carriers = np.arange(self.count) + np.where(kinds == mujoco.mjtJoint.mjJNT_BALL, thirds, 0)
-        self.of_qpos: dict[int, int] = {}
+        self.of_qpos: dict[int, int] = {}  # the first coordinate of each joint, by the joint's place in ``qpos``
         for index, joint in enumerate(joints):
             self.of_qpos.setdefault(int(model.jnt_qposadr[joint]), index)
         link_of = {body_id: link for link, body_id in enumerate(kinematics.body_ids.tolist())}
-        self.last = [NONE] * len(link_of)
+        self.last = [NONE] * len(link_of)  # for each link the last coordinate that moves it
         for body_id in sorted(link_of):  # MuJoCo's parents come before their children
             link, parent = link_of[body_id], link_of.get(int(model.body_parentid[body_id]))
             if parent is not None:
@@ -53,6 +46,7 @@ class Tree:
         self.moves = self._moves()
 
     def _moves(self) -> Floats:
+        """Return 1 where a coordinate moves a link, else 0; shape (links, count)."""
         moves = np.zeros((len(self.last), self.count))
         for link, last in enumerate(self.last):
             index = last

@@ -26,21 +26,13 @@ _BODY, _JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 
 
 class Configuration(NamedTuple):
-    """Where the links of a body are, and why: what ``BodyKinematics.restore`` needs.
+    """Where the links of a body are, and why: what ``BodyKinematics.restore`` needs."""
 
-    Attributes:
-        qpos: MuJoCo's, of the body's own model.
-        positions: Positions of the links in their parents at rest, in MuJoCo's order.
-        quaternions: Their orientations, wxyz.
-        passive: The values of the passive joints; those of mimic joints that move a link are in ``qpos``.
-        displaced: Whether links are where their joints do not place them.
-    """
-
-    qpos: Floats
-    positions: Floats
-    quaternions: Floats
-    passive: list[list[float]]
-    displaced: bool
+    qpos: Floats  # of the body's own model
+    positions: Floats  # of the links in their parents at rest, in MuJoCo's order
+    quaternions: Floats  # their orientations there, wxyz
+    passive: list[list[float]]  # values of the passive joints; those of mimic joints that move a link are in ``qpos``
+    displaced: bool  # whether links are where their joints do not place them
 
 
 class BodyKinematics:
@@ -48,31 +40,7 @@ class BodyKinematics:
 
     Each root hangs on a free joint, so that ``qpos`` has its pose and ``qvel`` its velocity. Writing marks the links as
     out of place; whoever reads them calls ``place`` first, which runs ``mj_kinematics`` if need be. The model is
-    compiled once.
-
-    Attributes:
-        body: The description of the body.
-        model: The model.
-        data: Its state.
-        qpos: The joint positions in it.
-        stamp: Grows with every write.
-        pose_stamp: ``stamp`` of the last write of more than joint values.
-        dof: Number of degrees of freedom.
-        limits: Limits of the joint values.
-        displaced: Whether links are where their joints do not place them; ``set_values`` ends that.
-        body_ids: MuJoCo's index of each link, shape (links,).
-        roots: Indices of the links that no joint places; the first link is one.
-        root_qpos: For each root where its free joint is in ``qpos``.
-        root_qvel: For each root where its free joint is in ``qvel``.
-        inner_qpos: Where the joints between links are in ``qpos``.
-        inner_qvel: Where they are in ``qvel``.
-        qpos_indices: Where each DOF is in ``qpos``, shape (dof,); ``NO_QPOS`` for that of a joint that moves no link,
-            and for those of a spherical joint.
-        joint_qpos: For each joint, active ones and then passive ones, the places of its axes in ``qpos``; none for a
-            joint that moves no link.
-        first_dofs: First DOF of each active joint.
-        mimic: The mimic joints; none in a body without DOFs, where OpenRAVE never sets a value.
-        spherical: The spherical joints.
+    compiled once. ``stamp`` grows with every write; ``pose_stamp`` is that of the last write of more than joint values.
     """
 
     def __init__(self, body: KinBody) -> None:
@@ -90,14 +58,16 @@ class BodyKinematics:
         (names,) = compiled.mjcf.names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
         self._body_ids: list[int] = self.body_ids.tolist()
+        # The links that no joint places; the first link is one. Each has a free joint in ``qpos`` and in ``qvel``.
         self.roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         free = model.body_jntadr[self.body_ids[self.roots]]
         self.root_qpos: list[int] = model.jnt_qposadr[free].tolist()
         self.root_qvel: list[int] = model.jnt_dofadr[free].tolist()
+        # The joints between links.
         self.inner_qpos = _others(model.nq, self.root_qpos, 7)
         self.inner_qvel = _others(model.nv, self.root_qvel, 6)
         self._rest = (model.body_pos.copy(), model.body_quat.copy())
-        self.displaced = False
+        self.displaced = False  # whether links are where their joints do not place them; ``set_values`` ends that
         self._find_joints(names.joints)
         # Views are made once, since making one takes as long as writing a pose.
         self._one = np.eye(4)
@@ -110,6 +80,8 @@ class BodyKinematics:
     def _find_joints(self, names: tuple[tuple[str, ...], ...]) -> None:
         """Find the joints, which have these names in the model."""
         body = self.body
+        # For each joint, active ones and then passive ones, the places of its axes in ``qpos``; none for a joint that
+        # moves no link.
         self.joint_qpos = [
             [int(self.model.jnt_qposadr[mujoco.mj_name2id(self.model, _JOINT, name)]) for name in joint_names]
             for joint_names in names
@@ -123,7 +95,7 @@ class BodyKinematics:
                 joint_slice = slice(places[0], places[0] + 4)
                 self.spherical.append(SphericalJoint(joint, slice(first, first + 3), joint_slice))
             indices += places if places and joint.kind != "spherical" else [NO_QPOS] * len(joint.axes)
-        self.qpos_indices = np.array(indices, dtype=int)
+        self.qpos_indices = np.array(indices, dtype=int)  # of each DOF; NO_QPOS, too, for those of a spherical joint
         self._moving = np.flatnonzero(self.qpos_indices != NO_QPOS)
         self._all_move = len(self._moving) == len(indices)
         self._written, self._places = fixed_view(self.qpos, self.qpos_indices[self._moving])
@@ -154,6 +126,7 @@ class BodyKinematics:
 
     def _find_mimic_joints(self, body: KinBody) -> None:
         """Find the mimic joints, and those among them that are a multiple of a DOF."""
+        # A body without DOFs has no mimic joints: OpenRAVE never sets a value there.
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self._mimic_qpos = {one.joint: places[0] for one in self.mimic.joints if (places := self.joint_qpos[one.joint])}
         self._multiples = [
@@ -268,9 +241,7 @@ class BodyKinematics:
     def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
         """Take over MuJoCo's configuration from a model in which time moved the body.
 
-        Args:
-            qpos: Positions of all joints, the free joints of the roots included, or of those between links.
-            inner_only: Which of the two it is.
+        It has the positions of all joints, the free joints of the roots included, or only of those between links.
         """
         self.qpos[self.inner_qpos if inner_only else slice(None)] = qpos
         self._touch()
@@ -306,11 +277,7 @@ class BodyKinematics:
         self._touch()
 
     def set_transform(self, T_world_link0: Floats) -> None:
-        """Move the body rigidly: all links, with the joint values as they are.
-
-        Args:
-            T_world_link0: Pose of the first link, shape (4, 4).
-        """
+        """Move the body rigidly, with the joint values as they are, by the pose of its first link, shape (4, 4)."""
         if self.roots == [0]:
             self.set_root_transform(0, T_world_link0)
         elif self.roots:  # the first link may hang on another one, where no joint has a DOF

@@ -27,55 +27,37 @@ _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
 
 class GrabbedBody(NamedTuple):
-    """One body held by a link of another.
+    """One body held by a link of another."""
 
-    Attributes:
-        body: The held body.
-        link: Index of the link that holds it.
-        T_link_body: Its pose in the link.
-        ignored: Indices of the holder's links that it does not collide with.
-    """
-
-    body: "BodyState"
-    link: int
+    body: "BodyState"  # the held one
+    link: int  # index of the link that holds it
     T_link_body: Floats
-    ignored: frozenset[int] = frozenset()
+    ignored: frozenset[int] = frozenset()  # indices of the holder's links that it does not collide with
 
 
 class SavedConfiguration(NamedTuple):
-    """State of joints and links.
+    """State of joints and links."""
 
-    Attributes:
-        configuration: That of MuJoCo's model.
-        scene: The body that the model was made of, for one that has other joints by then.
-    """
-
-    configuration: Configuration
-    scene: KinBody
+    configuration: Configuration  # of MuJoCo's model
+    scene: KinBody  # what the model was made of, for a body that has other joints by then
 
 
 class BodyState:
     """A body and its state; what the API objects of one body share.
 
     Joint values and poses are those of a MuJoCo model of the body alone (``own_kinematics``), whether the body is in
-    the world or not. It is compiled when first asked for; until then the body is where its description has it.
-
-    Attributes:
-        scene: What it consists of; what files say, and what setters of the API changed since.
-        dof: Number of its degrees of freedom.
-        simulation: The world that it was made for.
-        index: Its index in the world, from 1; 0 while it is not in the world.
-        stamp: Grows with every change of pose.
-        rest_poses: The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the
-            body was added, or that of the body of which it is a copy.
+    the world or not. It is compiled when first asked for; until then the body is where its description has it. That is
+    ``scene``: what files say, and what setters of the API changed since.
     """
 
     def __init__(self, scene: KinBody, simulation: "Simulation") -> None:
-        self.simulation = simulation
-        self.index = 0
-        self.stamp = 0
+        self.simulation = simulation  # the world that it was made for
+        self.index = 0  # in the world, from 1; 0 while it is not in the world
+        self.stamp = 0  # grows with every change of pose
         self._grabs: tuple[GrabbedBody, ...] = ()
         self._link_enabled: tuple[bool, ...] = ()
+        # The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the body was
+        # added, or that of the body of which it is a copy.
         self.rest_poses: Floats | None = None
         self._made: dict[object, tuple[object, Any]] = {}
         self.rebuild(scene)
@@ -210,11 +192,7 @@ class BodyState:
             self.set_values(self._kinematics.limits.clamp(values))
 
     def set_transform(self, T_world_link0: Floats) -> None:
-        """Move the body rigidly, with the joint values as they are.
-
-        Args:
-            T_world_link0: Pose of the first link, shape (4, 4).
-        """
+        """Move the body rigidly, with the joint values as they are, by the pose of its first link, shape (4, 4)."""
         self.own_kinematics.set_transform(T_world_link0)
         self.moved()
 
@@ -248,12 +226,9 @@ class BodyState:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
     def link_velocities(self) -> Floats:
-        """Return the velocities of the links, in world axes: of the origin [m/s] and angular [rad/s]; a copy.
+        """Return the velocities of the links in world axes, (links, 6): of the origin [m/s], angular [rad/s]; a copy.
 
         Moving links does not change them, as in OpenRAVE.
-
-        Returns:
-            Shape (links, 6).
         """
         return self._velocities.copy()
 
@@ -276,12 +251,7 @@ class BodyState:
         grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
 
     def set_velocity(self, linear: Floats, angular: Floats) -> None:
-        """Let all links move as one.
-
-        Args:
-            linear: Velocity of the first link's origin [m/s], shape (3,).
-            angular: Angular velocity [rad/s], shape (3,).
-        """
+        """Let all links move as one, by the velocity of the first link's origin [m/s] and an angular one [rad/s]."""
         origins = self.link_transforms()[:, :3, 3]
         velocities = np.empty((len(origins), 6))
         velocities[:, :3] = linear + cross_rows(angular, origins - origins[:1])

@@ -27,33 +27,20 @@ class Simulation:
 
     Bodies know their joint values and poses by themselves; who asks for collisions, pictures or MJCF needs the model.
     Adding, removing and reshaping bodies puts it out of date. Moving and enabling them does not.
-
-    Attributes:
-        lock: Held by every reader and writer of the model's state; viewers draw in threads of their own.
-        view: Background and camera that the loaded files ask for.
-        diagnostics: What the last translation to MJCF found.
-        version: Grows by one with each compiled model.
-        gravity: Acceleration of free fall in the world [m/s^2].
-        changed: Bodies that moved or were described anew since the model was last brought up to date.
-        collision_stamp: Grows when what may collide with what changes: links are enabled, bodies are held.
-        drawings: What scripts draw beside the bodies; needs no lock.
-        clock: Simulation time; None where nobody lets it pass.
-        physics: What moves the bodies in that time; None where they stay where they are put.
-        published: What viewers show while the lock is held; needs none.
     """
 
     def __init__(self) -> None:
-        self.lock = RLock()
-        self.drawings = Drawings()
-        self.published = Published()
-        self.view = View()
-        self.diagnostics = Diagnostics()
-        self.version = 0
-        self.gravity = DEFAULT_GRAVITY
-        self.changed: set[BodyState] = set()
-        self.collision_stamp = 0
-        self.clock: Clock | None = None
-        self.physics: Physics | None = None
+        self.lock = RLock()  # held by every reader and writer of the model's state, such as the threads of viewers
+        self.drawings = Drawings()  # what scripts draw beside the bodies; needs no lock
+        self.published = Published()  # what viewers show while the lock is held; needs none
+        self.view = View()  # background and camera that the loaded files ask for
+        self.diagnostics = Diagnostics()  # what the last translation to MJCF found
+        self.version = 0  # grows by one with each compiled model
+        self.gravity = DEFAULT_GRAVITY  # acceleration of free fall in the world [m/s^2]
+        self.changed: set[BodyState] = set()  # moved or described anew since the model was last brought up to date
+        self.collision_stamp = 0  # grows when what may collide with what changes: links are enabled, bodies are held
+        self.clock: Clock | None = None  # simulation time; None where nobody lets it pass
+        self.physics: Physics | None = None  # moves the bodies in that time; None: they stay where they are put
         self._places: list[BodyState | None] = []
         self._by_name: dict[str, BodyState] = {}
         self._world: WorldModel | None = None
@@ -117,6 +104,15 @@ class Simulation:
     def holds(self, body: BodyState) -> bool:
         """Return whether a body is in the world."""
         return body.simulation is self and body.index > 0
+
+    def attached(self, body: BodyState) -> list[BodyState]:
+        """Return a body and all that are connected to it by grabbing, in whichever direction."""
+        found = [body]
+        for one in found:  # which grows meanwhile
+            near = [grab.body for grab in one.grabs]
+            near += [holder for holder in self.bodies if any(grab.body is one for grab in holder.grabs)]
+            found += [other for other in dict.fromkeys(near) if other not in found]
+        return found
 
     def rename(self, body: BodyState, name: str) -> None:
         """Give a body another name.

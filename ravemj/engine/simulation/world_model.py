@@ -18,10 +18,8 @@ class WorldModel(Compiled):
     """All bodies with their shapes in one model: for collisions, pictures and export.
 
     Each body is at home in its own model (``BodyState.own_kinematics``). Here is a copy; ``take`` brings it up to date.
-
-    Attributes:
-        stamp: Grows with every change that was taken over; 0 before the first ``take``, when links are nowhere yet.
-        pose_stamp: Grows where more than joint values changed.
+    ``stamp`` grows with every change that was taken over, and is 0 before the first ``take``, when links are nowhere
+    yet; ``pose_stamp`` grows where more than joint values changed.
     """
 
     def __init__(self, bodies: Iterable[BodyState], view: View, diagnostics: Diagnostics) -> None:

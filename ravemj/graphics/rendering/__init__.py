@@ -111,8 +111,11 @@ class Renderer(Protocol):
     def close(self) -> None:
         """Free what the renderer holds. Also done at the end of a ``with`` block."""
 
-    def __enter__(self) -> Self: ...
-    def __exit__(self, *_: object) -> None: ...
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
 
 def open_renderer(

@@ -131,17 +131,12 @@ class Camera:
         in_front = np.where(depth > 0, depth, np.nan)
         return camera_points[:, :2] * [fx, fy] / in_front[:, None] + [cx, cy], depth
 
-    def rays(self, width: int, height: int) -> Floats:
-        """Return the directions through the pixel centres, in world coordinates, (height, width, 3).
-
-        They are not unit vectors: each advances by 1 along the viewing direction, so that
-        ``position + depth * ray`` is the point at that depth.
-        """
-        columns, rows = self.ray_parts(width, height)
-        return columns + rows
-
     def ray_parts(self, width: int, height: int) -> tuple[Floats, Floats]:
-        """Return what :meth:`rays` is the sum of: a part by column (1, width, 3) and one by row (height, 1, 3)."""
+        """Return directions through pixel centres, in the world: a part by column, one by row, which are added up.
+
+        Their shapes are (1, width, 3) and (height, 1, 3). The sums are not unit vectors: each advances by 1 along the
+        viewing direction, so that ``position + depth * ray`` is the point at that depth.
+        """
         fx, fy, cx, cy = self.pinhole(width, height)
         right, down, forward = self.rotation.T
         columns = (np.arange(width) + 0.5 - cx) / fx
@@ -154,17 +149,18 @@ def view_from_above(center: ArrayLike, radius: float) -> Camera:
     return _looking_at(center, radius, forward=(0.0, 0.0, -1.0), up=(0.0, 1.0, 0.0))
 
 
-def three_quarter_view(center: ArrayLike, radius: float) -> Camera:
+def three_quarter_view(center: ArrayLike, radius: float, aspect: float = 1.0) -> Camera:
     """Return a pleasant view for stills: from the front left corner and above, world +z up.
 
     Args:
         center: Centre of the bounding sphere of what should be seen, world coordinates (3,) [m].
-        radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height.
+        radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height, or into its width.
+        aspect: Width of the picture divided by its height.
     """
     azimuth, elevation = math.radians(40), math.radians(25)
     level = -math.cos(elevation)
     forward = (level * math.cos(azimuth), level * math.sin(azimuth), -math.sin(elevation))
-    return _looking_at(center, radius, forward, up=(0.0, 0.0, 1.0))
+    return _looking_at(center, radius / min(1.0, aspect), forward, up=(0.0, 0.0, 1.0))
 
 
 def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:

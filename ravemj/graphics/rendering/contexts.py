@@ -48,7 +48,6 @@ class _GLContext(Protocol):
     """What mujoco.egl, mujoco.osmesa and mujoco.glfw have in common."""
 
     def __init__(self, max_width: int, max_height: int) -> None: ...
-    def make_current(self) -> None: ...
     def as_current(self) -> contextlib.AbstractContextManager[None]: ...
     def free(self) -> None: ...
 
@@ -69,7 +68,7 @@ class OffscreenContext:
             raise RenderingError(f"{backend} cannot draw in a process that {' and '.join(_used)} draws in already")
         if backend not in _used:
             _CHECKS[backend]()
-        with variable_restored("PYOPENGL_PLATFORM"):  # mujoco.egl sets it; children would inherit it and fail
+        with variable_restored("PYOPENGL_PLATFORM"):  # mujoco sets it; children would inherit it and fail
             context_class: type[_GLContext] = importlib.import_module(f"mujoco.{backend}").GLContext
             self._context = _make_glfw(context_class) if backend == "glfw" else context_class(64, 64)
         _used.add(backend)

@@ -1,12 +1,11 @@
 """Pictures by OpenGL, without a window."""
 
-from typing import Self
-
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ravemj.errors import RenderingError
+from ravemj.graphics.rendering import Renderer
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.contexts import OffscreenContext, close_at_exit
@@ -18,13 +17,10 @@ _DEPTH_ZERO_FAR = 1
 """MuJoCo's ``mjDEPTH_ZEROFAR``: depths are handed out as they are drawn, which loses no digits."""
 
 
-class GlRenderer:
+class GlRenderer(Renderer):
     """Draws one model with MuJoCo's classic OpenGL renderer.
 
     A picture may be drawn from any thread, one at a time: the context is current only while one is drawn.
-
-    Attributes:
-        backend: The platform of the context: ``egl``, ``osmesa`` or ``glfw``.
     """
 
     def __init__(self, model: mujoco.MjModel, quality: Quality, context: OffscreenContext) -> None:
@@ -35,7 +31,13 @@ class GlRenderer:
         self._viewport = mujoco.MjrRect(0, 0, quality.width, quality.height)
         self._context = context
         with context.current():
-            self._gl_scene = _offscreen_stage(model, quality)
+            stage = GlScene(model, quality)
+            offscreen = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
+            mujoco.mjr_setBuffer(offscreen, stage.context)
+            if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, and there is none
+                stage.close()
+                raise RenderingError("the OpenGL driver has no offscreen framebuffers")
+            self._gl_scene = stage
         close_at_exit(self)
 
     def render(
@@ -98,12 +100,6 @@ class GlRenderer:
                 _never_freed.append(stage)  # freeing it here would free what the window in this thread holds
             self._context.close()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
     def __del__(self) -> None:
         self.close()
 
@@ -126,16 +122,6 @@ class GlRenderer:
         stage.context.readDepthMap = _DEPTH_ZERO_FAR
         mujoco.mjr_readPixels(pixels, depth, self._viewport, stage.context)
         return pixels[::-1].copy()
-
-
-def _offscreen_stage(model: mujoco.MjModel, quality: Quality) -> GlScene:
-    stage = GlScene(model, quality)
-    offscreen = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
-    mujoco.mjr_setBuffer(offscreen, stage.context)
-    if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, and there is none
-        stage.close()
-        raise RenderingError("the OpenGL driver has no offscreen framebuffers")
-    return stage
 
 
 _never_freed: list[GlScene] = []

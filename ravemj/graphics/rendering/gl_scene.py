@@ -63,12 +63,7 @@ class Quality:
 
 
 class GlScene:
-    """Draws one model with OpenGL.
-
-    Attributes:
-        scene: MuJoCo's list of what is drawn; filled by :meth:`fill`.
-        context: MuJoCo's resources on the graphics card.
-    """
+    """Draws one model with OpenGL: ``fill`` fills MuJoCo's ``scene``, the list of what is drawn."""
 
     def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
         self._model = model

@@ -8,7 +8,6 @@ import contextlib
 import copy
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
-from typing import Self
 
 import mujoco
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import RenderingError
+from ravemj.graphics.rendering import Renderer
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.fragments import Fragments, Raster
@@ -48,12 +48,8 @@ _TWO_WALLS = (
 """Convex shapes: a ray that enters one leaves it once, and one that hits it from behind started inside."""
 
 
-class RayRenderer:
-    """Draws one model by casting a ray through every pixel.
-
-    Attributes:
-        backend: Always ``ray``.
-    """
+class RayRenderer(Renderer):
+    """Draws one model by casting a ray through every pixel."""
 
     backend = "ray"
 
@@ -112,12 +108,6 @@ class RayRenderer:
     def close(self) -> None:
         """Refuse further pictures; there is nothing to free."""
         self._closed = True
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _scene(self, data: mujoco.MjData, camera: Camera) -> "_RayScene":
         """Hide what is not drawn, in a copy of the model, which others may draw or change meanwhile."""
