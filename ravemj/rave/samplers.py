@@ -85,7 +85,7 @@ class SpaceSampler(Interface):
     def SampleSequence(
         self, type: SampleDataType, num: int, interval: int = Interval.Closed
     ) -> "Floats | NDArray[np.uint32]":
-        """Return the next points in one row, shape (num * dof,); ``type`` and ``interval`` as for the next method."""
+        """Return the next points in one row, shape (num * dof,); ``type``, ``interval``: see ``SampleSequence2D``."""
         return self.SampleSequence2D(type, num, interval).ravel()
 
     def SampleSequence2D(

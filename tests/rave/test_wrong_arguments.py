@@ -70,8 +70,8 @@ MISTAKES = {
         "RaveCreateController: name: is of type int, and should be a text",
     ),
     "constructor": (
-        lambda env, robot: ravemj.IkReturn([]),
-        "IkReturn: action: is of type list, and should be a IkReturnAction or a whole number",
+        lambda env, robot: ravemj.IkParameterization(np.eye(4), "pose"),
+        "IkParameterization: type: is of type str, and should be a IkParameterizationType or a whole number",
     ),
     "half a dimension": (
         lambda env, robot: ravemj.RaveCreateSpaceSampler(env, "MT19937").SetSpaceDOF(1.5),
