@@ -1,9 +1,9 @@
 """The base class of API objects: how they appear in an interactive prompt, and how they speak of wrong arguments."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from inspect import CO_VARARGS, CO_VARKEYWORDS
 from types import FunctionType
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from ravemj.core.argument_errors import explained
 
@@ -26,6 +26,10 @@ _HOT = frozenset(
 """Methods that loops call all the time. They check their arguments themselves; a wrapper would cost 0.1 µs a call."""
 
 
+_OFTEN_MADE = frozenset({"AABB", "ArmPart", "CollisionPairInfo", "Geometry", "Member", "Ray"})
+"""Classes whose objects are made all the time, mostly by ravemj itself; their constructors are as ``_HOT`` methods."""
+
+
 class _ApiType(type):
     """Gives classes the same ``dir`` as their objects: IPython completes an object by the union of both."""
 
@@ -45,16 +49,15 @@ class ApiObject(metaclass=_ApiType):
     _names_wrong_arguments: ClassVar[bool] = True
 
     def __init_subclass__(cls, **kwargs: object) -> None:
-        """Let the public methods that take arguments name one of a wrong type; see ``argument_errors``."""
+        """Let public methods and the constructor name an argument of a wrong type; see ``argument_errors``."""
         super().__init_subclass__(**kwargs)
         if not cls._names_wrong_arguments:
             return
         skipped = {*cls._internal, *_HOT}
-        public: dict[FunctionType, Callable[..., Any]] = {}  # a method with two names stays one
         for name, method in tuple(vars(cls).items()):
-            if isinstance(method, FunctionType) and name[0] != "_" and name not in skipped and _takes(method):
-                public[method] = public.get(method) or explained(method)
-                setattr(cls, name, public[method])
+            is_public = name[0] != "_" or (name == "__init__" and cls.__name__ not in _OFTEN_MADE)
+            if isinstance(method, FunctionType) and is_public and name not in skipped and _takes(method):
+                setattr(cls, name, explained(method))
 
     def __dir__(self) -> list[str]:
         return _listed(type(self), super().__dir__())

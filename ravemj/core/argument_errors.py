@@ -1,14 +1,15 @@
 """Errors that name the argument of a wrong type.
 
-A wrong argument often fails deep inside of a method, with an error of Python's that speaks of something else. The
-public methods of API objects then compare their arguments with the annotations. Calls that succeed skip this.
+A wrong argument often fails deep inside of a call, with an error of Python's that speaks of something else. The
+methods, constructors and functions of the API then compare their arguments with the annotations. Calls that succeed
+skip this.
 """
 
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
-from functools import wraps
+from functools import cache, wraps
 from inspect import Parameter, formatannotation, signature
 from types import EllipsisType, FunctionType, MappingProxyType, NoneType
 from typing import Any, cast
@@ -60,18 +61,19 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
 """What errors call a type, and what is taken for it, by the name of the type in annotations."""
 
 
-def explained(method: FunctionType) -> Callable[..., Any]:
-    """Make a method raise a ``TypeError`` that names the argument of a wrong type which led to an error of Python's.
+@cache  # so that a function with two names stays one
+def explained(function: FunctionType) -> Callable[..., Any]:
+    """Make a function raise a ``TypeError`` that names the argument of a wrong type which led to an error of Python's.
 
     OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31).
     """
 
-    @wraps(method)
-    def call(*args: Any, **kwargs: Any) -> Any:  # noqa: ANN401 - those of the method
+    @wraps(function)
+    def call(*args: Any, **kwargs: Any) -> Any:  # noqa: ANN401 - those of the function
         try:
-            return method(*args, **kwargs)
+            return function(*args, **kwargs)
         except _PYTHONS_ERRORS as error:
-            message = None if isinstance(error, RavemjError) else _message(method, args, kwargs)
+            message = None if isinstance(error, RavemjError) else _message(function, args, kwargs)
             if message is None:
                 raise
             raise TypeError(message) from error
@@ -79,21 +81,22 @@ def explained(method: FunctionType) -> Callable[..., Any]:
     return call
 
 
-def _message(method: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str | None:
+def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str | None:
     """Return what is wrong with the first argument that is not of the annotated type; None if there is none."""
     try:
-        given = signature(method).bind(*args, **kwargs)
+        given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
         return None
-    for name, value in tuple(given.arguments.items())[1:]:  # without the object itself
+    for name, value in given.arguments.items():
         parameter = given.signature.parameters[name]
-        if parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
+        if name == "self" or parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
             continue
         kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             found = "None" if value is None else f"of type {type(value).__name__}"
             wanted = " or ".join(dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else f"a {kind}" for kind in kinds))
-            return f"{method.__name__}: {name}: is {found}, and should be {wanted}"
+            caller = type(args[0]).__name__ if function.__name__ == "__init__" else function.__name__
+            return f"{caller}: {name}: is {found}, and should be {wanted}"
     return None
 
 

@@ -3,11 +3,13 @@
 import weakref
 from collections.abc import Callable
 from types import TracebackType
-from typing import ParamSpec, Self
+from typing import ParamSpec, Self, TypeVar
 
 from ravemj.core.api_object import ApiObject
+from ravemj.errors import ArgumentError
 
 _Arguments = ParamSpec("_Arguments")
+_Function = TypeVar("_Function")
 
 
 class Handle(ApiObject):
@@ -40,3 +42,15 @@ class Handle(ApiObject):
     ) -> None:
         """Release it."""
         self._release()
+
+
+def registered(functions: list[_Function], function: _Function, name: str) -> Handle:
+    """Append a function of a user's to a list, and return the handle that keeps it there.
+
+    Raises:
+        ArgumentError: it is not a function.
+    """
+    if not callable(function):
+        raise ArgumentError(f"{name} is {function!r}, and should be a function")
+    functions.append(function)
+    return Handle(functions.remove, function)  # in one step, since garbage collection may call it

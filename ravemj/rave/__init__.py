@@ -5,8 +5,10 @@ objects is ravemj's own.
 """
 
 import importlib
+from types import FunctionType
 from typing import TYPE_CHECKING
 
+from ravemj.core.argument_errors import explained
 from ravemj.core.handles import Handle as UserData
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.lazy_imports import MODULE_OF
@@ -390,5 +392,8 @@ def __getattr__(name: str) -> object:
     if name not in MODULE_OF:
         raise AttributeError(f"module 'ravemj.rave' has no attribute '{name}'")
     value = getattr(importlib.import_module(MODULE_OF[name]), name)
+    if isinstance(value, FunctionType):
+        value = explained(value)
+        value.__module__ = __name__  # where pickle finds it
     globals()[name] = value
     return value

@@ -241,12 +241,7 @@ class IkSearch(Interface):
         return np.array([axes[dof].weight for dof in self._description().arm_dofs])
 
     def _numbers(self, goal: IkParameterization | Floats) -> Floats:
-        """Return a goal as the solver takes it: a pose (4, 4), or the numbers of its type.
-
-        Raises:
-            RavemjError: it is empty.
-            ArgumentError: it is of another type.
-        """
+        """Return a goal as the solver takes it: a pose (4, 4), or the numbers of its type."""
         kind = _Type.Transform6D if isinstance(goal, np.ndarray) else goal.GetType()
         if kind not in GOAL_TYPES:
             raise RavemjError("the goal is empty; give it a value and a type first")

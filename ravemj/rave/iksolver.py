@@ -88,7 +88,7 @@ class IkSolver(IkSearch):
             raise ArgumentError(f"RegisterCustomFilter: callback is {callback!r}, and should be a function")
         entry = Filter(int(priority), callback)
         self._filters.append(entry)
-        return Handle(_remove, self._filters, entry)
+        return Handle(self._filters.remove, entry)
 
     def CallFilters(self, ikparam: IkParameterization) -> IkReturn:
         """Ask all filters about the configuration in which the robot is.
@@ -129,13 +129,7 @@ class IkSolver(IkSearch):
             return self.find_one(goal, free, options, seed=seed)
 
     def SolveAll(self, ikparam: IkParameterization, *arguments: object, **named: object) -> list[IkReturn]:
-        """Return all solutions: ``SolveAll(ikparam, [freeparameters,] filteroptions)``.
-
-        Args:
-            ikparam: The goal, in the frame of the arm's base.
-            arguments: Values of the free joints as shares of their ranges, then ``IkFilterOptions``.
-            named: The same by name.
-        """
+        """Return all solutions: ``SolveAll(ikparam, [freeparameters,] filteroptions)``; see ``Solve``."""
         goal = checked_kind(ikparam, IkParameterization, "SolveAll: ikparam")
         free, options = split_options("SolveAll", arguments, named)
         with self._env.simulation.lock:
@@ -143,10 +137,6 @@ class IkSolver(IkSearch):
 
     def __repr__(self) -> str:
         return f"RaveCreateIkSolver({self._env!r}, {self._xmlid!r})"
-
-
-def _remove(filters: list[Filter], entry: Filter) -> None:
-    filters.remove(entry)  # in one step, since garbage collection may call it
 
 
 _OPTIONS = "filteroptions"

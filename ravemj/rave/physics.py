@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _WITHOUT_DYNAMICS = "genericphysicsengine"
 _WITH_DYNAMICS = ("ode", "bullet", "mujoco")
+_LONGEST = 86400
+"""The longest time step [s]: a day takes MuJoCo minutes, and what is longer is a mistake."""
 
 
 class PhysicsEngine(Interface):
@@ -102,10 +104,13 @@ class PhysicsEngine(Interface):
 
     def SimulateStep(self, timestep: float) -> None:
         """Advance the bodies by ``timestep`` [s]; ``StepSimulation`` calls this."""
+        if self.dynamics is None:
+            return
         checked = checked_number(timestep, "SimulateStep: timestep", 0, " s")
-        if self.dynamics is not None:
-            with self._env.simulation.lock:
-                self.dynamics.step(checked)
+        if checked > _LONGEST:
+            raise ArgumentError(f"SimulateStep: timestep is {checked:g} s, and should be {_LONGEST} s at most")
+        with self._env.simulation.lock:
+            self.dynamics.step(checked)
 
     def InitEnvironment(self) -> bool:
         """Return True; the engine needs no preparation."""

@@ -1,6 +1,7 @@
 """Samplers: sequences of points that cover a space."""
 
 from collections.abc import Callable
+from operator import index
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,7 +51,9 @@ class SpaceSampler(Interface):
 
         For Halton's sequence, it is the index of the next point.
         """
-        self._sequence.start(int(seed))
+        if index(seed) < 0:
+            raise ArgumentError(f"SetSeed: seed is {seed}, and should not be negative")
+        self._sequence.start(index(seed))
 
     def SetSpaceDOF(self, dof: int) -> None:
         """Set the number of dimensions, ``dof``.
@@ -58,9 +61,9 @@ class SpaceSampler(Interface):
         Raises:
             openrave_exception: the number is less than 1, or differs from the DOFs of the sampled body.
         """
-        if dof < 1:
+        if index(dof) < 1:
             raise ArgumentError(f"SetSpaceDOF: dof is {dof}, and should be at least 1")
-        self._sequence.set_dof(int(dof))
+        self._sequence.set_dof(index(dof))
 
     def GetDOF(self) -> int:
         """Return the number of dimensions."""
@@ -82,7 +85,7 @@ class SpaceSampler(Interface):
     def SampleSequence(
         self, type: SampleDataType, num: int, interval: int = Interval.Closed
     ) -> "Floats | NDArray[np.uint32]":
-        """Return the next points in one row, shape (num * dof,); ``type`` and ``interval`` as for the next method."""
+        """Return the next points in one row, shape (num * dof,); ``type``, ``interval``: see ``SampleSequence2D``."""
         return self.SampleSequence2D(type, num, interval).ravel()
 
     def SampleSequence2D(
@@ -101,10 +104,10 @@ class SpaceSampler(Interface):
         """
         del interval
         self._check(type, "SampleSequence")
-        if num < 0:
+        if index(num) < 0:
             raise ArgumentError(f"SampleSequence: num is {num}, and should not be negative")
         whole = SampleDataType(type) == SampleDataType.Uint32
-        return self._sequence.integers(int(num)) if whole else self._sequence.reals(int(num))
+        return self._sequence.integers(index(num)) if whole else self._sequence.reals(index(num))
 
     def SampleSequenceOneReal(self, interval: int = Interval.Closed) -> float:
         """Return the next number of a one-dimensional sequence; ``interval`` is not used.

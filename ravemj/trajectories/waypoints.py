@@ -1,5 +1,6 @@
 """Configurations over time."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -139,6 +140,8 @@ class Waypoints:
     def first_after(self, time: float) -> int:
         """Return the first waypoint at a time or later; from the end on, the number of waypoints."""
         self._timed()
+        if math.isnan(time):
+            raise ArgumentError("time: is nan, and should be a number", ErrorCode.Assert)
         return len(self) if time >= self.duration() else int(np.searchsorted(self.times(), time))
 
     def sample(self, time: float, *, restamped: bool, find_body: FindBody = nobody) -> Floats:

@@ -8,6 +8,15 @@ import pytest
 
 import ravemj
 
+
+def trajectory(env, robot):
+    spec = robot.GetActiveConfigurationSpecification("linear")
+    spec.AddDeltaTimeGroup()
+    made = ravemj.RaveCreateTrajectory(env, "")
+    made.Init(spec)
+    return made
+
+
 MISTAKES = {
     "values": (lambda env, robot: robot.SetDOFValues(None), "SetDOFValues: is None, and should be numbers"),
     "pose": (lambda env, robot: robot.SetTransform(None), "SetTransform: transform: is None"),
@@ -52,6 +61,38 @@ MISTAKES = {
         lambda env, robot: env.TriangulateScene(options=[]),
         "TriangulateScene: options: is of type list, and should be a whole number",
     ),
+    "function": (
+        lambda env, robot: ravemj.RaveGetAffineConfigurationSpecification("xyz"),
+        "RaveGetAffineConfigurationSpecification: affinedofs: is of type str, and should be a whole number",
+    ),
+    "name of a function": (
+        lambda env, robot: ravemj.RaveCreateController(env, 3),
+        "RaveCreateController: name: is of type int, and should be a text",
+    ),
+    "constructor": (
+        lambda env, robot: ravemj.IkParameterization(np.eye(4), "pose"),
+        "IkParameterization: type: is of type str, and should be a IkParameterizationType or a whole number",
+    ),
+    "half a dimension": (
+        lambda env, robot: ravemj.RaveCreateSpaceSampler(env, "MT19937").SetSpaceDOF(1.5),
+        "SetSpaceDOF: dof: is of type float, and should be a whole number",
+    ),
+    "seed": (lambda env, robot: ravemj.RaveCreateSpaceSampler(env, "Halton").SetSeed(-1), "seed is -1, and should not"),
+    "half a seed": (lambda env, robot: ravemj.Planner.PlannerParameters().SetRandomGeneratorSeed(0.5), "whole number"),
+    "tag without an end": (
+        lambda env, robot: ravemj.RaveCreatePlanner(env, "LinearSmoother").InitPlan(None, "<a"),
+        "planner parameters: not well-formed XML .*'<a'",
+    ),
+    "limits": (
+        lambda env, robot: robot.SetDOFValues([99], [0], checklimits="nosuch"),
+        "checklimits: is 'nosuch', and should be a CheckLimitsAction",
+    ),
+    "eternity": (
+        lambda env, robot: ravemj.RaveCreatePhysicsEngine(env, "ode").SimulateStep(1e30),
+        r"1e\+30 s, and should be 86400 s at most",
+    ),
+    "when": (lambda env, robot: trajectory(env, robot).GetFirstWaypointIndexAfterTime(math.nan), "time: is nan"),
+    "which": (lambda env, robot: trajectory(env, robot).GetWaypoint("0"), "GetWaypoint: index: is of type str"),
     "engine": (lambda env, robot: env.SetPhysicsEngine("newton"), "no physics engine 'newton'; there are ode, bullet"),
 }
 

@@ -45,10 +45,8 @@ def InsertActiveDOFWaypointWithRetiming(
         openrave_exception: ``index`` is in the middle (``InvalidArguments``), or there are no such times.
     """
     checked_kind(robot, Robot, "InsertActiveDOFWaypointWithRetiming: robot")
-    new = EndWaypoint(trajectory, robot.GetActiveConfigurationSpecification(), dofvalues, dofvelocities)
-    anchor = new.anchor(index, 0)
-    way = new.retimed(anchor, (maxvelmult, maxaccelmult), plannername, plannerparameters)
-    return new.join(way, anchor)
+    new = EndWaypoint(trajectory, robot.GetActiveConfigurationSpecification(), dofvalues, dofvelocities, index)
+    return new.join(new.retimed((maxvelmult, maxaccelmult), plannername, plannerparameters))
 
 
 def ExtendActiveDOFWaypoint(
@@ -80,9 +78,8 @@ def ExtendActiveDOFWaypoint(
         openrave_exception: ``index`` is in the middle (``InvalidArguments``), or there are no such times.
     """
     checked_kind(robot, Robot, "ExtendActiveDOFWaypoint: robot")
-    new = EndWaypoint(trajectory, robot.GetActiveConfigurationSpecification(), dofvalues, dofvelocities)
-    anchor = new.anchor(index, 1)
-    return new.join(new.retimed(anchor, (maxvelmult, maxaccelmult), plannername, ""), anchor)
+    new = EndWaypoint(trajectory, robot.GetActiveConfigurationSpecification(), dofvalues, dofvelocities, index, 1)
+    return new.join(new.retimed((maxvelmult, maxaccelmult), plannername, ""))
 
 
 def ExtendWaypoint(
@@ -101,9 +98,8 @@ def ExtendWaypoint(
         Index behind the last waypoint that was put in.
     """
     name = checked_kind(planner, Planner, "ExtendWaypoint: planner").GetXMLId()
-    new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities)
-    anchor = new.anchor(index, 1)
-    return new.join(new.retimed(anchor, (1.0, 1.0), name, ""), anchor)
+    new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities, index, 1)
+    return new.join(new.retimed((1.0, 1.0), name, ""))
 
 
 def InsertWaypointWithSmoothing(
@@ -132,13 +128,12 @@ def InsertWaypointWithSmoothing(
     Raises:
         openrave_exception: ``index`` is in the middle (``InvalidArguments``), or there is no such way.
     """
-    new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities)
-    anchor = new.anchor(index, 0)
-    way = new.line(anchor)
+    new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities, index)
+    way = new.line()
     status = retimed(way, plannername or "ParabolicSmoother", (maxvelmult, maxaccelmult), "")
     if not status:
         raise RavemjError(f"InsertWaypointWithSmoothing: {status.description}")
-    return new.join(way, anchor)
+    return new.join(way)
 
 
 def _positions(traj: Trajectory) -> ConfigurationSpecification:

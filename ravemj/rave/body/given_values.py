@@ -131,4 +131,6 @@ def _report(body: KinBody, dof: int, message: str, effect: str, checklimits: int
     message = f"joint '{joint.name}' {message}"
     if checklimits == CheckLimitsAction.CheckLimitsThrow:
         raise ArgumentError(message)
+    if checklimits != CheckLimitsAction.CheckLimits:
+        raise ArgumentError(f"checklimits: is {checklimits!r}, and should be a CheckLimitsAction")
     send_warning(Diagnostic("warning", "value-outside-limits", message + effect, joint.source))

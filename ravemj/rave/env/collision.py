@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_numbers
-from ravemj.core.handles import Handle
+from ravemj.core.handles import Handle, registered
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
@@ -23,10 +23,6 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
 """A function of a report of one collision, and of whether physics has found it; it returns a ``CollisionAction``."""
-
-
-class CollisionCallbackHandle(Handle):
-    """Keeps a function registered until the handle is closed or deleted."""
 
 
 class Collision(Contents):
@@ -140,7 +136,7 @@ class Collision(Contents):
             return world.rays.first_hits(rows, targets, front_facing_only=front_facing_only)
 
     @also_named(fncallback="callback")
-    def RegisterCollisionCallback(self, callback: CollisionCallback) -> CollisionCallbackHandle:
+    def RegisterCollisionCallback(self, callback: CollisionCallback) -> Handle:
         """Register a function that decides about each collision.
 
         Args:
@@ -150,10 +146,7 @@ class Collision(Contents):
         Returns:
             A handle. The function is called as long as the handle exists.
         """
-        if not callable(callback):
-            raise ArgumentError(f"RegisterCollisionCallback: callback is {callback!r}, and should be a function")
-        self.collision_callbacks.append(callback)
-        return CollisionCallbackHandle(self.collision_callbacks.remove, callback)
+        return registered(self.collision_callbacks, callback, "RegisterCollisionCallback: callback")
 
     def HasRegisteredCollisionCallbacks(self) -> bool:
         """Return whether functions of ``RegisterCollisionCallback`` are registered."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakValueDictionary
 
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.core.handles import Handle
+from ravemj.core.handles import Handle, registered
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceAddMode
@@ -22,10 +22,6 @@ if TYPE_CHECKING:
 
 BodyCallback = Callable[[KinBody, int], object]
 """A function of a body, and 1 when it was added or 0 when it was removed."""
-
-
-class BodyCallbackHandle(Handle):
-    """Keeps a function registered until the handle is closed or deleted."""
 
 
 class Contents(EnvironmentPart):
@@ -361,7 +357,7 @@ class Contents(EnvironmentPart):
 
     GetLoadedProblems = GetModules
 
-    def RegisterBodyCallback(self, callback: BodyCallback) -> BodyCallbackHandle:
+    def RegisterBodyCallback(self, callback: BodyCallback) -> Handle:
         """Register a function that is called when bodies are added and removed.
 
         Args:
@@ -370,10 +366,7 @@ class Contents(EnvironmentPart):
         Returns:
             A handle. The function is called as long as the handle exists.
         """
-        if not callable(callback):
-            raise ArgumentError(f"RegisterBodyCallback: callback is {callback!r}, and should be a function")
-        self._body_callbacks.append(callback)
-        return BodyCallbackHandle(self._body_callbacks.remove, callback)
+        return registered(self._body_callbacks, callback, "RegisterBodyCallback: callback")
 
 
 def _renames(mode: Any) -> bool:  # noqa: ANN401 - a number or an enumeration

@@ -64,9 +64,7 @@ class Drawing(EnvironmentPart):
             drawstyle: Not used, as in OpenRAVE.
         """
         del drawstyle
-        positions = _checked_points(points)
-        rgba = _checked_colors(colors, len(positions))
-        return self._draw(drawing.line_strip(positions, _checked_size(linewidth, "linewidth"), rgba))
+        return self._draw(drawing.line_strip(*_checked_lines(points, linewidth, colors)))
 
     def drawlinelist(
         self, points: ArrayLike, linewidth: float, colors: ArrayLike | None = None, drawstyle: int = 0
@@ -80,9 +78,7 @@ class Drawing(EnvironmentPart):
             drawstyle: Not used, as in OpenRAVE.
         """
         del drawstyle
-        positions = _checked_points(points)
-        rgba = _checked_colors(colors, len(positions))
-        return self._draw(drawing.line_list(positions, _checked_size(linewidth, "linewidth"), rgba))
+        return self._draw(drawing.line_list(*_checked_lines(points, linewidth, colors)))
 
     def drawarrow(
         self, p1: ArrayLike, p2: ArrayLike, linewidth: float = 0.002, color: ArrayLike | None = None
@@ -203,6 +199,11 @@ class Drawing(EnvironmentPart):
         corners = _checked_points(points)
         rgba = _checked_colors(colors, len(corners))
         return self._draw(drawing.mesh(corners, _checked_triangles(indices, len(corners)), rgba))
+
+
+def _checked_lines(points: ArrayLike, width: float, colors: ArrayLike | None) -> tuple[Floats, float, Floats]:
+    positions = _checked_points(points)
+    return positions, _checked_size(width, "linewidth"), _checked_colors(colors, len(positions))
 
 
 def _checked_points(points: ArrayLike) -> Floats:

@@ -99,13 +99,9 @@ class Loading(Description):
     LoadURI = Load
 
     def add_file(self, path: str) -> str:
-        """Add a file that a person has chosen, all of it or nothing. Bodies whose names are taken get other names.
+        """Add the file ``path`` that a person has chosen, all of it or nothing.
 
-        Args:
-            path: A file in a format of ``Load``.
-
-        Returns:
-            The error with file and line; empty if the file was added.
+        Bodies whose names are taken get other names. Return the error with file and line; empty if the file was added.
         """
         try:
             if is_json(path):
@@ -342,12 +338,9 @@ class Loading(Description):
     ReadTrimeshFile = ReadTrimeshURI
 
     def ReadTrimeshData(self, data: str | bytes, formathint: str, atts: Attributes | None = None) -> TriMesh | None:
-        """Return the triangles of a mesh that is given as the content of a file; see ``ReadTrimeshURI``.
+        """Return the triangles of a mesh that is given as ``data``, the content of a file; see ``ReadTrimeshURI``.
 
-        Args:
-            data: The content.
-            formathint: The suffix of the format, for instance ``stl``.
-            atts: As for ``ReadTrimeshURI``.
+        ``formathint`` is the suffix of its format, for instance ``stl``; ``atts`` are as there.
         """
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, f"mesh.{formathint.lstrip('.')}")

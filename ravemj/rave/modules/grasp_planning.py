@@ -92,10 +92,6 @@ class _Candidate:
 def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
     """Return a motion of the arm to one of several grasps.
 
-    Args:
-        base: The planner of motions for the robot.
-        query: The grasps.
-
     Raises:
         ArgumentError: the list of grasps has no poses, or the robot holds the target already.
         PlanningError: no grasp can be reached.

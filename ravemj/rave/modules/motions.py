@@ -173,10 +173,9 @@ class Manipulation:
             is_it = np.abs(used[nearest] - reached).max() < _SAME  # and no goal that came later
             if is_it and (asked[nearest] != used[nearest]).any():
                 rest = np.zeros(len(reached))
-                new = EndWaypoint(traj, spec, asked[nearest], rest)
-                anchor = new.anchor(place, 0)
+                new = EndWaypoint(traj, spec, asked[nearest], rest, place)
                 retimer = "LinearTrajectoryRetimer" if self.robot.GetAffineDOF() else ""  # the only one for poses
-                new.join(new.retimed(anchor, (1.0, 1.0), retimer, ""), anchor)
+                new.join(new.retimed((1.0, 1.0), retimer, ""))
 
     def straight(self, points: Floats) -> Trajectory:
         """Return the fastest motion of the active DOFs along straight lines through points (m, n).

@@ -68,12 +68,10 @@ class TaskManipulation(Manipulation):
     def close_fingers(
         self, directions: Floats | None = None, offsets: Floats | None = None, step: float = _STEP
     ) -> tuple[Floats, Trajectory]:
-        """Close the gripper: return the last values of its joints, and the motion. Joints stop at contacts and limits.
+        """Close the gripper: return the last values of its joints, and the motion.
 
-        Args:
-            directions: The sign of the motion of each joint; by default the closing direction.
-            offsets: How far each joint moves back from there [rad or m]; by default not at all.
-            step: The step in which joints move between two collision tests [rad or m].
+        Joints stop at contacts and limits. Each direction is the sign of the motion of a joint, by default the closing
+        direction; offsets are how far joints move back from there [rad or m].
 
         Raises:
             PlanningError: the robot has no gripper.

@@ -40,10 +40,7 @@ class ToolConstraint(NamedTuple):
     threshold: float
 
     def checked(self, T_world_tool: Floats) -> tuple[Floats, Floats, Floats, float]:
-        """Return the fields, with the constrained frame filled in and rotations that are exact.
-
-        Args:
-            T_world_tool: The pose of the tool at the start.
+        """Return the fields, with the constrained frame filled in for a tool at a pose, and exact rotations.
 
         Raises:
             ArgumentError: its numbers are none of a constraint.

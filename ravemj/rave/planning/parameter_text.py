@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError, SourceError
+from ravemj.errors import ArgumentError
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.text import groups_of, layout_text
 
@@ -110,10 +110,10 @@ def _elements(text: str) -> "Sequence[Element]":
     stripped = text.strip()
     if "<" not in stripped:
         return ()
-    try:
-        root = parse(f"<all>{stripped}</all>".encode(), "planner parameters").root
-    except SourceError as error:
-        raise ArgumentError(f"planner parameters: {error.message}: {stripped!r}") from None
+    document = parse(f"<all>{stripped}</all>".encode(), "planner parameters")
+    root = document.root
+    if document.error is not None:
+        raise ArgumentError(f"planner parameters: {document.error.message}: {stripped!r}")
     return next((child for child in root.children if child.tag == _ROOT), root).children
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_numbers, checked_vector
+from ravemj.core.arrays import checked_number, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.rave.enums import Interval
@@ -151,11 +151,11 @@ class PlannerParameters(ApiObject):
 
     def SetMaxIterations(self, nMaxIterations: int) -> None:
         """Set the maximum number of iterations, ``nMaxIterations``; 0 selects the planner's own."""
-        self.given.numbers["_nmaxiterations"] = int(checked_vector([nMaxIterations], 1, "nMaxIterations").item())
+        self.given.numbers["_nmaxiterations"] = _whole(nMaxIterations, "nMaxIterations")
 
     def SetMaxPlanningTime(self, nMaxPlanningTime: int) -> None:
         """Set the maximum time of the planner, ``nMaxPlanningTime`` [ms]; 0 sets no limit."""
-        self.given.numbers["_nmaxplanningtime"] = int(checked_vector([nMaxPlanningTime], 1, "nMaxPlanningTime").item())
+        self.given.numbers["_nmaxplanningtime"] = _whole(nMaxPlanningTime, "nMaxPlanningTime")
 
     def SetStepLength(self, fStepLength: float) -> None:
         """Set the step length ``fStepLength`` [s].
@@ -166,16 +166,16 @@ class PlannerParameters(ApiObject):
 
     def SetRandomGeneratorSeed(self, seed: int) -> None:
         """Set the ``seed`` of random numbers, which makes plans repeatable."""
-        self.given.numbers["_nrandomgeneratorseed"] = int(checked_vector([seed], 1, "seed").item())
+        self.given.numbers["_nrandomgeneratorseed"] = _whole(seed, "seed")
 
     def SetPostProcessing(self, plannername: str, plannerparameters: str) -> None:
-        """Choose the planner that processes the path.
+        """Choose the planner ``plannername`` that processes the path.
 
-        Args:
-            plannername: The name of a smoother or retimer. If it is empty, the path stays as it is found, without
-                times.
-            plannerparameters: Its parameters as XML text.
+        Its parameters are the XML text ``plannerparameters``. With an empty name, the path stays as it is found,
+        without times.
         """
+        checked_kind(plannername, str, "SetPostProcessing: plannername", "a text")
+        checked_kind(plannerparameters, str, "SetPostProcessing: plannerparameters", "a text")
         self.given.postprocessing = plannername, plannerparameters
 
     def SetExtraParameters(self, extra: str) -> None:
@@ -189,9 +189,7 @@ class PlannerParameters(ApiObject):
     def add_constraint(self, constraint: Constraint) -> None:
         """Allow only configurations for which a function returns True.
 
-        Args:
-            constraint: The function of a configuration, shape (dof,). When it is called, the robot is in that
-                configuration.
+        When ``constraint`` is called with a configuration, shape (dof,), the robot is there.
         """
         self.given.constraints.append(constraint)
 
@@ -211,14 +209,9 @@ class PlannerParameters(ApiObject):
         return self.given.bodies
 
     def SetStateValues(self, values: ArrayLike, options: int = 0) -> int:
-        """Move the bodies to a configuration. Values outside the limits are set to the limits.
+        """Move the bodies to the configuration ``values``, shape (GetDOF(),), and return 0.
 
-        Args:
-            values: The configuration, shape (GetDOF(),).
-            options: Not used.
-
-        Returns:
-            0.
+        Values outside the limits are set to the limits; ``options`` are not used.
         """
         del options
         bodies = self._bodies()
@@ -327,3 +320,10 @@ class PlannerParameters(ApiObject):
         given = self.given
         text = parameters_text(given.groups, given.vectors, given.numbers, given.postprocessing, self._extra)
         return f'Planner.PlannerParameters("""{text}""")'
+
+
+def _whole(value: int, name: str) -> int:
+    number = checked_number(value, name)
+    if not number.is_integer():
+        raise ArgumentError(f"{name}: is {number}, and should be a whole number")
+    return int(number)

@@ -1,11 +1,10 @@
 """The base class of all planners."""
 
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar
 
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.core.handles import Handle
+from ravemj.core.handles import Handle, registered
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PlannerAction, PlannerStatusCode
 from ravemj.rave.interface import Interface
@@ -110,10 +109,7 @@ class Planner(Interface):
         Raises:
             ArgumentError: the callback is not a function.
         """
-        if not callable(callback):
-            raise ArgumentError("RegisterPlanCallback: callback should be a function")
-        self._callbacks.append(callback)
-        return Handle(_forget, self._callbacks, callback)
+        return registered(self._callbacks, callback, "RegisterPlanCallback: callback")
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Solve a problem, and write the result into a trajectory. The caller holds the lock."""
@@ -137,8 +133,3 @@ class Planner(Interface):
 
     def _solved(self, description: str) -> PlannerStatus:
         return PlannerStatus(description, PlannerStatusCode.HasSolution)
-
-
-def _forget(callbacks: list[PlanCallback], callback: PlanCallback) -> None:
-    with suppress(ValueError):
-        callbacks.remove(callback)

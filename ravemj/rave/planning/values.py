@@ -69,14 +69,15 @@ class Values:
 
     def with_tags(self, text: str) -> "Values":
         """Return a copy in which the elements of an XML text replace the values of the same names."""
-        numbers, vectors = dict(self.numbers), dict(self.vectors)
         read = read_tags(text)
-        tags = {**self.tags, **read.others}
-        numbers.update(read.numbers)
-        vectors.update(read.vectors)
-        groups = read.groups if read.groups is not None else self.groups
-        post = read.postprocessing or self.postprocessing
-        return replace(self, numbers=numbers, vectors=vectors, tags=tags, groups=groups, postprocessing=post)
+        return replace(
+            self,
+            numbers=self.numbers | read.numbers,
+            vectors=self.vectors | read.vectors,
+            tags=self.tags | read.others,
+            groups=self.groups if read.groups is None else read.groups,
+            postprocessing=read.postprocessing or self.postprocessing,
+        )
 
     def tag(self, name: str, default: float) -> float:
         """Return one of the further parameters as a number.
