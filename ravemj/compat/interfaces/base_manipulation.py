@@ -66,20 +66,18 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the active DOFs to a goal without collisions.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``releasegil`` and
+        ``usedynamicsconstraints`` are not used.
+
         Args:
             goal: Active values.
             steplength: Not used; resolutions of the joints say how finely lines are tested.
             maxiter: Iterations of the planner; None: 4000.
             maxtries: How often it is asked; None: 2.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             goals: Several goals in place of one; any will do.
-            outputtrajobj: Whether to return the motion.
             jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
-            releasegil: Not used.
             postprocessingplanner: The smoother; None: OpenRAVE's.
             postprocessingparameters: Its parameters as XML text.
-            usedynamicsconstraints: Not used.
             initialconfigs: Where the motion may start; None: where the robot is.
 
         Raises:
@@ -112,17 +110,15 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the arm of the active manipulator to a goal without collisions, whatever is active.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``steplength`` and ``releasegil`` are not
+        used.
+
         Args:
             goal: Values of the arm's joints.
             maxiter: Iterations of the planner; None: 4000.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             maxtries: How often the planner is asked; None: 2.
             goals: Several goals in place of one; any will do.
-            steplength: Not used.
-            outputtrajobj: Whether to return the motion.
             jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
-            releasegil: Not used.
 
         Raises:
             PlanningError: there is no such motion.
@@ -167,9 +163,11 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the arm of the active manipulator so that its tool reaches a goal, without collisions.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``affinedofs``, ``steplength``,
+        ``minimumgoalpaths``, ``jittergoal``, ``goalmaxtries``, ``releasegil`` and ``freevalues`` are not used.
+
         Args:
             matrices: Goal poses ``T_world_tool``: 4x4, 3x4 or 7 numbers each. The motion ends at one of them.
-            affinedofs: Not used.
             maxiter: The maximum number of iterations of the planner; by default 4000.
             maxtries: The number of calls of the planner; by default 3.
             translation: A goal point of the tool, in place of a pose.
@@ -181,27 +179,18 @@ class BaseManipulation(TrajectoryText):
             constraintmatrix: ``T_task_world``, the task frame, to whose axes ``constraintfreedoms`` refers; by default
                 the world.
             constrainterrorthresh: The tolerance of the constraint [m and rad]; by default 0.001.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            steplength: Not used.
             goalsamples: The largest number of IK solutions that are goals; by default 40.
             ikparam: A goal of any type.
             ikparams: Several goals of any type.
             jitter: The largest change of each value of a start or goal in collision [rad or m]; by default 0.03. With
                 a constraint, starts and goals are not changed.
-            minimumgoalpaths: Not used.
-            outputtrajobj: Whether to return the motion.
             postprocessing: The smoother and its parameters; None: OpenRAVE's.
-            jittergoal: Not used.
             constrainttaskmatrix: ``T_tool_point``, the constrained frame; by default the frame of the tool that is the
                 task frame at the start, so that the tool keeps what it has there.
             constrainttaskpose: The same as 7 numbers.
             goalsampleprob: The fraction of the iterations that ask for a further IK solution; by default 0.1.
             goalmaxsamples: As ``goalsamples``.
-            goalmaxtries: Not used.
-            releasegil: Not used.
             initialconfigs: Where the arm may start; None: where it is.
-            freevalues: Not used.
 
         Raises:
             PlanningError: there is no such motion, or no solver of inverse kinematics.
@@ -261,6 +250,9 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the tool of the active manipulator along a straight line, with its orientation, as far as it goes.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``greedysearch``, ``steplength`` and
+        ``planner`` are not used.
+
         Args:
             direction: Where to, in the world; its length does not count.
             minsteps: How many steps it has to go; None: 0.
@@ -268,13 +260,7 @@ class BaseManipulation(TrajectoryText):
             stepsize: How far a step is [m]; None: 0.01.
             ignorefirstcollision: Way at the start in which collisions do not count [m]; None: 0.1.
             starteematrix: ``T_world_tool`` where it starts; None: where it is.
-            greedysearch: Not used.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             maxdeviationangle: Not used; the tool does not turn.
-            steplength: Not used.
-            planner: Not used.
-            outputtrajobj: Whether to return the motion.
 
         Raises:
             PlanningError: it does not get that far, or there is no solver of inverse kinematics.
@@ -305,15 +291,14 @@ class BaseManipulation(TrajectoryText):
 
         The other joints, those of a hand for instance, are not moved.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``.
+
         Args:
             jointvalues: The values of the other joints.
             jointinds: Their DOF indices.
             maxtries: How often a place is looked for; None: once.
             planner: The planner of the motion; None: ``BasicRRT``.
             maxdivision: In how many steps the motion of the other joints is tested; None: 10.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            outputtrajobj: Whether to return the motion.
 
         Raises:
             PlanningError: there is no such place.
@@ -341,13 +326,12 @@ class BaseManipulation(TrajectoryText):
     ) -> tuple[Floats | None, Answer]:
         """Move the active DOFs a little, out of collision.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``.
+
         Args:
             maxiter: How many configurations are tried; None: 5000.
             jitter: How far each value may move [rad or m]; None: 0.03.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             outputfinal: Whether to return where it leads.
-            outputtrajobj: Whether to return the motion.
 
         Returns:
             Where the motion leads, and the motion; None for what was not asked for.

@@ -14,9 +14,10 @@ class TrajectoryText(Helper):
     def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:
         """Execute a trajectory.
 
+        ``resettrans`` is not used.
+
         Args:
             data: The trajectory, as ``Trajectory.serialize`` writes it.
-            resettrans: Not used.
             resettiming: Whether it gets new times.
 
         Raises:
@@ -34,9 +35,10 @@ class TrajectoryText(Helper):
     ) -> None:
         """Check that a trajectory keeps limits and constraints; see ``planningutils.VerifyTrajectory``.
 
+        ``resettrans`` is not used.
+
         Args:
             data: The trajectory, as ``Trajectory.serialize`` writes it.
-            resettrans: Not used.
             resettiming: Whether it gets new times first.
             samplingstep: Steps in which it is looked at [s].
 
