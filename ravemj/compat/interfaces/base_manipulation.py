@@ -7,8 +7,8 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ravemj.compat.interfaces.helper import given, number, several, whole
-from ravemj.compat.interfaces.trajectory_text import TrajectoryText
+from ravemj.compat.interfaces.helper import Helper, given, numbers, several, whole_numbers
+from ravemj.compat.planningutils import RetimeTrajectory, VerifyTrajectory
 from ravemj.compat.refusal import refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector, checked_whole_numbers
@@ -24,7 +24,7 @@ from ravemj.rave.trajectory import Trajectory
 Answer = Trajectory | str | None
 
 
-class BaseManipulation(TrajectoryText):
+class BaseManipulation(Helper):
     """Plans and executes motions of the active DOFs, of an arm, or of its tool.
 
     Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the
@@ -212,21 +212,20 @@ class BaseManipulation(TrajectoryText):
             constrainterrorthresh=constrainterrorthresh,
         )
         kind = IkParameterization.Type
-        poses = [checked_transform(one, "matrices") for one in several(matrices, "matrices")]
-        goals = [IkParameterization(pose, kind.Transform6D) for pose in poses]
+        poses = several(matrices, "matrices")
+        goals = [IkParameterization(checked_transform(pose, "matrices"), kind.Transform6D) for pose in poses]
         if translation is not None:
             goals.append(IkParameterization(checked_vector(translation, 3, "translation"), kind.Translation3D))
         if rotation is not None:
             goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
-        others = [*([] if ikparam is None else [ikparam]), *several(ikparams, "ikparams")]
+        others = [*given(ikparam=ikparam).values(), *several(ikparams, "ikparams")]
         goals += [checked_kind(one, IkParameterization, "ikparam") for one in others]
-        samples = whole(goalsamples or goalmaxsamples, "goalsamples")
+        counts = whole_numbers(seedik=seedik, goalsamples=goalsamples or goalmaxsamples)
+        share = numbers(goalsampleprob=goalsampleprob).get("goalsampleprob")
         traj = self._base.move_to_hand_position(
             goals,
             search_options(options, HAND_SEARCH),
-            **given(
-                first=whole(seedik, "seedik"), samples=samples, probability=number(goalsampleprob, "goalsampleprob")
-            ),
+            **given(first=counts.get("seedik"), samples=counts.get("goalsamples"), probability=share),
             starts=_rows("initialconfigs", None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,
         )
@@ -270,9 +269,8 @@ class BaseManipulation(TrajectoryText):
         """
         del greedysearch, maxdeviationangle, steplength, planner
         start = None if starteematrix is None else checked_transform(starteematrix, "starteematrix")
-        options = given(minsteps=whole(minsteps, "minsteps"), maxsteps=whole(maxsteps, "maxsteps"), starteematrix=start)
-        options |= given(stepsize=number(stepsize, "stepsize"))
-        options |= given(ignorefirstcollision=number(ignorefirstcollision, "ignorefirstcollision"))
+        options = given(starteematrix=start) | whole_numbers(minsteps=minsteps, maxsteps=maxsteps)
+        options |= numbers(stepsize=stepsize, ignorefirstcollision=ignorefirstcollision)
         options["direction"] = checked_vector(direction, 3, "direction")
         return self._done(straight(self._base, options), execute, outputtraj, outputtrajobj)
 
@@ -304,15 +302,11 @@ class BaseManipulation(TrajectoryText):
             PlanningError: there is no such place.
             AssertionError: there are not as many values as indices, or none.
         """
-        values, indices = (
-            checked_numbers(jointvalues, "jointvalues"),
-            checked_whole_numbers(jointinds, "jointinds").tolist(),
-        )
+        values = checked_numbers(jointvalues, "jointvalues")
+        indices = checked_whole_numbers(jointinds, "jointinds").tolist()
         if not len(values) == len(indices) > 0:
             raise AssertionError(f"jointvalues: are {len(values)}, and there are {len(indices)} jointinds")
-        options = given(
-            maxtries=whole(maxtries, "maxtries"), maxdivision=whole(maxdivision, "maxdivision"), planner=planner
-        )
+        options = whole_numbers(maxtries=maxtries, maxdivision=maxdivision) | given(planner=planner)
         return self._done(unsync(self._base, values, indices, options), execute, outputtraj, outputtrajobj)
 
     def JitterActive(
@@ -339,8 +333,51 @@ class BaseManipulation(TrajectoryText):
         Raises:
             PlanningError: there is no such configuration.
         """
-        found = self._base.jitter_active(**given(tries=whole(maxiter, "maxiter"), jitter=number(jitter, "jitter")))
+        tries = whole_numbers(maxiter=maxiter).get("maxiter")
+        found = self._base.jitter_active(**given(tries=tries), **numbers(jitter=jitter))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+
+    def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:
+        """Execute a trajectory.
+
+        ``resettrans`` is not used.
+
+        Args:
+            data: The trajectory, as ``Trajectory.serialize`` writes it.
+            resettiming: Whether it gets new times.
+
+        Raises:
+            openrave_exception: this is no trajectory, or it cannot be executed.
+        """
+        self._base.execute(self._read(data, resettiming))
+
+    def VerifyTrajectory(
+        self,
+        data: str | bytes,
+        resettrans: bool | None = None,
+        resettiming: bool | None = None,
+        samplingstep: float | None = None,
+    ) -> None:
+        """Check that a trajectory keeps limits and constraints; see ``planningutils.VerifyTrajectory``.
+
+        ``resettrans`` is not used.
+
+        Args:
+            data: The trajectory, as ``Trajectory.serialize`` writes it.
+            resettiming: Whether it gets new times first.
+            samplingstep: Steps in which it is looked at [s].
+
+        Raises:
+            openrave_exception: it does not, or this is no trajectory.
+        """
+        VerifyTrajectory(None, self._read(data, resettiming), **given(samplingstep=samplingstep))
+
+    def _read(self, data: str | bytes, resettiming: bool | None) -> Trajectory:
+        traj = Trajectory(self.robot.GetEnv(), "")
+        traj.deserialize(data)
+        if resettiming:
+            RetimeTrajectory(traj, False)
+        return traj
 
     FindIKWithFilters = refusing(  # by OpenRAVE 0.149, too
         "FindIKWithFilters",
@@ -351,13 +388,12 @@ class BaseManipulation(TrajectoryText):
 
 def _effort(maxiter: int | None, maxtries: int | None, jitter: float | None) -> dict[str, Any]:
     """Return the effort of a search, as options."""
-    counts = given(maxiter=whole(maxiter, "maxiter"), maxtries=whole(maxtries, "maxtries"))
-    return counts | given(jitter=number(jitter, "jitter"))
+    return whole_numbers(maxiter=maxiter, maxtries=maxtries) | numbers(jitter=jitter)
 
 
 def _rows(name: str, one: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
     """Return goals or starts."""
-    rows = [checked_numbers(row, name) for row in [*several(many, name), *([] if one is None else [one])]]
+    rows = [checked_numbers(row, name) for row in [*several(many, name), *given(one=one).values()]]
     for row in rows:
         if row.shape != (dof,) or not dof:
             raise AssertionError(f"{name}: has shape {row.shape}, and should have {dof} values")
