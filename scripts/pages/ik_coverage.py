@@ -80,8 +80,8 @@ joints form a *block*: axes that meet in a point (a spherical wrist or shoulder)
 slides among these, or three slides. What the block keeps, its point or its plane, gives equations in the three other
 joints, and those are the classical subproblems of B. Paden and W. Kahan: turn a point to a point, to a sphere, to a
 plane. Mostly they are quadratic, so there are up to eight solutions; where no two axes meet or are parallel, a quartic
-equation couples two joints (D. L. Pieper 1968). Arms with fewer joints get further ones that have to stay at 0. An arm of six
-revolute joints in no special position leads to an eigenvalue problem of 24 rows (M. Raghavan and B. Roth 1993,
+equation couples two joints (D. L. Pieper 1968). Arms with fewer joints get further ones that have to stay at 0. An arm
+of six revolute joints in no special position leads to an eigenvalue problem of 24 rows (M. Raghavan and B. Roth 1993,
 D. Manocha and J. F. Canny 1994), with up to sixteen solutions; it takes a hundred times longer.
 
 **Nearly special arms.** Files give four to six digits, so that axes which should meet miss by micrometres. A family is
