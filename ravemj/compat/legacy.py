@@ -94,6 +94,9 @@ def with_destroy(fn: Callable[_Parameters, _Result]) -> Callable[_Parameters, _R
     return run
 
 
-_OWN = [name for name, thing in globals().items() if name[0] != "_" and getattr(thing, "__module__", "") == __name__]
-_OLD = {old: getattr(ravemj, new) for old, new in re.findall(r"(\S+)=(\S+)", _RENAMED)}
-globals().update(_OLD, __all__=[*_OLD, *_OWN])
+NAMES: dict[str, object] = {
+    **{old: getattr(ravemj, new) for old, new in re.findall(r"(\S+)=(\S+)", _RENAMED)},
+    **{name: own for name, own in globals().items() if name[0] != "_" and getattr(own, "__module__", "") == __name__},
+}
+"""What this module gives to ``openravepy``."""
+globals().update(NAMES, __all__=list(NAMES))

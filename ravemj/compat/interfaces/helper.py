@@ -102,7 +102,7 @@ def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any ki
     return {name: value for name, value in options.items() if value is not None}
 
 
-def numbers(**options: float | None) -> dict[str, float]:
+def numbers(**options: float | None) -> dict[str, Any]:
     """Return the options that are not None, as finite numbers.
 
     Raises:
@@ -111,7 +111,7 @@ def numbers(**options: float | None) -> dict[str, float]:
     return {name: checked_vector([value], 1, name).item() for name, value in given(**options).items()}
 
 
-def whole_numbers(**options: int | None) -> dict[str, int]:
+def whole_numbers(**options: int | None) -> dict[str, Any]:
     """Return the options that are not None, as whole numbers.
 
     Raises:
