@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from ravemj import geometry_functions, rave
 from ravemj.compat import names
-from ravemj.compat.extension import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
+from ravemj.compat.names import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
 from ravemj.errors import (
     ArgumentError,
     CompileError,

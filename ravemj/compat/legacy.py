@@ -1,72 +1,24 @@
 """Names of openravepy that ravemj itself leaves out, since it has the same under other names."""
 
 import platform
+import re
 from collections.abc import Callable
 from enum import Enum
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
+import ravemj
 from ravemj.errors import ArgumentError
-from ravemj.geometry_functions import transformInversePoints, transformPoints
-from ravemj.rave import (
-    IkParameterizationType,
-    IkReturnAction,
-    Interface,
-    PlanningError,
-    RaveCreateModule,
-    RaveDestroy,
-    RaveGetDebugLevel,
-    RaveLog,
-    RaveLogDebug,
-    RaveLogError,
-    RaveLogFatal,
-    RaveLogInfo,
-    RaveLogVerbose,
-    RaveLogWarn,
-    RaveSetDebugLevel,
-)
+from ravemj.rave import IkParameterizationType, RaveDestroy
 
-__all__ = [
-    "IkFilterReturn",
-    "InterfaceBase",
-    "RaveCreateProblemInstance",
-    "RaveGetIkTypeFromUniqueId",
-    "RaveGlobalState",
-    "TransformInversePoints",
-    "TransformPoints",
-    "VoidPointer",
-    "enum_to_dict",
-    "loadlatest",
-    "loadstable",
-    "openravepyCompilerVersion",
-    "planning_error",
-    "raveGetDebugLevel",
-    "raveLog",
-    "raveLogDebug",
-    "raveLogError",
-    "raveLogFatal",
-    "raveLogInfo",
-    "raveLogVerbose",
-    "raveLogWarn",
-    "raveSetDebugLevel",
-    "with_destroy",
-]
-
-raveLog = RaveLog
-raveLogFatal = RaveLogFatal
-raveLogError = RaveLogError
-raveLogWarn = RaveLogWarn
-raveLogInfo = RaveLogInfo
-raveLogDebug = RaveLogDebug
-raveLogVerbose = RaveLogVerbose
-raveGetDebugLevel = RaveGetDebugLevel
-raveSetDebugLevel = RaveSetDebugLevel
-RaveCreateProblemInstance = RaveCreateModule
-planning_error = PlanningError
-InterfaceBase = Interface
-IkFilterReturn = IkReturnAction
-TransformPoints = transformPoints
-TransformInversePoints = transformInversePoints
+_RENAMED = """
+IkFilterReturn=IkReturnAction InterfaceBase=Interface planning_error=PlanningError
+RaveCreateProblemInstance=RaveCreateModule TransformInversePoints=transformInversePoints TransformPoints=transformPoints
+raveGetDebugLevel=RaveGetDebugLevel raveLog=RaveLog raveLogDebug=RaveLogDebug raveLogError=RaveLogError
+raveLogFatal=RaveLogFatal raveLogInfo=RaveLogInfo raveLogVerbose=RaveLogVerbose raveLogWarn=RaveLogWarn
+raveSetDebugLevel=RaveSetDebugLevel
+"""
+"""Older names, and those in ravemj."""
 
 
 class VoidPointer:
@@ -116,11 +68,11 @@ def loadstable(ver: str) -> None:
     """
 
 
-Parameters = ParamSpec("Parameters")
-Result = TypeVar("Result")
+_Parameters = ParamSpec("_Parameters")
+_Result = TypeVar("_Result")
 
 
-def with_destroy(fn: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
+def with_destroy(fn: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
     """Return a function that destroys all environments when it ends; OpenRAVE's examples put it above ``main``.
 
     Args:
@@ -133,10 +85,18 @@ def with_destroy(fn: Callable[Parameters, Result]) -> Callable[Parameters, Resul
     """
 
     @wraps(fn)
-    def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Result:
+    def run(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         try:
             return fn(*args, **kwargs)
         finally:
             RaveDestroy()
 
     return run
+
+
+NAMES: dict[str, object] = {
+    **{old: getattr(ravemj, new) for old, new in re.findall(r"(\S+)=(\S+)", _RENAMED)},
+    **{name: own for name, own in globals().items() if name[0] != "_" and getattr(own, "__module__", "") == __name__},
+}
+"""What this module gives to ``openravepy``."""
+globals().update(NAMES, __all__=list(NAMES))

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
+from typing import Any
 
 OPENRAVEPY = "openravepy"
 PUBLIC = ("databases", "interfaces", "misc", "planningutils")
@@ -69,6 +70,16 @@ def install(root: str) -> None:
     """Answer imports of names that start with a word, in this process."""
     if not any(isinstance(finder, Renamed) and finder.root == root for finder in sys.meta_path):
         sys.meta_path.insert(0, Renamed(root))
+
+
+def load_ipython_extension(ipython: Any) -> None:  # noqa: ANN401 - IPython's shell; IPython is not imported here
+    """Make ``import openravepy`` give ravemj, in this session; IPython calls it on ``%load_ext ravemj``.
+
+    Args:
+        ipython: The session.
+    """
+    del ipython
+    install(OPENRAVEPY)
 
 
 def _exists(name: str) -> bool:

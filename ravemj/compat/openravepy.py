@@ -42,9 +42,8 @@ _ELSEWHERE = {  # where earlier versions had these, too
 
 builtins.__dict__["__openravepy_build_doc__"] = __build_doc__ = False
 __path__: list[str] = []  # sub-modules are found by ravemj.compat.names
-_ALL = [*_NAMES, *legacy.__all__, *ONLY_OPENRAVEPY, *_ELSEWHERE, *_LEAKS]
-globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, __all__=_ALL)
-globals().update({name: getattr(legacy, name) for name in legacy.__all__})
+_ALL = [*_NAMES, *legacy.NAMES, *ONLY_OPENRAVEPY, *_ELSEWHERE, *_LEAKS]
+globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, **legacy.NAMES, __all__=_ALL)
 
 
 def __getattr__(name: str) -> object:

@@ -7,7 +7,7 @@ from typing import NoReturn, TypeVar
 
 from ravemj.errors import UnsupportedError
 
-Kind = TypeVar("Kind", bound=type)
+Kind = TypeVar("Kind", bound=type[object])
 
 
 def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoReturn]:

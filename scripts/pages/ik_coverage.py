@@ -80,8 +80,8 @@ joints form a *block*: axes that meet in a point (a spherical wrist or shoulder)
 slides among these, or three slides. What the block keeps, its point or its plane, gives equations in the three other
 joints, and those are the classical subproblems of B. Paden and W. Kahan: turn a point to a point, to a sphere, to a
 plane. Mostly they are quadratic, so there are up to eight solutions; where no two axes meet or are parallel, a quartic
-equation couples two joints (D. L. Pieper 1968). Arms with fewer joints get such that have to stay at 0. An arm of six
-revolute joints in no special position leads to an eigenvalue problem of 24 rows (M. Raghavan and B. Roth 1993,
+equation couples two joints (D. L. Pieper 1968). Arms with fewer joints get further ones that have to stay at 0. An arm
+of six revolute joints in no special position leads to an eigenvalue problem of 24 rows (M. Raghavan and B. Roth 1993,
 D. Manocha and J. F. Canny 1994), with up to sixteen solutions; it takes a hundred times longer.
 
 **Nearly special arms.** Files give four to six digits, so that axes which should meet miss by micrometres. A family is
@@ -94,8 +94,8 @@ forward kinematics of the true arm, and dropped if it misses.
 
 **Redundant arms.** Seven joints have a free one. It is sampled, from its present value outwards, every 0.1 rad, and
 the rest is solved in closed form. Between a spherical shoulder and a spherical wrist the third joint is free, as in
-OpenRAVE; else the first choice that has a closed form, the last joint before the first one and these before others.
-Where no sample has a solution, a short search follows. Several free joints share 4096 samples.
+OpenRAVE; in other arms it is the last joint, else the first one, else another, where that leaves a closed form. Where
+no sample has a solution, a short search follows. Several free joints share 4096 samples.
 
 **Other goals than poses** leave something open. It becomes *virtual joints* at the tool: with a roll about its
 direction for `TranslationDirection5D`, and a slide along it for `Ray4D`, the arm is one for poses again. For
@@ -108,10 +108,10 @@ out of reach, which is what dragging a hand needs.
 
 ## How to read the tables
 
-Goals are those of random configurations, uniform within the limits. *Solved*: a solution within the limits was
-found, from the middle of the range. *Own values*: those that made the goal are among the solutions, free joints
-keeping theirs. *Worst error*: of any entry of the tool's pose. *Time*: of one goal, the nearest solution, median on a
-busy core. *Search*: what the search finds when it has to do without the closed form.
+The goals are tool poses of random configurations, uniform within the limits. *Solved*: a solution within the limits was
+found, from the middle of the range. *Own values*: the joint values that made the goal are among the solutions, if free
+joints keep theirs. *Worst error*: of any entry of the tool's pose. *Time*: of one goal, the nearest solution, median on
+a busy core. *Search*: how many goals the search solves without the closed form.
 
 """
 OURS = "## The robots of `models/`\n"

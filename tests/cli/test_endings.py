@@ -283,8 +283,11 @@ def heeded(monkeypatch):
         raise EndedError(code)
 
     monkeypatch.setattr(os, "_exit", leave)
-    before = signal.signal(signal.SIGTERM, signals._end)
+    monkeypatch.setattr(signals, "_IS_COMMAND", True)
+    before = signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signals.heed_signals()
     yield
+    signals.leave_signals_to_python()
     signal.signal(signal.SIGTERM, before)
 
 

@@ -38,8 +38,8 @@ def mesh(tmp_path):
 def reads(monkeypatch):
     """Count how often a file is really read."""
     counted = []
-    real = reading._read
-    monkeypatch.setattr(reading, "_read", lambda file, reader: counted.append(file.path) or real(file, reader))
+    real = reading.read_content
+    monkeypatch.setattr(reading, "read_content", lambda file, reader: counted.append(file.path) or real(file, reader))
     return counted
 
 
@@ -194,7 +194,7 @@ def test_a_reference_that_was_just_changed_allows_no_shortcut(folder, mesh, tmp_
 
 @pytest.mark.parametrize("changed", ["mesh", "reference"])
 def test_a_file_that_changes_while_it_is_read_gets_no_shortcut(folder, later, mesh, tmp_path, monkeypatch, changed):
-    real = reading._read
+    real = reading.read_content
     path, before, after = {
         "mesh": (mesh, "0.1", "0.5"),
         "reference": (tmp_path / "m.mtl", "1 0 0", "0 1 0"),
@@ -205,10 +205,10 @@ def test_a_file_that_changes_while_it_is_read_gets_no_shortcut(folder, later, me
         change(path, Path(path).read_text().replace(before, after))
         return parts
 
-    monkeypatch.setattr(reading, "_read", read)
+    monkeypatch.setattr(reading, "read_content", read)
     read_mesh(mesh)
     assert shortcuts(folder) == []
-    monkeypatch.setattr(reading, "_read", real)
+    monkeypatch.setattr(reading, "read_content", real)
     (part,) = read_mesh(mesh)
     assert part.mesh.vertices.max() == 1
     assert (part.mesh.vertices[:, 0].max(), part.diffuse) == (
@@ -380,7 +380,7 @@ def test_the_longest_unused_go_first(tmp_path):
 
 def _many_reads(folder, mesh, results):
     os.environ["RAVEMJ_CACHE"] = folder
-    cache._TICK = -(10**10)  # so that there are shortcuts to entries that are gone
+    cache.CLOCK_TICK = -(10**10)  # so that there are shortcuts to entries that are gone
     digests = set()
     for _ in range(30):
         digests |= {part.mesh.digest for part in anew(read_mesh(mesh))}

@@ -100,7 +100,7 @@ def test_modules_plan_with_ompl(robot):
     helper = ravemj.interfaces.BaseManipulation(robot, plannername="OMPL_RRTConnect")
     trajectory = helper.MoveActiveJoints([1.2, 0.2], execute=False, outputtrajobj=True)
     planningutils.VerifyTrajectory(None, trajectory, 0.01)
-    assert helper._base.planner == "OMPL_RRTConnect"
+    assert helper._base.planner == "OMPL_RRTConnect"  # noqa: SLF001 - no public name tells
 
 
 def test_without_ompl_there_is_no_such_planner_and_a_warning_names_the_extra(robot, monkeypatch, caplog):

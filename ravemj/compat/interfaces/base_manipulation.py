@@ -7,8 +7,8 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ravemj.compat.interfaces.helper import given, number, several, whole
-from ravemj.compat.interfaces.trajectory_text import TrajectoryText
+from ravemj.compat.interfaces.helper import Helper, given, numbers, several, whole_numbers
+from ravemj.compat.planningutils import RetimeTrajectory, VerifyTrajectory
 from ravemj.compat.refusal import refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector, checked_whole_numbers
@@ -24,7 +24,7 @@ from ravemj.rave.trajectory import Trajectory
 Answer = Trajectory | str | None
 
 
-class BaseManipulation(TrajectoryText):
+class BaseManipulation(Helper):
     """Plans and executes motions of the active DOFs, of an arm, or of its tool.
 
     Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the
@@ -66,20 +66,18 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the active DOFs to a goal without collisions.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``releasegil`` and
+        ``usedynamicsconstraints`` are not used.
+
         Args:
             goal: Active values.
             steplength: Not used; resolutions of the joints say how finely lines are tested.
             maxiter: Iterations of the planner; None: 4000.
             maxtries: How often it is asked; None: 2.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             goals: Several goals in place of one; any will do.
-            outputtrajobj: Whether to return the motion.
             jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
-            releasegil: Not used.
             postprocessingplanner: The smoother; None: OpenRAVE's.
             postprocessingparameters: Its parameters as XML text.
-            usedynamicsconstraints: Not used.
             initialconfigs: Where the motion may start; None: where the robot is.
 
         Raises:
@@ -112,17 +110,15 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the arm of the active manipulator to a goal without collisions, whatever is active.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``steplength`` and ``releasegil`` are not
+        used.
+
         Args:
             goal: Values of the arm's joints.
             maxiter: Iterations of the planner; None: 4000.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             maxtries: How often the planner is asked; None: 2.
             goals: Several goals in place of one; any will do.
-            steplength: Not used.
-            outputtrajobj: Whether to return the motion.
             jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
-            releasegil: Not used.
 
         Raises:
             PlanningError: there is no such motion.
@@ -167,9 +163,11 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the arm of the active manipulator so that its tool reaches a goal, without collisions.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``affinedofs``, ``steplength``,
+        ``minimumgoalpaths``, ``jittergoal``, ``goalmaxtries``, ``releasegil`` and ``freevalues`` are not used.
+
         Args:
             matrices: Goal poses ``T_world_tool``: 4x4, 3x4 or 7 numbers each. The motion ends at one of them.
-            affinedofs: Not used.
             maxiter: The maximum number of iterations of the planner; by default 4000.
             maxtries: The number of calls of the planner; by default 3.
             translation: A goal point of the tool, in place of a pose.
@@ -181,27 +179,18 @@ class BaseManipulation(TrajectoryText):
             constraintmatrix: ``T_task_world``, the task frame, to whose axes ``constraintfreedoms`` refers; by default
                 the world.
             constrainterrorthresh: The tolerance of the constraint [m and rad]; by default 0.001.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            steplength: Not used.
             goalsamples: The largest number of IK solutions that are goals; by default 40.
             ikparam: A goal of any type.
             ikparams: Several goals of any type.
             jitter: The largest change of each value of a start or goal in collision [rad or m]; by default 0.03. With
                 a constraint, starts and goals are not changed.
-            minimumgoalpaths: Not used.
-            outputtrajobj: Whether to return the motion.
             postprocessing: The smoother and its parameters; None: OpenRAVE's.
-            jittergoal: Not used.
             constrainttaskmatrix: ``T_tool_point``, the constrained frame; by default the frame of the tool that is the
                 task frame at the start, so that the tool keeps what it has there.
             constrainttaskpose: The same as 7 numbers.
             goalsampleprob: The fraction of the iterations that ask for a further IK solution; by default 0.1.
             goalmaxsamples: As ``goalsamples``.
-            goalmaxtries: Not used.
-            releasegil: Not used.
             initialconfigs: Where the arm may start; None: where it is.
-            freevalues: Not used.
 
         Raises:
             PlanningError: there is no such motion, or no solver of inverse kinematics.
@@ -223,20 +212,20 @@ class BaseManipulation(TrajectoryText):
             constrainterrorthresh=constrainterrorthresh,
         )
         kind = IkParameterization.Type
-        poses = [checked_transform(one, "matrices") for one in several(matrices, "matrices")]
-        goals = [IkParameterization(pose, kind.Transform6D) for pose in poses]
+        poses = several(matrices, "matrices")
+        goals = [IkParameterization(checked_transform(pose, "matrices"), kind.Transform6D) for pose in poses]
         if translation is not None:
             goals.append(IkParameterization(checked_vector(translation, 3, "translation"), kind.Translation3D))
         if rotation is not None:
             goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
-        others = [*([] if ikparam is None else [ikparam]), *several(ikparams, "ikparams")]
+        others = [*given(ikparam=ikparam).values(), *several(ikparams, "ikparams")]
         goals += [checked_kind(one, IkParameterization, "ikparam") for one in others]
-        samples = whole(goalsamples or goalmaxsamples, "goalsamples")
+        counts = whole_numbers(seedik=seedik, goalsamples=goalsamples or goalmaxsamples)
         traj = self._base.move_to_hand_position(
             goals,
             search_options(options, HAND_SEARCH),
-            **given(seedik=whole(seedik, "seedik"), goalsamples=samples),
-            **given(goalsampleprob=number(goalsampleprob, "goalsampleprob")),
+            **counts,
+            **numbers(goalsampleprob=goalsampleprob),
             starts=_rows("initialconfigs", None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,
         )
@@ -260,6 +249,9 @@ class BaseManipulation(TrajectoryText):
     ) -> Answer:
         """Move the tool of the active manipulator along a straight line, with its orientation, as far as it goes.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``greedysearch``, ``steplength`` and
+        ``planner`` are not used.
+
         Args:
             direction: Where to, in the world; its length does not count.
             minsteps: How many steps it has to go; None: 0.
@@ -267,13 +259,7 @@ class BaseManipulation(TrajectoryText):
             stepsize: How far a step is [m]; None: 0.01.
             ignorefirstcollision: Way at the start in which collisions do not count [m]; None: 0.1.
             starteematrix: ``T_world_tool`` where it starts; None: where it is.
-            greedysearch: Not used.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             maxdeviationangle: Not used; the tool does not turn.
-            steplength: Not used.
-            planner: Not used.
-            outputtrajobj: Whether to return the motion.
 
         Raises:
             PlanningError: it does not get that far, or there is no solver of inverse kinematics.
@@ -283,9 +269,8 @@ class BaseManipulation(TrajectoryText):
         """
         del greedysearch, maxdeviationangle, steplength, planner
         start = None if starteematrix is None else checked_transform(starteematrix, "starteematrix")
-        options = given(minsteps=whole(minsteps, "minsteps"), maxsteps=whole(maxsteps, "maxsteps"), starteematrix=start)
-        options |= given(stepsize=number(stepsize, "stepsize"))
-        options |= given(ignorefirstcollision=number(ignorefirstcollision, "ignorefirstcollision"))
+        options = given(starteematrix=start) | whole_numbers(minsteps=minsteps, maxsteps=maxsteps)
+        options |= numbers(stepsize=stepsize, ignorefirstcollision=ignorefirstcollision)
         traj = self._base.move_hand_straight(checked_vector(direction, 3, "direction"), **options)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
@@ -304,29 +289,24 @@ class BaseManipulation(TrajectoryText):
 
         The other joints, those of a hand for instance, are not moved.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``.
+
         Args:
             jointvalues: The values of the other joints.
             jointinds: Their DOF indices.
             maxtries: How often a place is looked for; None: once.
             planner: The planner of the motion; None: ``BasicRRT``.
             maxdivision: In how many steps the motion of the other joints is tested; None: 10.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            outputtrajobj: Whether to return the motion.
 
         Raises:
             PlanningError: there is no such place.
             AssertionError: there are not as many values as indices, or none.
         """
-        values, indices = (
-            checked_numbers(jointvalues, "jointvalues"),
-            checked_whole_numbers(jointinds, "jointinds").tolist(),
-        )
+        values = checked_numbers(jointvalues, "jointvalues")
+        indices = checked_whole_numbers(jointinds, "jointinds").tolist()
         if not len(values) == len(indices) > 0:
             raise AssertionError(f"jointvalues: are {len(values)}, and there are {len(indices)} jointinds")
-        options = given(
-            maxtries=whole(maxtries, "maxtries"), maxdivision=whole(maxdivision, "maxdivision"), planner=planner
-        )
+        options = whole_numbers(maxtries=maxtries, maxdivision=maxdivision) | given(planner=planner)
         traj = self._base.move_unsync_joints(values, indices, **options)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
@@ -341,13 +321,12 @@ class BaseManipulation(TrajectoryText):
     ) -> tuple[Floats | None, Answer]:
         """Move the active DOFs a little, out of collision.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``.
+
         Args:
             maxiter: How many configurations are tried; None: 5000.
             jitter: How far each value may move [rad or m]; None: 0.03.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
             outputfinal: Whether to return where it leads.
-            outputtrajobj: Whether to return the motion.
 
         Returns:
             Where the motion leads, and the motion; None for what was not asked for.
@@ -355,8 +334,51 @@ class BaseManipulation(TrajectoryText):
         Raises:
             PlanningError: there is no such configuration.
         """
-        found = self._base.jitter_active(**given(maxiter=whole(maxiter, "maxiter"), jitter=number(jitter, "jitter")))
+        options = whole_numbers(maxiter=maxiter) | numbers(jitter=jitter)
+        found = self._base.jitter_active(**options)
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+
+    def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:
+        """Execute a trajectory.
+
+        ``resettrans`` is not used.
+
+        Args:
+            data: The trajectory, as ``Trajectory.serialize`` writes it.
+            resettiming: Whether it gets new times.
+
+        Raises:
+            openrave_exception: this is no trajectory, or it cannot be executed.
+        """
+        self._base.execute(self._read(data, resettiming))
+
+    def VerifyTrajectory(
+        self,
+        data: str | bytes,
+        resettrans: bool | None = None,
+        resettiming: bool | None = None,
+        samplingstep: float | None = None,
+    ) -> None:
+        """Check that a trajectory keeps limits and constraints; see ``planningutils.VerifyTrajectory``.
+
+        ``resettrans`` is not used.
+
+        Args:
+            data: The trajectory, as ``Trajectory.serialize`` writes it.
+            resettiming: Whether it gets new times first.
+            samplingstep: Steps in which it is looked at [s].
+
+        Raises:
+            openrave_exception: it does not, or this is no trajectory.
+        """
+        VerifyTrajectory(None, self._read(data, resettiming), **given(samplingstep=samplingstep))
+
+    def _read(self, data: str | bytes, resettiming: bool | None) -> Trajectory:
+        traj = Trajectory(self.robot.GetEnv(), "")
+        traj.deserialize(data)
+        if resettiming:
+            RetimeTrajectory(traj, False)
+        return traj
 
     FindIKWithFilters = refusing(  # by OpenRAVE 0.149, too
         "FindIKWithFilters",
@@ -367,13 +389,12 @@ class BaseManipulation(TrajectoryText):
 
 def _effort(maxiter: int | None, maxtries: int | None, jitter: float | None) -> dict[str, Any]:
     """Return the effort of a search, as options."""
-    counts = given(maxiter=whole(maxiter, "maxiter"), maxtries=whole(maxtries, "maxtries"))
-    return counts | given(jitter=number(jitter, "jitter"))
+    return whole_numbers(maxiter=maxiter, maxtries=maxtries) | numbers(jitter=jitter)
 
 
 def _rows(name: str, one: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
     """Return goals or starts."""
-    rows = [checked_numbers(row, name) for row in [*several(many, name), *([] if one is None else [one])]]
+    rows = [checked_numbers(row, name) for row in [*several(many, name), *given(one=one).values()]]
     for row in rows:
         if row.shape != (dof,) or not dof:
             raise AssertionError(f"{name}: has shape {row.shape}, and should have {dof} values")

@@ -102,22 +102,22 @@ def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any ki
     return {name: value for name, value in options.items() if value is not None}
 
 
-def number(value: float | None, name: str) -> float | None:
-    """Return an option that is a finite number, or None.
+def numbers(**options: float | None) -> dict[str, Any]:
+    """Return the options that are not None, as finite numbers.
 
     Raises:
-        ArgumentError: it is neither.
+        ArgumentError: one is no finite number.
     """
-    return None if value is None else checked_vector([value], 1, name).item()
+    return {name: checked_vector([value], 1, name).item() for name, value in given(**options).items()}
 
 
-def whole(value: int | None, name: str) -> int | None:
-    """Return an option that is a whole number, or None.
+def whole_numbers(**options: int | None) -> dict[str, Any]:
+    """Return the options that are not None, as whole numbers.
 
     Raises:
-        ArgumentError: it is neither.
+        ArgumentError: one is no whole number.
     """
-    return None if value is None else checked_whole_numbers([value], name).item()
+    return {name: checked_whole_numbers([value], name).item() for name, value in given(**options).items()}
 
 
 def several(values: Iterable[Thing] | None, name: str) -> list[Thing]:

@@ -74,17 +74,14 @@ class TaskManipulation(Helper):
     ) -> Answer:
         """Close the gripper: each joint moves until what it moves touches something, or to its limit.
 
+        The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``translationstepmult``
+        and ``releasegil`` are not used.
+
         Args:
             offset: How far each joint goes back from there [rad or m].
             movingdir: For each joint, to which side it moves; None: the closing direction.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            outputfinal: Whether to return where it leads.
             coarsestep: How far joints move between two tests [rad or m]; None: 0.01.
-            translationstepmult: Not used.
             finestep: Not used; contacts are found to a micrometre.
-            outputtrajobj: Whether to return the motion.
-            releasegil: Not used.
 
         Raises:
             AssertionError: there are not as many numbers as joints.
@@ -112,17 +109,13 @@ class TaskManipulation(Helper):
     ) -> Answer:
         """Open the gripper: each joint moves until what it moves touches something new, or to its limit.
 
+        The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``translationstepmult``,
+        ``finestep`` and ``releasegil`` are not used.
+
         Args:
             target: A held body that is let go.
             movingdir: For each joint, to which side it moves; None: against the closing direction.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            outputfinal: Whether to return where it leads.
             coarsestep: How far joints move between two tests [rad or m]; None: 0.01.
-            translationstepmult: Not used.
-            finestep: Not used.
-            outputtrajobj: Whether to return the motion.
-            releasegil: Not used.
 
         Raises:
             AssertionError: there are not as many numbers as joints.
@@ -147,14 +140,12 @@ class TaskManipulation(Helper):
     ) -> Answer:
         """Move the active joints to one side, until what they move touches something new, or to their limits.
 
+        The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``translationstepmult``
+        is not used.
+
         Args:
             movingdir: For each active joint, to which side it moves; None: none moves.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            outputfinal: Whether to return where it leads.
-            translationstepmult: Not used.
             finestep: How far joints move between two tests [rad or m]; None: 0.01.
-            outputtrajobj: Whether to return the motion.
         """
         del translationstepmult
         count = len(self.robot.GetActiveDOFIndices())
@@ -201,6 +192,9 @@ class TaskManipulation(Helper):
         the hand gets on to the target in a straight line, and from where it can take the target to one of
         ``destposes``.
 
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``grasptranslationstepmult``,
+        ``graspfinestep``, ``steplength`` and ``releasegil`` are not used.
+
         Args:
             graspindices: The first column of what a grasp has: ``igrasptrans``, the pose of the tool in the target, 12
                 numbers by columns (``grasptrans_nocol`` counts more); ``igraspdir``, in the target, or
@@ -216,15 +210,8 @@ class TaskManipulation(Helper):
             maxiter: Iterations of the planner; None: 4000.
             randomgrasps: Whether grasps are tried in a random order; None: they are.
             randomdests: Whether poses are; None: they are.
-            execute: False leaves the robot alone.
-            outputtraj: Whether to return the motion's text.
-            grasptranslationstepmult: Not used.
-            graspfinestep: Not used.
-            outputtrajobj: Whether to return the motion.
             gmodel: Has ``graspindices``, ``grasps`` and ``target``, for those that are not given.
             paddedgeometryinfo: Not possible here.
-            steplength: Not used.
-            releasegil: Not used.
 
         Returns:
             Goals of the hand, as ``IkParameterization``, with which the target is at one of ``destposes``; the number

@@ -73,8 +73,8 @@ def _links(body0: KinBody, body1: KinBody, geometries: bool, physics: bool, epsi
             _alike([one.GetType() for one in first], [one.GetType() for one in second], f"{name}: shapes")
             for one, other in zip(first, second, strict=True):
                 _near(one.GetTransform(), other.GetTransform(), epsilon, f"{name}: poses of shapes")
-                for box0, box1 in [(one.ComputeAABB(np.eye(4)), other.ComputeAABB(np.eye(4)))]:
-                    _near(box0.extents(), box1.extents(), epsilon, f"{name}: sizes of shapes")
+                box0, box1 = one.ComputeAABB(np.eye(4)), other.ComputeAABB(np.eye(4))
+                _near(box0.extents(), box1.extents(), epsilon, f"{name}: sizes of shapes")
 
 
 def _joints(body0: KinBody, body1: KinBody, epsilon: float) -> None:

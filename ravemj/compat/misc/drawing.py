@@ -1,6 +1,6 @@
 """Axes, circles and goals of arms, drawn into an environment."""
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,32 +27,8 @@ _LINES = {
 _AXIS_COLOURS = {"rgb": np.eye(3), "cmy": 1 - np.eye(3)}
 
 
-class HasTransform(Protocol):
-    """A body, a link, a manipulator, a sensor."""
-
-    def GetTransform(self) -> Floats:
-        """Return the pose in the world, shape (4, 4)."""
-        ...
-
-
-class Canvas(Protocol):
-    """An environment, as far as drawing is concerned."""
-
-    def GetKinBody(self, name: str) -> HasTransform | None:
-        """Return the body of that name, or None."""
-        ...
-
-    def drawlinelist(self, points: ArrayLike, linewidth: float, colors: ArrayLike) -> object:
-        """Draw lines between pairs of points."""
-        ...
-
-    def drawlinestrip(self, points: ArrayLike, linewidth: float, colors: ArrayLike) -> object:
-        """Draw a line through points."""
-        ...
-
-
 def DrawAxes(
-    env: Canvas,
+    env: Environment,
     target: Any,  # noqa: ANN401 - a body, a name, a matrix, a list of these
     dist: float = 1.0,
     linewidth: float = 1,
@@ -86,7 +62,7 @@ def DrawAxes(
 
 
 def DrawCircle(
-    env: Canvas,
+    env: Environment,
     center: ArrayLike,
     normal: ArrayLike,
     radius: float,
@@ -112,7 +88,11 @@ def DrawCircle(
 
 
 def DrawIkparam(
-    env: Canvas, ikparam: IkParameterization, dist: float = 1.0, linewidth: float = 1, coloradd: ArrayLike | None = None
+    env: Environment,
+    ikparam: IkParameterization,
+    dist: float = 1.0,
+    linewidth: float = 1,
+    coloradd: ArrayLike | None = None,
 ) -> object:
     """Draw what an arm shall reach: axes at its place, or a line along its direction.
 
@@ -139,7 +119,11 @@ def DrawIkparam(
 
 
 def DrawIkparam2(
-    env: Canvas, ikparam: IkParameterization, dist: float = 1.0, linewidth: float = 1, coloradd: ArrayLike | None = None
+    env: Environment,
+    ikparam: IkParameterization,
+    dist: float = 1.0,
+    linewidth: float = 1,
+    coloradd: ArrayLike | None = None,
 ) -> list[object]:
     """Draw as ``DrawIkparam``; returns a list of handles."""
     return [DrawIkparam(env, ikparam, dist, linewidth, coloradd)]
@@ -153,7 +137,7 @@ def _is_pose(target: object) -> bool:
         return False
 
 
-def _transform(env: Canvas, target: Any) -> Floats:  # noqa: ANN401 - as of DrawAxes
+def _transform(env: Environment, target: Any) -> Floats:  # noqa: ANN401 - as of DrawAxes
     if target is None:
         return np.eye(4)
     thing: Any = env.GetKinBody(target) if isinstance(target, str) else target

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
-from ravemj.core.transforms import Floats
 from ravemj.rave.enums import IkFilterOptions
+from ravemj.rave.ikreturn import IkReturn
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.specification import IkParameterization
 
@@ -48,7 +48,7 @@ class ManipulatorIKGoalSampler(ApiObject):
         self._random = np.random.default_rng(0)
         self._goals = list(enumerate(parameterizations))
         self._most = nummaxsamples
-        self._ready: list[tuple[int, Any]] = []
+        self._ready: list[tuple[int, IkReturn]] = []
         self._given: list[int] = []
 
     def Sample(self, ikreturn: bool = False, releasegil: bool = False) -> Any:  # noqa: ANN401 - two kinds of answer
@@ -66,11 +66,11 @@ class ManipulatorIKGoalSampler(ApiObject):
             return None
         index, solution = self._ready.pop(0)
         self._given.append(index)
-        return solution if ikreturn else _values(solution)
+        return solution if ikreturn else solution.GetSolution()
 
-    def _solutions(self, goal: IkParameterization) -> Any:  # noqa: ANN401 - IkReturn, or rows of values
+    def _solutions(self, goal: IkParameterization) -> list[IkReturn]:
         """Return the solutions of a goal; where there are none, those of the first place beside it that has some."""
-        found = self._manip.FindIKSolutions(goal, *self._arguments, ikreturn=True)
+        found: Any = self._manip.FindIKSolutions(goal, *self._arguments, ikreturn=True)
         for _ in range(self._tries):
             if len(found):
                 break
@@ -79,7 +79,7 @@ class ManipulatorIKGoalSampler(ApiObject):
             found = self._manip.FindIKSolutions(goal.Transform(aside), *self._arguments, ikreturn=True)
         return found
 
-    def SampleAll(self, maxsamples: int = 0, maxchecksamples: int = 0, releasegil: bool = False) -> list[Any]:
+    def SampleAll(self, maxsamples: int = 0, maxchecksamples: int = 0, releasegil: bool = False) -> list[IkReturn]:
         """Return the solutions that are left, as ``IkReturn``.
 
         Args:
@@ -88,7 +88,7 @@ class ManipulatorIKGoalSampler(ApiObject):
             releasegil: Not used.
         """
         del maxchecksamples, releasegil
-        found: list[Any] = []
+        found: list[IkReturn] = []
         while (not maxsamples or len(found) < maxsamples) and (one := self.Sample(ikreturn=True)) is not None:
             found.append(one)
         return found
@@ -100,8 +100,3 @@ class ManipulatorIKGoalSampler(ApiObject):
             index: The number of the solution, in the order in which they were given.
         """
         return self._given[index]
-
-
-def _values(solution: Any) -> Floats:  # noqa: ANN401 - IkReturn, or values
-    getter = getattr(solution, "GetSolution", None)
-    return np.asarray(getter() if getter else solution)

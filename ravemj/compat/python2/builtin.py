@@ -25,15 +25,15 @@ from ravemj.compat.python2.statements import CODE, ITEM, MESSAGE, METHOD
 from ravemj.compat.python2.translation import translate
 
 
-def _apply(function: Callable[..., Any], args: Iterable[Any] = (), options: Mapping[str, Any] | None = None) -> Any:  # noqa: ANN401
+def _apply(function: Callable[..., Any], args: Iterable[Any] = (), options: Mapping[str, Any] | None = None) -> Any:
     return function(*args, **(options or {}))
 
 
-def _cmp(x: Any, y: Any) -> int:  # noqa: ANN401 - whatever scripts compare
+def _cmp(x: Any, y: Any) -> int:
     return int(x > y) - int(x < y)
 
 
-def _filter(function: Callable[[Any], Any] | None, sequence: Any) -> Any:  # noqa: ANN401 - whatever has items
+def _filter(function: Callable[[Any], Any] | None, sequence: Any) -> Any:
     kept = list(builtins.filter(function, sequence))
     if isinstance(sequence, str):
         return "".join(kept)
@@ -56,7 +56,7 @@ def _zip(*sequences: Iterable[Any]) -> list[tuple[Any, ...]]:
     return list(builtins.zip(*sequences, strict=False))
 
 
-def _round(number: Any, ndigits: int = 0) -> float:  # noqa: ANN401 - whatever is a number
+def _round(number: Any, ndigits: int = 0) -> float:
     """Round halves away from zero."""
     exact = Decimal(float(item(number)))
     if not exact.is_finite():
@@ -64,14 +64,14 @@ def _round(number: Any, ndigits: int = 0) -> float:  # noqa: ANN401 - whatever i
     return float(exact.quantize(Decimal((0, (1,), -ndigits)), ROUND_HALF_UP, Context(prec=2000)))
 
 
-def _message(error: Any) -> Any:  # noqa: ANN401 - whatever has a message
+def _message(error: Any) -> Any:
     """Return ``error.message``, which exceptions had in Python 2."""
     if hasattr(error, "message") or not isinstance(error, BaseException):
         return error.message
     return error.args[0] if len(error.args) == 1 else ""
 
 
-def _open(name: str, mode: str = "r", buffering: int = -1, **options: Any) -> Any:  # noqa: ANN401 - scripts may ask for Python 3's
+def _open(name: str, mode: str = "r", buffering: int = -1, **options: Any) -> Any:
     return builtins.open(name, mode, buffering, **options) if options else File(name, mode, buffering)
 
 
@@ -82,7 +82,7 @@ def _reload(module: ModuleType) -> ModuleType:
 # Code
 
 
-def _code(source: Any, mode: Literal["exec", "eval"], path: str = "<string>") -> Any:  # noqa: ANN401
+def _code(source: Any, mode: Literal["exec", "eval"], path: str = "<string>") -> Any:
     """Compile what ``exec`` and ``eval`` are given: text, an open file, or code already."""
     source = source.read() if isinstance(source, File) else source
     source = importlib.util.decode_source(source) if isinstance(source, bytes) else source
@@ -98,13 +98,13 @@ def _code(source: Any, mode: Literal["exec", "eval"], path: str = "<string>") ->
     return translate(source, path, mode)
 
 
-def _compile(source: Any, filename: str, mode: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401
+def _compile(source: Any, filename: str, mode: Any, *args: Any, **options: Any) -> Any:
     if mode == "single" or args or options:
         return builtins.compile(source, filename, mode, *args, **options)
     return _code(source, mode, filename)
 
 
-def _input(prompt: object = "") -> Any:  # noqa: ANN401 - whatever users type
+def _input(prompt: object = "") -> Any:
     """Evaluate what users type, among the names of the caller."""
     frame = inspect.currentframe()
     assert frame is not None

@@ -34,7 +34,7 @@ class Division(ast.NodeTransformer):
         return node
 
 
-def divide(left: Any, right: Any) -> Any:  # noqa: ANN401 - whatever scripts divide
+def divide(left: Any, right: Any) -> Any:
     """Divide as Python 2 does."""
     if hasattr(type(left), "__div__"):
         return left.__div__(right)
@@ -46,10 +46,10 @@ def divide(left: Any, right: Any) -> Any:  # noqa: ANN401 - whatever scripts div
 class Divisor:
     """The right side of ``a /= b``: no left side knows the type, so Python calls the methods of this class."""
 
-    def __init__(self, value: Any) -> None:  # noqa: ANN401 - whatever scripts divide by
+    def __init__(self, value: Any) -> None:
         self._value = value
 
-    def __rtruediv__(self, left: Any) -> Any:  # noqa: ANN401 - whatever scripts divide
+    def __rtruediv__(self, left: Any) -> Any:
         if hasattr(type(left), "__idiv__"):
             return left.__idiv__(self._value)
         if hasattr(type(left), "__div__"):
@@ -57,7 +57,7 @@ class Divisor:
         whole = _is_whole(left) and _is_whole(self._value)
         return operator.ifloordiv(left, self._value) if whole else operator.itruediv(left, self._value)
 
-    def __array_ufunc__(self, ufunc: Any, method: str, left: Any, right: object, **options: Any) -> Any:  # noqa: ANN401
+    def __array_ufunc__(self, ufunc: Any, method: str, left: Any, right: object, **options: Any) -> Any:
         """Divide an array, into itself; numpy asks for this."""
         del method, right
         divide = np.floor_divide if _is_whole(left) and _is_whole(self._value) else ufunc

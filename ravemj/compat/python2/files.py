@@ -15,7 +15,7 @@ from typing import Any, Self
 _ENCODING, _ERRORS = "utf-8", "surrogateescape"  # bytes that are no UTF-8 come out of text as they went in
 
 
-def as_bytes(text: Any) -> Any:  # noqa: ANN401 - what scripts write
+def as_bytes(text: Any) -> Any:
     """Return the bytes of a text; return anything else unchanged."""
     return text.encode(_ENCODING, _ERRORS) if isinstance(text, str) else text
 
@@ -46,7 +46,7 @@ class File:
         self._is_binary = "b" in mode
         self._is_universal = "U" in mode or (os.linesep != "\n" and not self._is_binary)
 
-    def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - close, flush, seek, fileno and so on
+    def __getattr__(self, name: str) -> Any:
         """Return what the file of Python 3 has, for all that does not concern text."""
         return getattr(self.buffer, name)
 
@@ -99,21 +99,21 @@ class File:
 class Unpickler(pickle.Unpickler):
     """Unpickles from files of text and of bytes, and what Python 2 pickled."""
 
-    def __init__(self, file: Any) -> None:  # noqa: ANN401 - whatever can be read
+    def __init__(self, file: Any) -> None:
         super().__init__(getattr(file, "buffer", file), encoding="latin-1")  # as numpy's arrays ask for
 
 
-def load(file: Any) -> Any:  # noqa: ANN401 - whatever was written
+def load(file: Any) -> Any:
     """Load like ``pickle.load``, also what Python 2 wrote."""
     return Unpickler(file).load()
 
 
-def loads(data: str | bytes) -> Any:  # noqa: ANN401 - whatever was written
+def loads(data: str | bytes) -> Any:
     """Load like ``pickle.loads``, also what Python 2 wrote."""
     return pickle.loads(as_bytes(data), encoding="latin-1")
 
 
-def new_hash(name: str, string: object = b"") -> Any:  # noqa: ANN401 - hashlib does not say what it returns
+def new_hash(name: str, string: object = b"") -> Any:
     """Do what ``hashlib.new`` does."""
     return hashlib.new(name, as_bytes(string))
 
@@ -126,10 +126,10 @@ def getwriter(encoding: str) -> Callable[..., Any]:
 class Popen(subprocess.Popen[str]):
     """A process whose pipes take and give text."""
 
-    def __init__(self, *args: Any, **options: Any) -> None:  # noqa: ANN401 - as subprocess.Popen takes them
+    def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **{"encoding": _ENCODING, "errors": _ERRORS, **options})
 
 
-def check_output(*args: Any, **options: Any) -> str:  # noqa: ANN401 - as subprocess.Popen takes them
+def check_output(*args: Any, **options: Any) -> str:
     """Do what ``subprocess.check_output`` does."""
     return subprocess.check_output(*args, **{"encoding": _ENCODING, "errors": _ERRORS, **options})

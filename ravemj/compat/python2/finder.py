@@ -91,7 +91,7 @@ class _Finder:
         self._folder = os.path.realpath(folder)
         self._known = {os.path.realpath(path) for path in sys.path} - {self._folder}
 
-    def find_spec(self, fullname: str, path: Any = None, target: ModuleType | None = None) -> ModuleSpec | None:  # noqa: ANN401 - as Python passes it
+    def find_spec(self, fullname: str, path: Any = None, target: ModuleType | None = None) -> ModuleSpec | None:
         spec = PathFinder.find_spec(fullname, path, target)
         if spec is not None and type(spec.loader) is SourceFileLoader and self._is_old(spec.loader.path):
             spec.loader = _Loader(fullname, spec.loader.path)

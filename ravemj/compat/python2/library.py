@@ -76,7 +76,7 @@ def _linux_distribution(*_: object, **__: object) -> tuple[str, str, str]:
     return release["NAME"], release.get("VERSION_ID", ""), release.get("VERSION_CODENAME", "")
 
 
-def _walk(top: str, func: Callable[[Any, str, list[str]], object], arg: Any) -> None:  # noqa: ANN401 - for func
+def _walk(top: str, func: Callable[[Any, str, list[str]], object], arg: Any) -> None:
     for folder, folders, names in os.walk(top):
         both = [*folders, *names]
         func(arg, folder, both)

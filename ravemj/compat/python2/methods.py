@@ -15,14 +15,14 @@ from ravemj.rave import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT
 
 
-def sort(iterable: Iterable[Any], cmp: Any = None, key: Any = None, reverse: bool = False) -> list[Any]:  # noqa: ANN401
+def sort(iterable: Iterable[Any], cmp: Any = None, key: Any = None, reverse: bool = False) -> list[Any]:
     """Return a sorted list, as ``sorted`` of Python 2, which takes a comparison."""
     order = cmp and functools.cmp_to_key(cmp)
     both = (lambda item: order(key(item))) if order and key else order or key
     return sorted(iterable, key=both, reverse=reverse)
 
 
-def _sort(values: list[Any], *args: Any, **options: Any) -> None:  # noqa: ANN401 - as ``sort`` takes them
+def _sort(values: list[Any], *args: Any, **options: Any) -> None:
     values[:] = sort(values, *args, **options)
 
 
@@ -50,7 +50,7 @@ NAMES = {*_GONE, *_LISTED, "encode", "serialize", "sort"}
 """Names of the methods that translated scripts call by ``call``."""
 
 
-def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever methods take
+def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:
     """Return what ``owner.name(...)`` returned in Python 2."""
     if name == "sort" and isinstance(owner, list):
         return _sort(owner, *args, **options)

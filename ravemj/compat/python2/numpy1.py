@@ -38,16 +38,16 @@ unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 _WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
 
 
-def item(a: Any) -> Any:  # noqa: ANN401 - whatever scripts take for a number
+def item(a: Any) -> Any:
     """Return the element of an array of one element; return anything else unchanged."""
     return a.item() if isinstance(a, np.ndarray) and a.size == 1 else a
 
 
-def _alen(a: Any) -> int:  # noqa: ANN401 - whatever makes an array
+def _alen(a: Any) -> int:
     return len(np.atleast_1d(a))
 
 
-def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **options: Any) -> Any:  # noqa: ANN401
+def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **options: Any) -> Any:
     """Return an array as NumPy 1 did: ``copy=False`` may copy, and lists of unlike lengths become objects."""
     may_copy: Any = True if copy else _WHERE_NEEDED
     try:
@@ -58,20 +58,20 @@ def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **opti
     return np.array(object, np.object_, *args, copy=may_copy, **options)
 
 
-def _asfarray(a: Any, dtype: Any = np.float64) -> Any:  # noqa: ANN401 - whatever makes an array
+def _asfarray(a: Any, dtype: Any = np.float64) -> Any:
     return np.asarray(a, dtype if np.issubdtype(dtype, np.inexact) else np.float64)
 
 
-def _asscalar(a: Any) -> Any:  # noqa: ANN401 - an array of any type
+def _asscalar(a: Any) -> Any:
     return a.item()
 
 
-def _divide(x1: Any, x2: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes arrays
+def _divide(x1: Any, x2: Any, *args: Any, **options: Any) -> Any:
     is_whole = all(np.asarray(x).dtype.kind in "biu" for x in (x1, x2))
     return (np.floor_divide if is_whole else np.divide)(x1, x2, *args, **options)
 
 
-def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -> Any:  # noqa: ANN401
+def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -> Any:
     return np.result_type(*array_types, *(np.dtype(scalar).type(0).item() for scalar in scalar_types))
 
 
@@ -79,26 +79,26 @@ def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function whose results are floats for integers, too."""
 
     @functools.wraps(function)
-    def call(x: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes an array
+    def call(x: Any, *args: Any, **options: Any) -> Any:
         x = np.asanyarray(x)
         return function(x.astype(float) if x.dtype.kind in "biu" else x, *args, **options)
 
     return call
 
 
-def _fromstring(string: Any, dtype: Any = float, count: int = -1, sep: str = "") -> Any:  # noqa: ANN401
+def _fromstring(string: Any, dtype: Any = float, count: int = -1, sep: str = "") -> Any:
     return np.fromstring(string, dtype, count, sep=sep) if sep else np.frombuffer(as_bytes(string), dtype, count).copy()
 
 
-def _in1d(ar1: Any, ar2: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes arrays
+def _in1d(ar1: Any, ar2: Any, **options: Any) -> Any:
     return np.isin(np.ravel(ar1), ar2, **options)
 
 
-def _msort(a: Any) -> Any:  # noqa: ANN401 - whatever makes an array
+def _msort(a: Any) -> Any:
     return np.sort(a, axis=0)
 
 
-def _sum(a: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes an array
+def _sum(a: Any, *args: Any, **options: Any) -> Any:
     return builtins.sum(a) if isinstance(a, GeneratorType) else np.sum(a, *args, **options)
 
 

@@ -37,7 +37,7 @@ MAX_BYTES = 1 << 30
 """The cache is pruned to this size, those files first that were used least recently."""
 
 _PRUNE_EVERY = 64  # files written by this process between two checks of the size
-_TICK = 2 * 10**9  # ns; the coarsest clock of a file system
+CLOCK_TICK = 2 * 10**9  # ns; the coarsest clock of a file system
 _RECENT = 24 * 3600  # s; a file that was used that recently is not marked again
 _READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
 
@@ -70,7 +70,8 @@ def cached_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, Refer
     content, home = read_bytes(path), os.path.dirname(os.path.abspath(place))
     parts, entry, references = _by_content(folder, content, kind, home, read)
     stamps = {**references.stamps, place: stamp}
-    if stamp and all(stamp_of(name) == known and changed_at(known) + _TICK < began for name, known in stamps.items()):
+    settled = (stamp_of(name) == known and changed_at(known) + CLOCK_TICK < began for name, known in stamps.items())
+    if stamp and all(settled):
         _store(Path(shortcut), pack_shortcut(entry, stamps))
     return parts
 

@@ -54,13 +54,13 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
     kind = suffix if scale == UNSCALED else f"{suffix} {scale}"
 
     def read(raw: bytes) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
-        parts, references = _read(FileContent(path, unpacked(raw, path)), reader_of(suffix))
+        parts, references = read_content(FileContent(path, unpacked(raw, path)), reader_of(suffix))
         return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
 
     return cache.cached_file(path, kind, read)
 
 
-def _read(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
+def read_content(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
     """Return the parts, and the files that they come from besides ``file``."""
     try:
         with np.errstate(all="ignore"):  # what is not finite in the end is refused
