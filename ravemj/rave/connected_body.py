@@ -124,28 +124,16 @@ class ConnectedBody(ApiObject):
         return [self._robot.GetGripperInfo(self._resolved(one._name)) for one in self._info._gripperInfos]
 
     def CanProvideManipulator(self, resolvedManipulatorName: str) -> bool:
-        """Return whether the robot has a manipulator of that name from it while it is connected.
-
-        Args:
-            resolvedManipulatorName: The name, with that of the body before it.
-        """
+        """Return whether the connected body gives the robot a manipulator called ``resolvedManipulatorName``."""
         return resolvedManipulatorName in {self._resolved(one._name) for one in self._info._manipulatorInfos}
 
     def SetLinkEnable(self, enable: bool) -> None:
-        """Let its links collide or not, while it is connected.
-
-        Args:
-            enable: Whether they do.
-        """
+        """Let its links collide if ``enable``, while it is connected."""
         for link in filter(None, self.GetResolvedLinks()):
             link.Enable(enable)
 
     def SetLinkVisible(self, visible: bool) -> None:
-        """Show or hide its links, while it is connected.
-
-        Args:
-            visible: Whether they show.
-        """
+        """Show its links if ``visible``, else hide them, while it is connected."""
         for link in filter(None, self.GetResolvedLinks()):
             link.SetVisible(visible)
 

@@ -58,11 +58,7 @@ class Interface(ReadableInterface):
         return self.annotations.description
 
     def SetDescription(self, description: str) -> None:
-        """Attach a text.
-
-        Args:
-            description: The text.
-        """
+        """Attach the text ``description``."""
         self.annotations.description = str(description)
 
     SetUserData = SetUserData
@@ -86,11 +82,7 @@ class Interface(ReadableInterface):
         self._readables = ref.GetReadableInterfaces()
 
     def SupportsJSONCommand(self, cmd: str) -> bool:
-        """Return whether ``SendJSONCommand`` knows a command: none.
-
-        Args:
-            cmd: The name of the command.
-        """
+        """Return whether ``SendJSONCommand`` knows the command ``cmd``: it knows none."""
         del cmd
         return False
 
@@ -110,11 +102,7 @@ class Interface(ReadableInterface):
         raise RavemjError(message, ErrorCode.CommandNotSupported)
 
     def SupportsCommand(self, cmd: str) -> bool:
-        """Return whether ``SendCommand`` knows a command.
-
-        Args:
-            cmd: The name of the command; upper and lower case are the same.
-        """
+        """Return whether ``SendCommand`` knows the command ``cmd``; upper and lower case are the same."""
         return cmd.lower() in {"help", *map(str.lower, self._known_commands())}
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:

@@ -57,11 +57,7 @@ class ReadableInterface(ApiObject):
     _readables: dict[str, Readable] | None = None
 
     def GetReadableInterface(self, id: str) -> Readable | None:
-        """Return the value under an id, or None.
-
-        Args:
-            id: The id.
-        """
+        """Return the value under ``id``, or None."""
         return (self._readables or {}).get(id)
 
     def GetReadableInterfaces(self) -> dict[str, Readable]:
@@ -127,11 +123,7 @@ class SerializableData(ApiObject):
         return self._data
 
     def Deserialize(self, data: str) -> None:
-        """Set the text.
-
-        Args:
-            data: The text.
-        """
+        """Set the text to ``data``."""
         self._data = data
 
     def Close(self) -> None:
