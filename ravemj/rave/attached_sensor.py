@@ -126,20 +126,12 @@ class AttachedSensor(ApiObject):
         return AttachedSensorInfo.of(self._state.scene, self.description)
 
     def UpdateAndGetInfo(self, type: SensorType | None = None) -> AttachedSensorInfo:  # OpenRAVE's name
-        """Return ``GetInfo()``.
-
-        Args:
-            type: Not used.
-        """
+        """Return ``GetInfo()``; ``type`` has no effect."""
         del type
         return self.GetInfo()
 
     def UpdateInfo(self, type: SensorType | None = None) -> None:  # OpenRAVE's name
-        """Do nothing: ``GetInfo`` always gives the present state.
-
-        Args:
-            type: Not used.
-        """
+        """Do nothing, whatever ``type`` is: ``GetInfo`` always gives the present state."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()

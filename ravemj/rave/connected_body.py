@@ -74,9 +74,7 @@ class ConnectedBody(ApiObject):
         """
         if int(active) == self.IsActive():
             return False
-        if self._robot.simulation_state.index:
-            message = f"SetActive: '{self._robot.GetName()}' is in an environment; remove it first"
-            raise RavemjError(message, ErrorCode.InvalidState)
+        _check_removed(self._robot, "SetActive")
         self._info._bIsActive = int(active)
         return True
 
@@ -166,7 +164,7 @@ class ConnectedBodies:
     def add(self, info: ConnectedBodyInfo, replaces: bool) -> ConnectedBody:
         """Add a body; see ``Robot.AddConnectedBody``."""
         name = info._name
-        self._check_removed("AddConnectedBody")
+        _check_removed(self._robot, "AddConnectedBody")
         if not name or (not replaces and any(body.GetName() == name for body in self.bodies)):
             problem = f"has a connected body '{name}' already" if name else "needs a name for the body"
             raise ArgumentError(f"AddConnectedBody: '{self._robot.GetName()}' {problem}; set another _name")
@@ -178,7 +176,7 @@ class ConnectedBodies:
 
     def remove(self, gone: ConnectedBody) -> bool:
         """Forget a body; return whether it was there."""
-        self._check_removed("RemoveConnectedBody")
+        _check_removed(self._robot, "RemoveConnectedBody")
         before = len(self.bodies)
         self.bodies = tuple(body for body in self.bodies if body is not gone)
         return len(self.bodies) < before
@@ -202,7 +200,8 @@ class ConnectedBodies:
         """Return a description of the robot without what connected bodies are in it."""
         return info if self._own_parts is None else only_parts_of(info, self._own_parts)
 
-    def _check_removed(self, caller: str) -> None:
-        if self._robot.simulation_state.index:
-            message = f"{caller}: '{self._robot.GetName()}' is in an environment; remove it first"
-            raise RavemjError(message, ErrorCode.InvalidState)
+
+def _check_removed(robot: "Robot", caller: str) -> None:
+    if robot.simulation_state.index:
+        message = f"{caller}: '{robot.GetName()}' is in an environment; remove it first"
+        raise RavemjError(message, ErrorCode.InvalidState)

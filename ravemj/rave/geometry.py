@@ -151,14 +151,7 @@ class Geometry(ApiObject):
         return trimesh_of(self._scene.triangulated())
 
     def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
-        """Make ``GetCollisionMesh`` return the shape's own triangles again, in the one fineness that there is.
-
-        Args:
-            fTessellation: Not used.
-
-        Returns:
-            True.
-        """
+        """Let ``GetCollisionMesh`` give the shape's own triangles; return True. ``fTessellation`` has no effect."""
         del fTessellation
         if self._scene.collision_mesh is not None:
             self._edit(collision_mesh=None)

@@ -158,11 +158,7 @@ class BodyCollision(Structure, Interface):
         return pairs
 
     def SetAdjacentLinks(self, linkindex0: int, linkindex1: int) -> None:
-        """Exclude a pair of links from ``CheckSelfCollision``.
-
-        Args:
-            linkindex0: Index of a link.
-            linkindex1: Index of the other.
+        """Exclude the pair of the links ``linkindex0`` and ``linkindex1`` from ``CheckSelfCollision``.
 
         Raises:
             openrave_exception: there is no such link, or both are the same.

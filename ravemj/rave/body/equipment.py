@@ -193,7 +193,7 @@ class Equipment(Structure):
 
     def GetGripperInfo(self, name: str) -> GripperInfo | None:
         """Return the description of the gripper called ``name``, or None."""
-        return next((info for info in self._grippers if info._name == name), None)  # pyright: ignore[reportPrivateUsage] - OpenRAVE's field
+        return next((info for info in self._grippers if info._name == name), None)
 
     def AddGripperInfo(self, gripperInfo: GripperInfo, removeduplicate: bool = False) -> bool:
         """Add the description of a gripper.
@@ -208,7 +208,7 @@ class Equipment(Structure):
         Raises:
             openrave_exception: the description has no name, or that of another gripper.
         """
-        name = checked_kind(gripperInfo, GripperInfo, "AddGripperInfo: gripperInfo")._name  # pyright: ignore[reportPrivateUsage] - as above
+        name = checked_kind(gripperInfo, GripperInfo, "AddGripperInfo: gripperInfo")._name
         if not name or (self.GetGripperInfo(name) is not None and not removeduplicate):
             problem = f"has a gripper '{name}' already" if name else "needs a name for the gripper"
             raise ArgumentError(f"AddGripperInfo: '{self.GetName()}' {problem}; set another _name")
