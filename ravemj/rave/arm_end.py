@@ -78,11 +78,7 @@ class ArmEnd(ArmPart):
     GetClosingDirection = GetChuckingDirection
 
     def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
-        """Set the sign in which each DOF of the gripper closes.
-
-        Args:
-            chuckingdirection: -1, 0 or 1 for each of the gripper's DOFs.
-        """
+        """Set ``chuckingdirection``, the sign in which each DOF of the gripper closes: -1, 0 or 1."""
         count = len(self._scene.gripper_dofs)
         signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
         self._edit(chucking_direction=tuple(signs.tolist()))
@@ -90,11 +86,7 @@ class ArmEnd(ArmPart):
     SetClosingDirection = SetChuckingDirection
 
     def IsGrabbing(self, body: "KinBody") -> bool:
-        """Return whether the effector, or a link beyond it, holds a body.
-
-        Args:
-            body: The body.
-        """
+        """Return whether the effector, or a link beyond it, holds ``body``."""
         return self._robot.IsGrabbing(body) in self.GetChildLinks()
 
     def ReleaseAllGrabbed(self) -> None:

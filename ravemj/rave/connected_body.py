@@ -74,9 +74,7 @@ class ConnectedBody(ApiObject):
         """
         if int(active) == self.IsActive():
             return False
-        if self._robot.simulation_state.index:
-            message = f"SetActive: '{self._robot.GetName()}' is in an environment; remove it first"
-            raise RavemjError(message, ErrorCode.InvalidState)
+        _check_removed(self._robot, "SetActive")
         self._info._bIsActive = int(active)
         return True
 
@@ -124,28 +122,16 @@ class ConnectedBody(ApiObject):
         return [self._robot.GetGripperInfo(self._resolved(one._name)) for one in self._info._gripperInfos]
 
     def CanProvideManipulator(self, resolvedManipulatorName: str) -> bool:
-        """Return whether the robot has a manipulator of that name from it while it is connected.
-
-        Args:
-            resolvedManipulatorName: The name, with that of the body before it.
-        """
+        """Return whether the connected body gives the robot a manipulator called ``resolvedManipulatorName``."""
         return resolvedManipulatorName in {self._resolved(one._name) for one in self._info._manipulatorInfos}
 
     def SetLinkEnable(self, enable: bool) -> None:
-        """Let its links collide or not, while it is connected.
-
-        Args:
-            enable: Whether they do.
-        """
+        """Let its links collide if ``enable``, while it is connected."""
         for link in filter(None, self.GetResolvedLinks()):
             link.Enable(enable)
 
     def SetLinkVisible(self, visible: bool) -> None:
-        """Show or hide its links, while it is connected.
-
-        Args:
-            visible: Whether they show.
-        """
+        """Show its links if ``visible``, else hide them, while it is connected."""
         for link in filter(None, self.GetResolvedLinks()):
             link.SetVisible(visible)
 
@@ -178,7 +164,7 @@ class ConnectedBodies:
     def add(self, info: ConnectedBodyInfo, replaces: bool) -> ConnectedBody:
         """Add a body; see ``Robot.AddConnectedBody``."""
         name = info._name
-        self._check_removed("AddConnectedBody")
+        _check_removed(self._robot, "AddConnectedBody")
         if not name or (not replaces and any(body.GetName() == name for body in self.bodies)):
             problem = f"has a connected body '{name}' already" if name else "needs a name for the body"
             raise ArgumentError(f"AddConnectedBody: '{self._robot.GetName()}' {problem}; set another _name")
@@ -190,7 +176,7 @@ class ConnectedBodies:
 
     def remove(self, gone: ConnectedBody) -> bool:
         """Forget a body; return whether it was there."""
-        self._check_removed("RemoveConnectedBody")
+        _check_removed(self._robot, "RemoveConnectedBody")
         before = len(self.bodies)
         self.bodies = tuple(body for body in self.bodies if body is not gone)
         return len(self.bodies) < before
@@ -214,7 +200,8 @@ class ConnectedBodies:
         """Return a description of the robot without what connected bodies are in it."""
         return info if self._own_parts is None else only_parts_of(info, self._own_parts)
 
-    def _check_removed(self, caller: str) -> None:
-        if self._robot.simulation_state.index:
-            message = f"{caller}: '{self._robot.GetName()}' is in an environment; remove it first"
-            raise RavemjError(message, ErrorCode.InvalidState)
+
+def _check_removed(robot: "Robot", caller: str) -> None:
+    if robot.simulation_state.index:
+        message = f"{caller}: '{robot.GetName()}' is in an environment; remove it first"
+        raise RavemjError(message, ErrorCode.InvalidState)

@@ -151,14 +151,7 @@ class Geometry(ApiObject):
         return trimesh_of(self._scene.triangulated())
 
     def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
-        """Make ``GetCollisionMesh`` return the shape's own triangles again, in the one fineness that there is.
-
-        Args:
-            fTessellation: Not used.
-
-        Returns:
-            True.
-        """
+        """Let ``GetCollisionMesh`` give the shape's own triangles; return True. ``fTessellation`` has no effect."""
         del fTessellation
         if self._scene.collision_mesh is not None:
             self._edit(collision_mesh=None)
@@ -201,11 +194,7 @@ class Geometry(ApiObject):
         return np.array(self._scene.diffuse)
 
     def SetDiffuseColor(self, color: ArrayLike) -> None:
-        """Set the colour: red, green, blue from 0 to 1. What a render file draws keeps its own colours.
-
-        Args:
-            color: Red, green, blue from 0 to 1.
-        """
+        """Set ``color``: red, green, blue from 0 to 1. What a render file draws keeps its own colours."""
         self._edit(diffuse=_checked_colour(color, "SetDiffuseColor"))
 
     def GetAmbientColor(self) -> Floats:
@@ -213,11 +202,7 @@ class Geometry(ApiObject):
         return np.array(self._scene.ambient)
 
     def SetAmbientColor(self, color: ArrayLike) -> None:
-        """Set the colour in the shade: red, green, blue from 0 to 1. Pictures do not use it.
-
-        Args:
-            color: Red, green, blue from 0 to 1.
-        """
+        """Set ``color`` in the shade: red, green, blue from 0 to 1. Pictures do not use it."""
         self._edit(ambient=_checked_colour(color, "SetAmbientColor"))
 
     def GetTransparency(self) -> float:
@@ -236,22 +221,14 @@ class Geometry(ApiObject):
     IsDraw = IsVisible
 
     def SetVisible(self, visible: bool) -> bool:
-        """Draw the geometry or not; it collides all the same. Return whether that changed something.
-
-        Args:
-            visible: False hides it.
-        """
+        """Draw the geometry if ``visible``; it collides all the same. Return whether that changed something."""
         changed = self._scene.visible != bool(visible)
         if changed:
             self._edit(visible=bool(visible))
         return changed
 
     def SetDraw(self, draw: bool) -> None:
-        """Draw the geometry or not; the older name of ``SetVisible``.
-
-        Args:
-            draw: False hides it.
-        """
+        """Draw the geometry if ``draw``; the older name of ``SetVisible``."""
         self.SetVisible(draw)
 
     def IsModifiable(self) -> bool:

@@ -64,11 +64,7 @@ class Joint(JointLimits):
             return self._own(self._state.kinematics.values())
 
     def GetValue(self, axis: int = 0) -> float:
-        """Return the joint's value about or along one of its axes [rad or m].
-
-        Args:
-            axis: Which axis of the joint.
-        """
+        """Return the joint's value about or along ``axis`` [rad or m]."""
         return float(self.GetValues()[axis])
 
     def GetVelocities(self) -> Floats:
@@ -85,11 +81,7 @@ class Joint(JointLimits):
         return values[first : first + self.GetDOF()]
 
     def GetVelocity(self, axis: int = 0) -> float:
-        """Return the joint's velocity about or along one of its axes [rad/s or m/s].
-
-        Args:
-            axis: Which axis of the joint.
-        """
+        """Return the joint's velocity about or along ``axis`` [rad/s or m/s]."""
         return float(self.GetVelocities()[axis])
 
     def AddTorque(self, torques: ArrayLike) -> bool:
@@ -134,11 +126,7 @@ class Joint(JointLimits):
         return np.array([self.SubtractValue(first, second, axis) for axis, (first, second) in enumerate(pairs)])
 
     def GetWrapOffset(self, axis: int = 0) -> float:
-        """Return the value about which ``SetWrapOffset`` chose the turn that the joint's value is in [rad].
-
-        Args:
-            axis: Which axis of the joint.
-        """
+        """Return the value about which ``SetWrapOffset`` chose the turn that the value of ``axis`` is in [rad]."""
         return self._axis(axis).wrap_offset
 
     def SetWrapOffset(self, offset: float, axis: int = 0) -> None:
@@ -173,11 +161,7 @@ class Joint(JointLimits):
         return 0 <= axis < len(self._scene.axes) and self._scene.slides(axis)
 
     def IsCircular(self, axis: int = 0) -> bool:
-        """Return whether the joint turns without end.
-
-        Args:
-            axis: Which axis of the joint.
-        """
+        """Return whether the joint turns about ``axis`` without end."""
         return self._axis(axis).circular
 
     def IsStatic(self) -> bool:
@@ -206,11 +190,7 @@ class Joint(JointLimits):
         return (mimic.position, mimic.velocity, mimic.acceleration)[itype]
 
     def GetMimicDOFIndices(self, axis: int = 0) -> Ints:
-        """Return the DOFs in the joint's own equation; as in OpenRAVE, not those of other followers in it.
-
-        Args:
-            axis: Which axis of the joint.
-        """
+        """Return the DOFs in the equation of ``axis``; as in OpenRAVE, not those of other followers in it."""
         mimic = self._scene.mimic
         if mimic is None or axis or mimic.expression is None:
             return np.array([], dtype=np.int_)
@@ -278,11 +258,7 @@ class Joint(JointLimits):
     GetSecondAttached = GetHierarchyChildLink
 
     def GetInternalHierarchyAxis(self, axis: int = 0) -> Floats:
-        """Return the direction of an axis in the frame of ``GetInternalHierarchyLeftTransform``, shape (3,).
-
-        Args:
-            axis: Which axis of the joint.
-        """
+        """Return the direction of ``axis`` in the frame of ``GetInternalHierarchyLeftTransform``, shape (3,)."""
         return np.array(rotate(conjugate(self._left().wxyz), self._axis(axis).direction))
 
     def GetInternalHierarchyLeftTransform(self) -> Floats:

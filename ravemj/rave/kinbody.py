@@ -213,11 +213,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
             self._state.grabs = []
 
     def ReleaseAllGrabbedWithLink(self, grablink: Link) -> None:
-        """Let go of all bodies that one link holds.
-
-        Args:
-            grablink: The link.
-        """
+        """Let go of all bodies that the link ``grablink`` holds."""
         index = self._own_link(grablink, "ReleaseAllGrabbedWithLink")
         with self._simulation.lock:
             self._state.grabs = [grab for grab in self._state.grabs if grab.link != index]

@@ -87,11 +87,7 @@ class Link(LinkGeometries):
         return self._scene.static
 
     def SetStatic(self, bStatic: bool) -> None:
-        """Mark the link as static or not. Its joints move it either way.
-
-        Args:
-            bStatic: Whether it is static.
-        """
+        """Mark the link as static or not, as ``bStatic`` says. Its joints move it either way."""
         with self._state.simulation.lock:
             self._state.edit_link(self._index, static=bool(bStatic))
 
@@ -100,11 +96,7 @@ class Link(LinkGeometries):
         return [self._other(link) for link in chains.parents(self._state.scene, self._index)]
 
     def IsParentLink(self, link: "Link") -> bool:
-        """Return whether another link is a parent of this one.
-
-        Args:
-            link: The other link.
-        """
+        """Return whether ``link`` is among ``GetParentLinks()``."""
         return link in self.GetParentLinks()
 
     def GetRigidlyAttachedLinks(self) -> "list[Link]":
@@ -112,11 +104,7 @@ class Link(LinkGeometries):
         return [self._other(link) for link in chains.rigidly_attached(self._state.scene, self._index)]
 
     def IsRigidlyAttached(self, link: "Link") -> bool:
-        """Return whether no joint moves another link relative to this one.
-
-        Args:
-            link: The other link.
-        """
+        """Return whether ``link`` is among ``GetRigidlyAttachedLinks()``."""
         return link in self.GetRigidlyAttachedLinks()
 
     def _other(self, index: int) -> "Link":
@@ -177,11 +165,7 @@ class Link(LinkGeometries):
         return principal_moments(self._inertial)
 
     def SetMass(self, mass: float) -> None:
-        """Set the mass. The moments of inertia stay as they are.
-
-        Args:
-            mass: The mass [kg].
-        """
+        """Set the mass to ``mass`` [kg]. The moments of inertia stay as they are."""
         value = checked_number(mass, "SetMass: mass")
         self._set_inertial(replace(self._inertial, mass=value, undefined=False))
 
@@ -195,11 +179,7 @@ class Link(LinkGeometries):
         self._set_inertial(inertial_about(self._inertial.mass, T_link_mass, principal_moments(self._inertial)))
 
     def SetPrincipalMomentsOfInertia(self, inertiamoments: ArrayLike) -> None:
-        """Set the moments of inertia about the axes of the mass frame.
-
-        Args:
-            inertiamoments: The moments [kg m^2], shape (3,).
-        """
+        """Set ``inertiamoments``, the moments of inertia about the axes of the mass frame [kg m^2], shape (3,)."""
         moments = checked_vector(inertiamoments, 3, "SetPrincipalMomentsOfInertia: inertiamoments")
         self._set_inertial(inertial_about(self._inertial.mass, principal_frame(self._inertial), moments))
 

@@ -41,11 +41,7 @@ class LinkGeometries(Member):
         return [Geometry(self, self._state, self._index, index) for index in range(len(self._scene.geometries))]
 
     def GetGeometry(self, index: int) -> Geometry:
-        """Return one geometry of the link.
-
-        Args:
-            index: The position of the geometry in ``GetGeometries()``.
-        """
+        """Return ``GetGeometries()[index]``."""
         return self.GetGeometries()[index]
 
     def GetCollisionData(self) -> TriMesh:
@@ -113,19 +109,12 @@ class LinkGeometries(Member):
         self._set_groups(dict(self._scene.groups) | {str(name): geometries_of(geometryinfos)})
 
     def GetGroupNumGeometries(self, name: str) -> int:
-        """Return the number of geometries in a group, or -1 if the link has no such group.
-
-        Args:
-            name: The name of the group; ``self`` is the group of the link's own geometries.
-        """
+        """Return the number of geometries in the group ``name``, or -1 if the link has no such group."""
         groups = self._groups
         return len(groups[name]) if name in groups else -1
 
     def GetGeometriesFromGroup(self, name: str) -> list[Geometry]:
-        """Return the geometries of a group.
-
-        Args:
-            name: The name of the group.
+        """Return the geometries of the group ``name``; ``self`` is the group of the link's own geometries.
 
         Raises:
             openrave_exception: there is no such group.
@@ -196,11 +185,7 @@ class LinkGeometries(Member):
         return any([geometry.SetVisible(visible) for geometry in self.GetGeometries()])
 
     def Enable(self, enable: bool) -> None:
-        """Enable or disable the link for collision checks.
-
-        Args:
-            enable: False excludes the link from collision checks.
-        """
+        """Let the link take part in collision checks if ``enable``."""
         with self._state.simulation.lock:
             enabled = list(self._state.link_enabled)
             enabled[self._index] = bool(enable)
@@ -211,11 +196,7 @@ class LinkGeometries(Member):
         return self._state.link_enabled[self._index]
 
     def SetIgnoreSelfCollision(self, bIgnore: bool) -> None:
-        """Exclude the link from ``body.CheckSelfCollision``, or include it again.
-
-        Args:
-            bIgnore: Whether to exclude the link.
-        """
+        """Exclude the link from ``body.CheckSelfCollision`` if ``bIgnore``, or include it again."""
         with self._state.simulation.lock:
             self._state.edit_link(self._index, self_collision_ignored=bool(bIgnore))
             self._state.simulation.collision_stamp += 1
@@ -245,11 +226,7 @@ class LinkGeometries(Member):
         return enclosing_box(link_bounds(self._scene, T_a_link), T_a_link)
 
     def ComputeAABBForGeometryGroup(self, geomgroupname: str) -> AABB:
-        """Return the bounding box of ``ComputeAABB`` for the geometries of a group.
-
-        Args:
-            geomgroupname: The name of the group; ``self`` is the group of the link's own geometries.
-        """
+        """Return the box of ``ComputeAABB`` for the group ``geomgroupname``; ``self`` is the link's own geometries."""
         with self._state.simulation.lock:
             transform = self._state.link_transform(self._index)
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, transform)
@@ -265,11 +242,7 @@ class LinkGeometries(Member):
         return enclosing_box(link_bounds(self.scene_with_group(geomgroupname), T_a_link), T_a_link)
 
     def ComputeLocalAABBForGeometryGroup(self, geomgroupname: str) -> AABB:
-        """Return the bounding box of a group of geometries in the link frame.
-
-        Args:
-            geomgroupname: The name of the group.
-        """
+        """Return the bounding box of the group ``geomgroupname`` in the link frame."""
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4))
 
     def ComputeLocalAABB(self) -> AABB:

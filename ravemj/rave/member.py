@@ -47,11 +47,7 @@ class Member(ApiObject):
         return self._scene.name
 
     def GetParent(self, returnexist: bool = False) -> "KinBody":
-        """Return the body that the link or joint belongs to.
-
-        Args:
-            returnexist: Not used: the body always exists.
-        """
+        """Return the body that the link or joint belongs to; ``returnexist`` has no effect."""
         del returnexist
         return self._parent
 
@@ -71,12 +67,7 @@ class Member(ApiObject):
         return _chosen({key: np.array(values) for key, values in self._scene.parameters.floats}, name, index)
 
     def SetFloatParameters(self, key: str, parameters: ArrayLike) -> None:
-        """Attach numbers under a name.
-
-        Args:
-            key: The name.
-            parameters: The numbers; [] removes them.
-        """
+        """Attach the numbers ``parameters`` under the name ``key``; [] removes them."""
         self._set_parameter("floats", key, tuple(checked_numbers(parameters, "SetFloatParameters").ravel().tolist()))
 
     def GetIntParameters(self, name: str | None = None, index: int = -1) -> dict[str, Ints] | Ints | int | None:
@@ -90,12 +81,7 @@ class Member(ApiObject):
         return _chosen(arrays, name, index)
 
     def SetIntParameters(self, key: str, parameters: ArrayLike) -> None:
-        """Attach integers under a name.
-
-        Args:
-            key: The name.
-            parameters: The integers; [] removes them.
-        """
+        """Attach the integers ``parameters`` under the name ``key``; [] removes them."""
         numbers = checked_numbers(parameters, "SetIntParameters").ravel().astype(np.int_)
         self._set_parameter("integers", key, tuple(numbers.tolist()))
 
@@ -105,12 +91,7 @@ class Member(ApiObject):
         return found if name is None else found.get(name)
 
     def SetStringParameters(self, key: str, value: str) -> None:
-        """Attach a text under a name.
-
-        Args:
-            key: The name.
-            value: The text; an empty one removes it.
-        """
+        """Attach the text ``value`` under the name ``key``; an empty one removes it."""
         self._set_parameter("texts", key, checked_kind(value, str, "SetStringParameters: value", "a text"))
 
     def _set_parameter(self, field: str, key: str, value: Hashable) -> None:

@@ -17,33 +17,19 @@ class Readable(ApiObject):
         return self._id
 
     def SerializeXML(self, options: int = 0) -> str:
-        """Return the value as an XML element whose tag is the id.
-
-        Args:
-            options: Not used.
-        """
+        """Return the value as an XML element whose tag is the id; ``options`` has no effect."""
         from xml.sax.saxutils import escape  # noqa: PLC0415 - imports urllib, which is slow
 
         del options
         return f"<{self._id}>{escape(str(self._data))}</{self._id}>"
 
     def SerializeJSON(self, unitScale: float = 1.0, options: int = 0) -> Any:  # noqa: ANN401 - what JSON can hold
-        """Return the value.
-
-        Args:
-            unitScale: Not used.
-            options: Not used.
-        """
+        """Return the value; ``unitScale`` and ``options`` have no effect."""
         del unitScale, options
         return self._data
 
     def DeserializeJSON(self, obj: Any, unitScale: float = 1.0) -> None:  # noqa: ANN401 - what JSON can hold
-        """Set the value.
-
-        Args:
-            obj: The value.
-            unitScale: Not used.
-        """
+        """Set the value to ``obj``; ``unitScale`` has no effect."""
         del unitScale
         self._data = obj
 
@@ -57,11 +43,7 @@ class ReadableInterface(ApiObject):
     _readables: dict[str, Readable] | None = None
 
     def GetReadableInterface(self, id: str) -> Readable | None:
-        """Return the value under an id, or None.
-
-        Args:
-            id: The id.
-        """
+        """Return the value under ``id``, or None."""
         return (self._readables or {}).get(id)
 
     def GetReadableInterfaces(self) -> dict[str, Readable]:
@@ -69,12 +51,7 @@ class ReadableInterface(ApiObject):
         return dict(self._readables or {})
 
     def SetReadableInterface(self, id: str, readable: Readable | None) -> None:
-        """Attach a value.
-
-        Args:
-            id: The id.
-            readable: The value; None removes the value of that id.
-        """
+        """Attach the value ``readable`` under ``id``; None removes the one that is there."""
         kept = {key: one for key, one in (self._readables or {}).items() if key != id}
         self._readables = kept if readable is None else kept | {id: readable}
 
@@ -84,12 +61,7 @@ class stringreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringReadable(id: str, data: str) -> Readable:
-        """Return a text under an id.
-
-        Args:
-            id: The id.
-            data: The text.
-        """
+        """Return the text ``data`` under ``id``."""
         return Readable(id, str(data))
 
 
@@ -98,12 +70,7 @@ class xmlreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
-        """Return a text under an id.
-
-        Args:
-            xmlid: The id.
-            data: The text.
-        """
+        """Return the text ``data`` under ``xmlid``."""
         return Readable(xmlid, str(data))
 
 
@@ -118,20 +85,12 @@ class SerializableData(ApiObject):
         self._data = data
 
     def Serialize(self, options: int = 0) -> str:
-        """Return the text.
-
-        Args:
-            options: Not used.
-        """
+        """Return the text; ``options`` has no effect."""
         del options
         return self._data
 
     def Deserialize(self, data: str) -> None:
-        """Set the text.
-
-        Args:
-            data: The text.
-        """
+        """Set the text to ``data``."""
         self._data = data
 
     def Close(self) -> None:

@@ -295,14 +295,7 @@ class Robot(ActiveDofs, Equipment, KinBody):
         self.active_choice = ActiveChoice()
 
     def InitFromRobotInfo(self, info: RobotBaseInfo) -> bool:
-        """Make the robot, including its name, from a description; see ``InitFromKinBodyInfo``.
-
-        Args:
-            info: The description, for instance a result of ``ExtractInfo``.
-
-        Returns:
-            True.
-        """
+        """Make the robot, including its name, of ``info``, as ``InitFromKinBodyInfo`` does, and return True."""
         return self.InitFromKinBodyInfo(info)
 
     def GetRobotStructureHash(self) -> str:

@@ -5,7 +5,7 @@ ravemj computes in metres, kilograms, radians and seconds. The units here conver
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
@@ -66,29 +66,17 @@ class TimeStampUnit(NamedInt):
 
 Unit = TypeVar("Unit", LengthUnit, MassUnit, AngleUnit, TimeDurationUnit, TimeStampUnit)
 
-_PER_STANDARD: dict[type[NamedInt], dict[NamedInt, float]] = {
-    LengthUnit: {
-        LengthUnit.m: 1.0,
-        LengthUnit.dm: 1e1,
-        LengthUnit.cm: 1e2,
-        LengthUnit.mm: 1e3,
-        LengthUnit.dmm: 1e4,
-        LengthUnit.um: 1e6,
-        LengthUnit.nm: 1e9,
-        LengthUnit["in"]: 1 / 0.0254,
-        LengthUnit.ft: 1 / 0.3048,
-    },
-    MassUnit: {MassUnit.g: 1.0, MassUnit.mg: 1e3, MassUnit.kg: 1e-3, MassUnit.lb: 1 / 453.59237},
-    AngleUnit: {AngleUnit.rad: 1.0, AngleUnit.deg: 57.29577951308232, AngleUnit.cdeg: 5729.577951308232},
-    TimeDurationUnit: {
-        TimeDurationUnit.s: 1.0,
-        TimeDurationUnit.ms: 1e3,
-        TimeDurationUnit.us: 1e6,
-        TimeDurationUnit.ns: 1e9,
-        TimeDurationUnit.ps: 1e12,
-    },
+_PER_STANDARD = {
+    "in": 1 / 0.0254,
+    "ft": 1 / 0.3048,
+    "lb": 1 / 453.59237,
+    "deg": 57.29577951308232,
+    "cdeg": 5729.577951308232,
 }
-"""How many of each unit are a metre, a gram, a radian, a second; inch, foot and pound by their legal definitions."""
+"""How many of a unit are a metre, a gram or a radian; inch, foot and pound have their legal definitions.
+
+All other units are 10 to the power of their number: ``mm`` is -3.
+"""
 
 _OTHER_WORDS: dict[type[NamedInt], dict[str, str]] = {
     LengthUnit: {
@@ -124,7 +112,7 @@ def _read(kind: type[Unit], text: str, default: Unit) -> Unit:
 def _per_standard(kind: type[Unit], unit: Unit | str) -> float:
     """Return how many of a unit make one standard unit."""
     chosen = _read(kind, unit, next(iter(kind))) if isinstance(unit, str) else kind(unit)
-    return _PER_STANDARD[kind][chosen]
+    return _PER_STANDARD.get(chosen.name, 10.0**-chosen)
 
 
 def GetLengthUnitString(unit: LengthUnit) -> str:
@@ -193,11 +181,7 @@ def GetTimeDurationUnitStandardValue(unit: TimeDurationUnit | str) -> float:
 
 
 def GetLengthUnitConversionScale(source: LengthUnit | str, target: LengthUnit | str) -> float:
-    """Return the factor from a length in one unit to the same length in another.
-
-    Args:
-        source: The one unit.
-        target: The other.
+    """Return the factor from a length in the unit ``source`` to the same length in ``target``.
 
     Example:
         >>> GetLengthUnitConversionScale(LengthUnit.m, LengthUnit.mm)
@@ -207,32 +191,17 @@ def GetLengthUnitConversionScale(source: LengthUnit | str, target: LengthUnit | 
 
 
 def GetMassUnitConversionScale(source: MassUnit | str, target: MassUnit | str) -> float:
-    """Return the factor from a mass in one unit to the same mass in another.
-
-    Args:
-        source: The one unit.
-        target: The other.
-    """
+    """Return the factor from a mass in the unit ``source`` to the same mass in ``target``."""
     return _per_standard(MassUnit, target) / _per_standard(MassUnit, source)
 
 
 def GetAngleUnitConversionScale(source: AngleUnit | str, target: AngleUnit | str) -> float:
-    """Return the factor from an angle in one unit to the same angle in another.
-
-    Args:
-        source: The one unit.
-        target: The other.
-    """
+    """Return the factor from an angle in the unit ``source`` to the same angle in ``target``."""
     return _per_standard(AngleUnit, target) / _per_standard(AngleUnit, source)
 
 
 def GetTimeDurationUnitConversionScale(source: TimeDurationUnit | str, target: TimeDurationUnit | str) -> float:
-    """Return the factor from a duration in one unit to the same duration in another.
-
-    Args:
-        source: The one unit.
-        target: The other.
-    """
+    """Return the factor from a duration in the unit ``source`` to the same duration in ``target``."""
     return _per_standard(TimeDurationUnit, target) / _per_standard(TimeDurationUnit, source)
 
 
@@ -258,17 +227,9 @@ class UnitInfo(ApiObject):
         if isinstance(self.lengthUnit, UnitInfo):  # the argument is one to copy, as in OpenRAVE
             vars(self).update(vars(self.lengthUnit))
 
-    _kinds: ClassVar[dict[str, type[NamedInt]]] = {
-        "lengthUnit": LengthUnit,
-        "massUnit": MassUnit,
-        "timeDurationUnit": TimeDurationUnit,
-        "angleUnit": AngleUnit,
-        "timeStampUnit": TimeStampUnit,
-    }
-
     def SerializeJSON(self) -> dict[str, str]:
         """Return the units as OpenRAVE's JSON has them."""
-        return {name: _written(getattr(self, name)) for name in self._kinds}
+        return {name: _written(getattr(self, name)) for name in _KINDS}
 
     def DeserializeJSON(self, obj: dict[str, Any]) -> None:
         """Take over the units that ``obj`` names; the others stay.
@@ -277,6 +238,10 @@ class UnitInfo(ApiObject):
             obj: What ``SerializeJSON`` returns, or a part of it.
         """
         checked_kind(obj, Mapping, "UnitInfo.DeserializeJSON: obj", "a dict")
-        for name, kind in self._kinds.items():
+        for name, kind in _KINDS.items():
             if name in obj:
                 setattr(self, name, _read(kind, obj[name], getattr(self, name)))  # pyright: ignore[reportArgumentType]
+
+
+_KINDS: dict[str, type[NamedInt]] = {name: type(unit) for name, unit in vars(UnitInfo()).items()}
+"""The enumerations of the fields."""

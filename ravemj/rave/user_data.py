@@ -33,18 +33,10 @@ def SetUserData(self: Annotated, key: Any = "", data: Any = ...) -> None:  # noq
 
 
 def GetUserData(self: Annotated, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
-    """Return the object that ``SetUserData`` attached under a name, or None.
-
-    Args:
-        key: The name; without one, the object that has no name.
-    """
+    """Return the object that ``SetUserData`` attached under the name ``key``, or None."""
     return self.annotations.data.get(key)
 
 
 def RemoveUserData(self: Annotated, key: str = "") -> bool:
-    """Remove the object that is attached under a name, and return whether there was one.
-
-    Args:
-        key: The name; without one, the object that has no name.
-    """
+    """Remove the object that is attached under the name ``key``, and return whether there was one."""
     return self.annotations.data.pop(key, None) is not None

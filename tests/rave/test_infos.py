@@ -333,3 +333,13 @@ def test_these_are_all_types_of_geometry():
 def test_what_a_shape_does_not_need_is_not_looked_at():
     info = KinBody.GeometryInfo(_vGeomData="not a number")
     assert info.geometry().shape == scene.NoShape()
+
+
+def test_numbers_of_cameras_and_actuators_go_through_json():
+    intrinsics, limits = ravemj.Sensor.CameraIntrinsics(), ravemj.ActuatorGeomData(maxtorque=3.0)
+    with pytest.raises(ravemj.ArgumentError, match="DeserializeJSON: fx"):
+        intrinsics.DeserializeJSON({"fx": "wide"})
+    twin = ravemj.ActuatorGeomData()
+    twin.DeserializeJSON(limits.SerializeJSON())
+    assert twin == limits
+    assert twin.maxtorque == 3.0

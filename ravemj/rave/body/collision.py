@@ -59,11 +59,7 @@ class BodyCollision(Structure, Interface):
         return checker.CheckSelfCollision(self, report)
 
     def SetSelfCollisionChecker(self, collisionchecker: "CollisionChecker | None") -> None:
-        """Choose the checker of ``CheckSelfCollision``.
-
-        Args:
-            collisionchecker: The checker; None selects that of the environment.
-        """
+        """Let ``CheckSelfCollision`` use ``collisionchecker``; None selects that of the environment."""
         if collisionchecker is not None:
             _check_checker(collisionchecker, "SetSelfCollisionChecker")
         self._self_checker = collisionchecker
@@ -101,11 +97,7 @@ class BodyCollision(Structure, Interface):
         return False
 
     def Enable(self, enable: bool) -> None:
-        """Enable or disable all links for collision checks.
-
-        Args:
-            enable: False excludes the body from collision checks.
-        """
+        """Let all links take part in collision checks, or none, as ``enable`` says."""
         self._state.link_enabled = [bool(enable)] * len(self._state.link_enabled)
 
     def IsEnabled(self) -> bool:
@@ -117,11 +109,7 @@ class BodyCollision(Structure, Interface):
         return np.array(self._state.link_enabled, dtype=np.uint8)
 
     def SetLinkEnableStates(self, enablestates: ArrayLike) -> None:
-        """Enable and disable links.
-
-        Args:
-            enablestates: For each link whether it is enabled, shape (links,).
-        """
+        """Enable and disable links: ``enablestates`` has a truth value for each link, shape (links,)."""
         states = checked_numbers(enablestates, "SetLinkEnableStates: enablestates")
         count = len(self._state.link_enabled)
         if states.shape != (count,):
@@ -169,11 +157,7 @@ class BodyCollision(Structure, Interface):
         return pairs
 
     def SetAdjacentLinks(self, linkindex0: int, linkindex1: int) -> None:
-        """Exclude a pair of links from ``CheckSelfCollision``.
-
-        Args:
-            linkindex0: Index of a link.
-            linkindex1: Index of the other.
+        """Exclude the pair of the links ``linkindex0`` and ``linkindex1`` from ``CheckSelfCollision``.
 
         Raises:
             openrave_exception: there is no such link, or both are the same.
@@ -181,11 +165,7 @@ class BodyCollision(Structure, Interface):
         self.SetAdjacentLinksPairs([(linkindex0, linkindex1)])
 
     def SetAdjacentLinksCombinations(self, linkIndices: Sequence[int]) -> None:
-        """Exclude all pairs of several links from ``CheckSelfCollision``.
-
-        Args:
-            linkIndices: Indices of the links.
-        """
+        """Exclude all pairs of the links with indices ``linkIndices`` from ``CheckSelfCollision``."""
         self.SetAdjacentLinksPairs([(a, b) for a in linkIndices for b in linkIndices if a < b])
 
     def SetAdjacentLinksPairs(self, pairs: Iterable[Sequence[int]]) -> None:
@@ -242,11 +222,7 @@ class BodyCollision(Structure, Interface):
         return self._bounds(self._poses(T_world_body), enabledOnlyLinks)
 
     def ComputeLocalAABB(self, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the bounding box of all geometries in the frame of the first link.
-
-        Args:
-            enabledOnlyLinks: Whether to ignore disabled links.
-        """
+        """Return the box of ``ComputeAABB(enabledOnlyLinks)`` in the frame of the first link, along its axes."""
         return self.ComputeAABBFromTransform(np.eye(4), enabledOnlyLinks)
 
     def ComputeOBBOnAxes(self, transform: ArrayLike, enabledOnlyLinks: bool = False) -> OrientedBox:

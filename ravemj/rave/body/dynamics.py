@@ -94,11 +94,7 @@ class Dynamics(Limits):
         return self.ComputeJacobianTranslation(linkindex, position)
 
     def CalculateAngularVelocityJacobian(self, linkindex: int) -> Floats:
-        """Return ``ComputeJacobianAxisAngle`` for all DOFs, shape (3, dof); its older name.
-
-        Args:
-            linkindex: Index of the link.
-        """
+        """Return ``ComputeJacobianAxisAngle(linkindex)``, for all DOFs, shape (3, dof); its older name."""
         return self.ComputeJacobianAxisAngle(linkindex)
 
     def CalculateRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:

@@ -48,11 +48,7 @@ class Equipment(Structure):
         return cast("Robot", self)
 
     def GetManipulators(self, manipname: str | None = None) -> list[Manipulator]:
-        """Return the manipulators, in the order of the file.
-
-        Args:
-            manipname: A name; the result then has only the manipulator of this name.
-        """
+        """Return the manipulators, in the order of the file, or only the one called ``manipname``."""
         arms = self._state.scene.manipulators
         if len(self._manipulators) != len(arms):  # they are made once, as links are
             known = self._manipulators[: len(arms)]
@@ -63,11 +59,7 @@ class Equipment(Structure):
         return [one for one, arm in zip(self._manipulators, arms, strict=True) if arm.name == manipname]
 
     def GetManipulator(self, manipname: str) -> Manipulator | None:
-        """Return the manipulator of a name, or None.
-
-        Args:
-            manipname: The name.
-        """
+        """Return the manipulator called ``manipname``, or None."""
         return next(iter(self.GetManipulators(manipname)), None)
 
     def GetActiveManipulator(self) -> Manipulator | None:
@@ -200,12 +192,8 @@ class Equipment(Structure):
         return list(self._grippers)
 
     def GetGripperInfo(self, name: str) -> GripperInfo | None:
-        """Return the description of a gripper, or None.
-
-        Args:
-            name: The name of the gripper.
-        """
-        return next((info for info in self._grippers if info._name == name), None)  # pyright: ignore[reportPrivateUsage] - OpenRAVE's field
+        """Return the description of the gripper called ``name``, or None."""
+        return next((info for info in self._grippers if info._name == name), None)
 
     def AddGripperInfo(self, gripperInfo: GripperInfo, removeduplicate: bool = False) -> bool:
         """Add the description of a gripper.
@@ -220,7 +208,7 @@ class Equipment(Structure):
         Raises:
             openrave_exception: the description has no name, or that of another gripper.
         """
-        name = checked_kind(gripperInfo, GripperInfo, "AddGripperInfo: gripperInfo")._name  # pyright: ignore[reportPrivateUsage] - as above
+        name = checked_kind(gripperInfo, GripperInfo, "AddGripperInfo: gripperInfo")._name
         if not name or (self.GetGripperInfo(name) is not None and not removeduplicate):
             problem = f"has a gripper '{name}' already" if name else "needs a name for the gripper"
             raise ArgumentError(f"AddGripperInfo: '{self.GetName()}' {problem}; set another _name")
@@ -229,11 +217,7 @@ class Equipment(Structure):
         return True
 
     def RemoveGripperInfo(self, name: str) -> bool:
-        """Remove the description of a gripper, and return whether the robot had it.
-
-        Args:
-            name: The name of the gripper.
-        """
+        """Remove the description of the gripper called ``name``, and return whether the robot had it."""
         gone = self.GetGripperInfo(name)
         self._grippers = tuple(info for info in self._grippers if info is not gone)
         return gone is not None
@@ -243,11 +227,7 @@ class Equipment(Structure):
         return [AttachedSensor(self._robot, self._state, index) for index in range(len(self._state.scene.sensors))]
 
     def GetAttachedSensor(self, sensorname: str) -> AttachedSensor | None:
-        """Return the attached sensor of a name, or None.
-
-        Args:
-            sensorname: The name.
-        """
+        """Return the attached sensor called ``sensorname``, or None."""
         return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == sensorname), None)
 
     GetSensors = GetAttachedSensors
@@ -307,11 +287,7 @@ class Equipment(Structure):
         return list(self.connected.bodies)
 
     def GetConnectedBody(self, bodyname: str) -> ConnectedBody | None:
-        """Return the connected body of a name, or None.
-
-        Args:
-            bodyname: The name.
-        """
+        """Return the connected body called ``bodyname``, or None."""
         return next((body for body in self.connected.bodies if body.GetName() == bodyname), None)
 
     def GetConnectedBodyActiveStates(self) -> list[int]:
@@ -356,10 +332,7 @@ class Equipment(Structure):
         return self.connected.add(info, removeduplicate)
 
     def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
-        """Remove a body that can be connected, and return whether the robot had it.
-
-        Args:
-            connectedbody: The body.
+        """Remove ``connectedbody``, and return whether it was one of the bodies that can be connected.
 
         Raises:
             openrave_exception: the robot is in an environment (``InvalidState``).

@@ -81,11 +81,7 @@ class Limits(ApiObject):
         self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
 
     def GetDOFVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the velocity limits, the same in both directions [rad/s or m/s], shape (dof,).
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the velocity limits [rad/s or m/s], shape (dof,), or those of the DOFs ``indices``."""
         return self._of_axes("max_velocity", indices)
 
     GetDOFMaxVel = GetDOFVelocityLimits
@@ -95,11 +91,7 @@ class Limits(ApiObject):
         self._set_axes("SetDOFVelocityLimits", {"max_velocity": limits})
 
     def GetDOFAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (dof,).
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the acceleration limits [rad/s^2 or m/s^2], shape (dof,), or those of the DOFs ``indices``."""
         return self._of_axes("max_acceleration", indices)
 
     GetDOFMaxAccel = GetDOFAccelerationLimits
@@ -109,11 +101,7 @@ class Limits(ApiObject):
         self._set_axes("SetDOFAccelerationLimits", {"max_acceleration": limits})
 
     def GetDOFJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the jerk limits, the same in both directions [rad/s^3 or m/s^3], shape (dof,).
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the jerk limits [rad/s^3 or m/s^3], shape (dof,), or those of the DOFs ``indices``."""
         return self._of_axes("max_jerk", indices)
 
     def SetDOFJerkLimits(self, limits: ArrayLike) -> None:
@@ -121,51 +109,27 @@ class Limits(ApiObject):
         self._set_axes("SetDOFJerkLimits", {"max_jerk": limits})
 
     def GetDOFHardVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the hard velocity limits, which planners never exceed [rad/s or m/s], shape (dof,); 0 for none.
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the hard velocity limits, see ``SetDOFHardVelocityLimits``, or those of the DOFs ``indices``."""
         return self._of_axes("hard_max_velocity", indices)
 
     def SetDOFHardVelocityLimits(self, limits: ArrayLike) -> None:
-        """Set the hard velocity limits, which planners never exceed.
-
-        Args:
-            limits: Limits [rad/s or m/s], shape (dof,); 0 for none.
-        """
+        """Set ``limits``, velocities that planners never exceed [rad/s or m/s], shape (dof,); 0 for none."""
         self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits})
 
     def GetDOFHardAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the hard acceleration limits of planners [rad/s^2 or m/s^2], shape (dof,); 0 for none.
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the limits of ``SetDOFHardAccelerationLimits``, shape (dof,), or those of the DOFs ``indices``."""
         return self._of_axes("hard_max_acceleration", indices)
 
     def SetDOFHardAccelerationLimits(self, limits: ArrayLike) -> None:
-        """Set the hard acceleration limits, which planners never exceed.
-
-        Args:
-            limits: Limits [rad/s^2 or m/s^2], shape (dof,); 0 for none.
-        """
+        """Set ``limits``, accelerations that planners never exceed [rad/s^2 or m/s^2], shape (dof,); 0 for none."""
         self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits})
 
     def GetDOFHardJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the hard jerk limits, which planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 for none.
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the limits of ``SetDOFHardJerkLimits``, shape (dof,), or those of the DOFs ``indices``."""
         return self._of_axes("hard_max_jerk", indices)
 
     def SetDOFHardJerkLimits(self, limits: ArrayLike) -> None:
-        """Set the hard jerk limits, which planners never exceed.
-
-        Args:
-            limits: Limits [rad/s^3 or m/s^3], shape (dof,); 0 for none.
-        """
+        """Set ``limits``, jerks that planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 for none."""
         self._set_axes("SetDOFHardJerkLimits", {"hard_max_jerk": limits})
 
     def GetDOFDynamicAccelerationJerkLimits(
@@ -185,11 +149,7 @@ class Limits(ApiObject):
         return np.zeros(0), np.zeros(0)
 
     def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the torque limits [N m, for sliders N], shape (dof,); 0 where the file says nothing.
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 for an unknown one."""
         return self._of_axes("max_torque", indices)
 
     GetDOFMaxTorque = GetDOFTorqueLimits
@@ -199,11 +159,7 @@ class Limits(ApiObject):
         self._set_axes("SetDOFTorqueLimits", {"max_torque": limits})
 
     def GetDOFWeights(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the weights in distances between configurations, shape (dof,).
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the weights in distances between configurations, shape (dof,), or those of the DOFs ``indices``."""
         return self._of_axes("weight", indices)
 
     def SetDOFWeights(self, weights: ArrayLike) -> None:
@@ -219,19 +175,11 @@ class Limits(ApiObject):
         self._set_axes("SetDOFWeights", {"weight": weights}, positive=True)
 
     def GetDOFResolutions(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the steps in which planners test for collisions [rad or m], shape (dof,).
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
-        """
+        """Return the planners' steps [rad or m], shape (dof,), or those of the DOFs ``indices``."""
         return self._of_axes("resolution", indices)
 
     def SetDOFResolutions(self, resolutions: ArrayLike) -> None:
-        """Set the steps in which planners test for collisions.
-
-        Args:
-            resolutions: Steps [rad or m], all positive, shape (dof,).
-        """
+        """Set ``resolutions``, the steps in which planners test for collisions [rad or m], positive, shape (dof,)."""
         self._set_axes("SetDOFResolutions", {"resolution": resolutions}, positive=True)
 
     def _of_axes(self, field: str, indices: "ArrayLike | EllipsisType | None") -> Floats:

@@ -92,11 +92,7 @@ class Structure(Limits):
         return None if index is None else self._all_links()[index]
 
     def GetJoints(self, indices: Sequence[int] | None = None) -> list[Joint]:
-        """Return the joints that have DOFs, in DOF order.
-
-        Args:
-            indices: The joint indices; by default all.
-        """
+        """Return the joints that have DOFs, in DOF order, or those of ``indices``."""
         joints = self._all_joints()[: len(self._state.scene.joints)]
         if indices is None:
             return list(joints)
@@ -142,10 +138,7 @@ class Structure(Limits):
         return next((joint for joint in self._all_joints() if joint.GetName() == name), None)
 
     def GetJointFromDOFIndex(self, dofindex: int) -> Joint:
-        """Return the joint that a DOF belongs to.
-
-        Args:
-            dofindex: The index in the vectors of DOF values.
+        """Return the joint that the DOF ``dofindex`` belongs to.
 
         Raises:
             IndexError: there is no such DOF.
@@ -166,38 +159,20 @@ class Structure(Limits):
         return next((joint.GetJointIndex() for joint in self.GetJoints() if joint.GetName() == name), -1)
 
     def IsDOFRevolute(self, dofindex: int) -> bool:
-        """Return whether a DOF is an angle.
-
-        Args:
-            dofindex: Index of the DOF.
-        """
+        """Return whether the DOF ``dofindex`` is an angle."""
         return self.GetJointFromDOFIndex(dofindex).IsRevolute()
 
     def IsDOFPrismatic(self, dofindex: int) -> bool:
-        """Return whether a DOF is a length.
-
-        Args:
-            dofindex: Index of the DOF.
-        """
+        """Return whether the DOF ``dofindex`` is a length."""
         return self.GetJointFromDOFIndex(dofindex).IsPrismatic()
 
     def IsDOFInChain(self, linkindex1: int, linkindex2: int, dofindex: int) -> bool:
-        """Return whether a DOF moves two links relative to each other.
-
-        Args:
-            linkindex1: Index of a link.
-            linkindex2: Index of the other link.
-            dofindex: Index of the DOF.
-        """
+        """Return whether the DOF ``dofindex`` moves the links ``linkindex1`` and ``linkindex2`` against each other."""
         first, second = self.DoesDOFAffectLink(dofindex, linkindex1), self.DoesDOFAffectLink(dofindex, linkindex2)
         return first != second
 
     def DoesAffect(self, jointindex: int, linkindex: int) -> int:
-        """Return 1 if a joint moves a link, directly or through mimic joints, else 0.
-
-        Args:
-            jointindex: Index of the joint, not of a DOF.
-            linkindex: Index of the link.
+        """Return 1 if the joint ``jointindex`` moves the link ``linkindex``, directly or through mimic joints, else 0.
 
         Raises:
             ArgumentError: there is no such joint or link.
@@ -207,11 +182,7 @@ class Structure(Limits):
         return self.DoesDOFAffectLink(joints[jointindex].GetDOFIndex(), linkindex)
 
     def DoesDOFAffectLink(self, dofindex: int, linkindex: int) -> int:
-        """Return 1 if a DOF moves a link, directly or through mimic joints, else 0.
-
-        Args:
-            dofindex: Index of the DOF.
-            linkindex: Index of the link.
+        """Return 1 if the DOF ``dofindex`` moves the link ``linkindex``, directly or through mimic joints, else 0.
 
         Raises:
             ArgumentError: there is no such DOF or link.
@@ -262,11 +233,7 @@ class Structure(Limits):
         ]
 
     def GetRigidlyAttachedLinks(self, linkindex: int) -> list[Link]:
-        """Return a link, then all links that no joint moves relative to it.
-
-        Args:
-            linkindex: Index of the link.
-        """
+        """Return the link of index ``linkindex``, then all links that no joint moves relative to it."""
         self._checked_link(linkindex)
         return self.GetLinks(chains.rigidly_attached(self._state.scene, linkindex))
 
@@ -324,11 +291,7 @@ class Structure(Limits):
         return self._id
 
     def SetId(self, id: str) -> None:  # OpenRAVE's name of the argument
-        """Set the id of the body, for scripts that use ids. The environment identifies bodies by name.
-
-        Args:
-            id: The text.
-        """
+        """Set the text ``id``, for scripts that use ids. The environment identifies bodies by name."""
         self._id = str(id)
 
     def GetRevisionId(self) -> int:
@@ -343,12 +306,9 @@ class Structure(Limits):
         """Return None, since ravemj has no sensor systems."""
 
     def serialize(self, options: int) -> str:
-        """Return a text that determines the links, geometries and joints of the body.
+        """Return a text that determines links, geometries and joints of the body; ``options`` has no effect.
 
         ``GetKinematicsGeometryHash`` is the hash of this text. OpenRAVE writes another text.
-
-        Args:
-            options: Not used: what counts is always the same.
         """
         del options
         return hashes.text_of_body(self._state.scene)

@@ -45,7 +45,8 @@ def json_field(
     metadata = {"entry": Entry(key, "", form, optional, of)}
     if isinstance(default, Hashable):
         return field(default=default, metadata=metadata, kw_only=kw_only)
-    return field(default_factory=partial(deepcopy, default), metadata=metadata, kw_only=kw_only)  # lists, arrays
+    copied = getattr(default, "copy", partial(deepcopy, default))  # lists, dicts and arrays copy themselves faster
+    return field(default_factory=copied, metadata=metadata, kw_only=kw_only)
 
 
 @dataclass_transform(eq_default=False, field_specifiers=(json_field, field))

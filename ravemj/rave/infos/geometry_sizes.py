@@ -77,11 +77,7 @@ class GeometrySizes(IdentifiedInfo):
         return _first(self._vGeomData)
 
     def SetBoxHalfExtents(self, halfExtents: ArrayLike) -> None:
-        """Set half the edge lengths of a box.
-
-        Args:
-            halfExtents: Lengths [m], shape (3,).
-        """
+        """Set ``halfExtents``, half the edge lengths of a box [m], shape (3,)."""
         self._vGeomData = checked_vector(halfExtents, 3, "SetBoxHalfExtents: halfExtents")
 
     def GetContainerOuterExtents(self) -> Floats:
@@ -89,11 +85,7 @@ class GeometrySizes(IdentifiedInfo):
         return _first(self._vGeomData)
 
     def SetContainerOuterExtents(self, outerExtents: ArrayLike) -> None:
-        """Set the outer edge lengths of a container.
-
-        Args:
-            outerExtents: Lengths [m], shape (3,).
-        """
+        """Set ``outerExtents``, the outer edge lengths of a container [m], shape (3,)."""
         self._vGeomData = checked_vector(outerExtents, 3, "SetContainerOuterExtents: outerExtents")
 
     def GetContainerInnerExtents(self) -> Floats:
@@ -101,11 +93,7 @@ class GeometrySizes(IdentifiedInfo):
         return _first(self._vGeomData2)
 
     def SetContainerInnerExtents(self, innerExtents: ArrayLike) -> None:
-        """Set the edge lengths of a container's interior.
-
-        Args:
-            innerExtents: Lengths [m], shape (3,).
-        """
+        """Set ``innerExtents``, the edge lengths of a container's interior [m], shape (3,)."""
         self._vGeomData2 = checked_vector(innerExtents, 3, "SetContainerInnerExtents: innerExtents")
 
     def GetCageBaseHalfExtents(self) -> Floats:
@@ -113,11 +101,7 @@ class GeometrySizes(IdentifiedInfo):
         return _first(self._vGeomData)
 
     def SetCageBaseHalfExtents(self, halfExtents: ArrayLike) -> None:
-        """Set half the edge lengths of a cage's base.
-
-        Args:
-            halfExtents: Lengths [m], shape (3,).
-        """
+        """Set ``halfExtents``, half the edge lengths of a cage's base [m], shape (3,)."""
         self._vGeomData = checked_vector(halfExtents, 3, "SetCageBaseHalfExtents: halfExtents")
 
     def GetSphereRadius(self) -> float:
@@ -172,11 +156,7 @@ class GeometrySizes(IdentifiedInfo):
         return T_link_box, inner / 2
 
     def ConvertUnitScale(self, unitScale: float) -> None:
-        """Multiply all lengths.
-
-        Args:
-            unitScale: The factor.
-        """
+        """Multiply all lengths by ``unitScale``."""
         self.DeserializeJSON(self.SerializeJSON(unitScale))
         self._vRenderScale = np.asarray(self._vRenderScale, dtype=float) * unitScale
         self._vCollisionScale = np.asarray(self._vCollisionScale, dtype=float) * unitScale
