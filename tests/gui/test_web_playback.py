@@ -6,7 +6,7 @@ import re
 import imageio.v3
 import numpy as np
 import pytest
-from browsers import NEEDS_A_BROWSER, SIZE, Desk
+from browsers import NEEDS_A_BROWSER, SIZE, Desk, assert_apart
 from conftest import MODELS
 from waiting import await_that
 
@@ -281,21 +281,22 @@ def test_controls_do_not_cover_each_other(desk, size):
     desk.viewer.play(LONG).pause()
     desk.page.set_viewport_size({"width": size[0], "height": size[1]})
     fold(desk, True)
-    boxes = [desk.page.locator(f"#{name}").bounding_box() for name in ("motion", "tools", "joints", "modes")]
-    boxes += [one.bounding_box() for one in desk.page.locator(".wheel").all()]
-    for index, one in enumerate(boxes):
-        assert one["x"] >= 0
-        assert one["y"] >= 0
-        assert one["x"] + one["width"] <= size[0]
-        assert one["y"] + one["height"] <= size[1]
-        for other in boxes[:index]:
-            apart = (
-                one["x"] + one["width"] <= other["x"]
-                or other["x"] + other["width"] <= one["x"]
-                or one["y"] + one["height"] <= other["y"]
-                or other["y"] + other["height"] <= one["y"]
-            )
-            assert apart, (one, other)
+    assert_apart(desk.page, "#motion, #tools, #joints, #modes, .wheel", 7)
+
+
+@pytest.mark.parametrize("is_mobile", [False, True])
+def test_on_a_small_phone_the_tools_and_the_sliders_leave_the_wheels_free(desk, is_mobile):
+    size = {"width": 320, "height": 480}
+    with desk.context.browser.new_context(viewport=size, has_touch=True, is_mobile=is_mobile) as context:
+        page = context.new_page()
+        page.goto(desk.viewer.url)
+        page.wait_for_selector("[data-crisp]")
+        page.get_by_text("DOFs", exact=True).click()
+        page.wait_for_selector("#joints", state="visible")
+        assert_apart(page, "#tools, #joints, #modes, .wheel", 6)
+        texts = page.locator("#joint-tools button")
+        assert texts.count() == 4
+        assert texts.evaluate_all("all => all.every((one) => one.scrollWidth <= one.clientWidth)")
 
 
 @pytest.mark.parametrize("size", [(320, 480), (480, 320), (480, 640), (700, 400), (1000, 700)])
@@ -303,15 +304,6 @@ def test_the_tools_leave_the_text_free_and_all_sliders_are_on_the_page(desk, siz
     desk.page.set_viewport_size({"width": size[0], "height": size[1]})
     desk.robot.GetEnv().GetViewer().interaction.controls.notices.say("a notice that is longer than a small page", 60)
     await_that(lambda: "a notice" in desk.page.locator("#text").inner_text(), "the notice does not come")
-    text, tools = (desk.page.locator(f"#{name}").bounding_box() for name in ("text", "tools"))
-    apart = [
-        one[side] + one[length] <= other[side]
-        for one, other in ((text, tools), (tools, text))
-        for side, length in (("x", "width"), ("y", "height"))
-    ]
-    assert any(apart), (text, tools)
+    assert_apart(desk.page, "#text, #tools", 2)
     fold(desk, True)
-    joints = desk.page.locator("#joints").bounding_box()
-    assert joints["x"] >= 0
-    assert joints["x"] + joints["width"] <= size[0]
-    assert joints["y"] + joints["height"] <= size[1]
+    assert_apart(desk.page, "#joints", 1)
