@@ -231,11 +231,11 @@ def test_the_floor_is_shown_and_hidden_and_says_where_metres_are(hand):
 
 @pytest.mark.parametrize("radius", [1e-4, 0.1, 1.0, 30.0, 5000.0, 1e7])
 def test_the_floor_has_few_lines_whatever_the_size_of_the_scene(radius):
-    from ravemj.gui.interaction.floor import grid, marks
+    from ravemj.gui.interaction.figures import floor_grid, floor_labels
 
-    lines = grid(np.zeros(3), radius).lines
+    lines = floor_grid(np.zeros(3), radius).lines
     assert 4 <= len(lines.sizes) < 120
-    assert len(marks(np.zeros(3), radius)) < 60
+    assert len(floor_labels(np.zeros(3), radius)) < 60
 
 
 # --- while a script has the bodies

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering import Camera, Style
-from ravemj.gui.interaction import floor, mode_buttons
+from ravemj.gui.interaction import mode_buttons
 from ravemj.gui.interaction.controls import Controls, Display
 from ravemj.gui.interaction.events import Event, Move, Press, Release, Wheel
-from ravemj.gui.interaction.figures import figures, names
+from ravemj.gui.interaction.figures import figures, floor_grid, floor_labels, names
 from ravemj.gui.interaction.hand import Hand, Mode
 from ravemj.gui.interaction.mode_buttons import Tool
 from ravemj.gui.interaction.navigation import Navigation
@@ -167,8 +167,8 @@ class Interaction:
                 parts += figures(self._simulation, shown, sphere[1])
                 labels += names(self._simulation) if "names" in shown else ()
                 if "floor" in shown:
-                    parts.append(floor.grid(*sphere))
-                    labels += floor.marks(*sphere)
+                    parts.append(floor_grid(*sphere))
+                    labels += floor_labels(*sphere)
             return Overlay(
                 primitives=merge(parts) if any(map(len, parts)) else NOTHING,
                 lines=lines,

@@ -143,7 +143,7 @@ class Client:
                 continue
             if isinstance(message, Shape):
                 self._ratio = message.ratio
-                message = Resize(message.width, message.height)
+                message = Resize(round(message.width), round(message.height))
             if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
                 self._waiting.pop()  # only where the pointer is now counts
             self._waiting.append(message)
