@@ -36,13 +36,9 @@ class Interaction:
     def __init__(
         self, simulation: Simulation, camera: Camera, size: tuple[int, int], on_select: OnSelect | None = None
     ) -> None:
-        """Begin in camera mode.
+        """Begin in camera mode, with a view of some size [points].
 
-        Args:
-            simulation: What is seen and moved.
-            camera: Where from.
-            size: Width and height of the view [points].
-            on_select: Asked before something is selected, with the simulation locked.
+        ``on_select`` is asked before something is selected, with the simulation locked.
         """
         self._simulation = simulation
         self._navigation = Navigation(View(camera, 0.0, size), simulation)
@@ -94,11 +90,9 @@ class Interaction:
         self.view = replace(self.view, camera=view.camera, distance=view.distance)
 
     def look_from(self, camera: Camera, distance: float = 0.0) -> None:
-        """Take another camera, which people come back to; what the mouse does with the old one ends.
+        """Take another camera, which people come back to, with a focus so far away [m]; 0: as far as before.
 
-        Args:
-            camera: The camera.
-            distance: How far its focus is [m]; 0: as far as before.
+        What the mouse does with the old camera ends.
         """
         with self._simulation.lock:
             if self.mode is Mode.CAMERA:
@@ -214,9 +208,6 @@ class Interaction:
 
     def steer(self, events: Sequence[Event]) -> list[Event]:
         """Do what changes the view only, without the simulation, which others have locked.
-
-        Args:
-            events: What people did since the last time, and what had to wait then.
 
         Returns:
             What has to wait for the simulation. Clicks on what is no longer seen in this way are left out.

@@ -53,12 +53,9 @@ _Part = Callable[[Simulation, float], list[Primitives]]
 
 
 def figures(simulation: Simulation, shown: frozenset[str], radius: float) -> list[Primitives]:
-    """Return the figures of what is shown.
+    """Return the figures of what is shown, of ``shortcuts.DISPLAY``, in sizes that fit a scene of some radius [m].
 
-    Args:
-        simulation: The bodies; it is locked by the caller.
-        shown: Names of what is shown, of ``shortcuts.DISPLAY``.
-        radius: Radius of the scene [m]; figures have sizes that fit it.
+    The caller has locked the simulation.
     """
     return [figure for name, part in _PARTS.items() if name in shown for figure in part(simulation, radius)]
 
