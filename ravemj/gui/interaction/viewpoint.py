@@ -150,6 +150,12 @@ class View:
         return replace(self, camera=replace(self.camera, T_world_camera=T_world_camera), distance=distance)
 
 
+def camera_line(camera: Camera) -> str:
+    """Return the line of a script that sets a viewer's camera."""
+    rows = ", ".join(str([round(number, 8) + 0.0 for number in row]) for row in camera.T_world_camera.tolist())
+    return f"viewer.SetCamera([{rows}])"
+
+
 def _level(rotation: Floats) -> Floats:
     """Return a camera's rotation rolled about its viewing direction, so that image right is level and z is up."""
     z = rotation[:, 2]

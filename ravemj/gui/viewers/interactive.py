@@ -142,9 +142,3 @@ class Interactive(ApiObject):
             if body.scene.is_robot and body.scene.dof_axes:
                 return body
         raise ArgumentError("there is no robot with joints to move")
-
-
-def camera_line(camera: Camera) -> str:
-    """Return the line of a script that sets a viewer's camera."""
-    rows = ", ".join(str([round(number, 8) + 0.0 for number in row]) for row in camera.T_world_camera.tolist())
-    return f"viewer.SetCamera([{rows}])"
