@@ -17,8 +17,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
 from ravemj.gui.interaction import Resize
-from ravemj.gui.viewers.callbacks import Callback, Callbacks
-from ravemj.gui.viewers.interactive import Interactive
+from ravemj.gui.viewers.interactive import Callback, Callbacks, Interactive
 from ravemj.gui.viewers.recorder import Recorder
 from ravemj.model.scene import View
 
