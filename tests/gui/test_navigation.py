@@ -310,6 +310,14 @@ def test_what_is_dragged_is_let_go_only_once_the_bodies_are_free(env):
     assert hand.gui.steer(events) == []
 
 
+def test_a_key_that_waited_is_up_again_afterwards(hand):
+    for event in hand.gui.steer([Key("g"), Key("g", False)]):
+        hand.gui.handle(event)
+    assert hand.gui.controls.display.shown == {"floor"}
+    hand.press_key("g")
+    assert not hand.gui.controls.display.shown
+
+
 def test_right_clicks_and_panels_wait(held):
     gui = held.gui
     rect = next(iter(gui._hand.layout.places.values()))

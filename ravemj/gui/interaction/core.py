@@ -11,7 +11,7 @@ from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering import Camera, Style
 from ravemj.gui.interaction import mode_buttons
 from ravemj.gui.interaction.controls import Controls, Display
-from ravemj.gui.interaction.events import Event, Move, Press, Release, Wheel
+from ravemj.gui.interaction.events import Event, Key, Move, Press, Release, Wheel
 from ravemj.gui.interaction.figures import figures, floor_grid, floor_labels, names
 from ravemj.gui.interaction.hand import Hand, Mode
 from ravemj.gui.interaction.mode_buttons import Tool
@@ -218,6 +218,7 @@ class Interaction:
             if isinstance(event, Press) and not self._hand.needs_bodies(event):
                 waiting = _without_clicks(waiting)
             follows = is_pointer and any(isinstance(other, Press) for other in waiting)
+            follows |= isinstance(event, Key) and not event.pressed and Key(event.name) in waiting
             before = self.view
             if follows or not self._hand.steer(event):
                 waiting.append(event)
