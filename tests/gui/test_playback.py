@@ -1,5 +1,6 @@
 """Playing motions, and the other controls of a view, without a window: each with what it should do to the bodies."""
 
+import functools
 import itertools
 import math
 import threading
@@ -130,14 +131,20 @@ def test_a_motion_waits_while_nobody_looks(viewer):
     assert playback.time == 0.75
 
 
+@functools.cache
+def one_joint() -> ravemj.Environment:
+    env = ravemj.Environment()
+    env.LoadData(chain(1))
+    env.SetViewer("offscreen")
+    return env
+
+
 @given(
     speed=st.floats(0.01, 100),
     ticks=st.lists(st.floats(0, 0.5), max_size=20),
 )
 def test_time_passes_at_the_speed_and_never_leaves_the_motion(speed, ticks):
-    env = ravemj.Environment()
-    env.LoadData(chain(1))
-    env.SetViewer("offscreen")
+    env = one_joint()
     playback = env.GetViewer().play(ravemj.Motion.line([0], [1], 3.0), speed=speed)
     for now in itertools.accumulate([0.0, *ticks]):
         playback.advance(now)
