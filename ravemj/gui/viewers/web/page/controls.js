@@ -136,13 +136,14 @@ function showHelp(sections) {
 }
 document.getElementById("help").addEventListener("click", () => send({ type: "operate", name: "help", value: 0 }));
 
-// --- keys that play and step: they are for what has the focus, so only while that is the view
+// --- keys of the view, while there is a motion, or simulation time
 
+const KEYS = { " ": ["play", "run"], ArrowLeft: ["back"], ArrowRight: ["forward", "step"] };
 document.getElementById("view").addEventListener("keydown", (event) => {
-  if (![" ", "ArrowLeft", "ArrowRight"].includes(event.key) || event.ctrlKey || event.altKey || event.metaKey) return;
+  const name = (KEYS[event.key] || []).find((one) => entries.has(one));
+  if (!name || event.ctrlKey || event.altKey || event.metaKey) return;
   event.preventDefault();
-  if (event.repeat && event.key === " ") return;
-  for (const pressed of [true, false]) send({ type: "key", name: event.key, pressed });
+  if (!event.repeat || !["play", "run"].includes(name)) send({ type: "operate", name, value: 0 });
 });
 
 // --- what only a browser can do
