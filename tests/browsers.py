@@ -2,6 +2,7 @@
 
 import importlib.util
 import io
+import itertools
 import shutil
 import time
 from collections.abc import Callable
@@ -89,6 +90,22 @@ def await_equal(picture: Callable[[], np.ndarray], expected: Callable[[], np.nda
     while (away := np.abs(picture() - expected())).max() > 40 or away.mean() > 0.5:
         wrong = np.argwhere(away.max(axis=2) > 40)
         assert time.monotonic() < end, f"{wrong[0]} to {wrong[-1]} is wrong, by up to {away.max()} of 255"
+
+
+def assert_apart(page, selector: str, count: int) -> None:
+    """Check that so many elements or more are whole on a page, and none on another."""
+    shown = page.locator(selector)  # all at once: some come and go
+    boxes = shown.evaluate_all(
+        "all => all.map((one) => one.getBoundingClientRect().toJSON()).filter((box) => box.width)"
+    )
+    size = page.viewport_size
+    for box in boxes:
+        assert 0 <= box["left"] < box["right"] <= size["width"], box
+        assert 0 <= box["top"] < box["bottom"] <= size["height"], box
+    for pair in itertools.combinations(boxes, 2):
+        orders = pair, pair[::-1]
+        assert any(a["right"] <= b["left"] or a["bottom"] <= b["top"] for a, b in orders), pair
+    assert len(boxes) >= count
 
 
 class Desk:

@@ -98,7 +98,10 @@ def test_a_page_sends_a_model_with_its_meshes_in_pieces(env, notices):
             message = piece(name, content[start : start + 50])
             assert upload.take(message.name, message.data)
     folder = upload.paths[0].rpartition("/")[0]
-    upload.add_to(env, notices)
+    with env:
+        upload.add_to(env, notices)
+        del upload  # as pages do, before the files are read
+        assert os.path.exists(folder)
     said(notices, "Added mug.kinbody.xml")
     assert env.GetKinBody("mug").GetLinks()[0].GetGeometries()[0].GetCollisionMesh().indices.shape == (1, 3)
     await_that(lambda: not os.path.exists(folder), "the files stay")

@@ -153,17 +153,12 @@ def test_shift_or_the_middle_button_translate_with_the_focus_under_the_pointer(h
     assert np.linalg.norm(hand.view.focus - hand.view.camera.position) == pytest.approx(0.8)
 
 
-def test_the_wheel_and_left_and_middle_together_zoom(hand):
+def test_the_wheel_zooms(hand):
     hand.gui.look_from(Camera(FROM_FRONT), 1.0)
     hand.gui.handle(Wheel(2))
     np.testing.assert_allclose(hand.view.camera.position, [0.81, 0, 0], atol=1e-12)
     hand.gui.handle(Wheel(-2))
     np.testing.assert_allclose(hand.view.camera.position, [1, 0, 0], atol=1e-12)
-    hand.gui.handle(Press(100, 100))
-    hand.gui.handle(Press(100, 100, Button.MIDDLE))
-    hand.gui.handle(Move(100, 250))
-    np.testing.assert_allclose(hand.view.camera.position, [math.exp(-1), 0, 0], atol=1e-12)
-    np.testing.assert_allclose(hand.view.camera.rotation, FROM_FRONT[:3, :3], atol=1e-12)
     for _ in range(100):
         hand.gui.handle(Wheel(-1e9))
     assert np.isfinite(hand.view.camera.T_world_camera).all()
@@ -291,32 +286,6 @@ def test_the_version_tells_when_to_draw_again(hand):
         before = hand.gui.appearance
         hand.gui.handle(event)
         assert hand.gui.appearance != before, event
-
-
-@pytest.mark.parametrize("kind", ["box", "sphere", "cylinder", "capsule", "trimesh"])
-def test_rays_meet_shapes(kind):
-    env = ravemj.Environment()
-    corners = np.array([[0.1, -1, -1], [0.1, 1, -1], [0.1, 0, 1], [-1, 0, 0]])
-    faces = np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
-    body = ravemj.RaveCreateKinBody(env, "")
-    if kind == "trimesh":
-        body.InitFromTrimesh(ravemj.TriMesh(corners, faces), True)
-    elif kind == "box":
-        body.InitFromBoxes(np.array([[0, 0, 0, 0.1, 0.1, 0.1]]), True)
-    elif kind == "sphere":
-        body.InitFromSpheres(np.array([[0, 0, 0, 0.1]]), True)
-    else:
-        info = ravemj.KinBody.GeometryInfo()
-        info._type = ravemj.GeometryType.Cylinder if kind == "cylinder" else ravemj.GeometryType.Capsule
-        info._vGeomData = [0.1, 0.3]
-        body.InitFromGeometries([info])
-    body.SetName("one")
-    env.Add(body)
-    hit = pick(env.simulation, View(Camera(FROM_FRONT), 1.0, SIZE).ray(400, 300))
-    assert hit.body.scene.name == "one"
-    np.testing.assert_allclose(hit.position, [0.1, 0, 0], atol=1e-7)
-    np.testing.assert_allclose(hit.normal, [1, 0, 0], atol=1e-7)
-    assert hit.distance == pytest.approx(0.9)
 
 
 def test_what_is_invisible_is_not_picked(boxes):

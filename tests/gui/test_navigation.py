@@ -231,11 +231,11 @@ def test_the_floor_is_shown_and_hidden_and_says_where_metres_are(hand):
 
 @pytest.mark.parametrize("radius", [1e-4, 0.1, 1.0, 30.0, 5000.0, 1e7])
 def test_the_floor_has_few_lines_whatever_the_size_of_the_scene(radius):
-    from ravemj.gui.interaction.floor import grid, marks
+    from ravemj.gui.interaction.figures import floor_grid, floor_labels
 
-    lines = grid(np.zeros(3), radius).lines
+    lines = floor_grid(np.zeros(3), radius).lines
     assert 4 <= len(lines.sizes) < 120
-    assert len(marks(np.zeros(3), radius)) < 60
+    assert len(floor_labels(np.zeros(3), radius)) < 60
 
 
 # --- while a script has the bodies
@@ -308,6 +308,14 @@ def test_what_is_dragged_is_let_go_only_once_the_bodies_are_free(env):
     assert waiting == events
     hand.gui.handle(Release(3, 3))
     assert hand.gui.steer(events) == []
+
+
+def test_a_key_that_waited_is_up_again_afterwards(hand):
+    for event in hand.gui.steer([Key("g"), Key("g", False)]):
+        hand.gui.handle(event)
+    assert hand.gui.controls.display.shown == {"floor"}
+    hand.press_key("g")
+    assert not hand.gui.controls.display.shown
 
 
 def test_right_clicks_and_panels_wait(held):

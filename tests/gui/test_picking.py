@@ -128,5 +128,6 @@ def test_the_nearest_of_several_bodies_is_hit_and_nothing_behind_the_eye():
         hit = pick(env.simulation, Ray(np.array([start, 0.0, 0]), np.array([direction, 0.0, 0])))
         assert hit.body.scene.name == name
         np.testing.assert_allclose(hit.position, [x, 0, 0], atol=1e-9)
+        np.testing.assert_allclose(hit.normal, [-direction, 0, 0], atol=1e-9)
     assert pick(env.simulation, Ray(np.array([2.5, 0.0, 0]), np.array([1.0, 0, 0]))) is None
     assert pick(ravemj.Environment().simulation, Ray(np.zeros(3), np.array([1.0, 0, 0]))) is None

@@ -1,12 +1,14 @@
 """Ctrl + Shift + drag: a link follows the pointer, and the joints above it come along."""
 
+import itertools
+
 import numpy as np
 import pytest
 from test_interaction import FROM_FRONT, Hand
 
 import ravemj
 from ravemj.formats.shipped import model_path
-from ravemj.gui.interaction import Move, Operate, Press, Release, Wheel
+from ravemj.gui.interaction import Move, Operate, Press, Release, Wheel, pick
 
 PULL = {"ctrl": True, "shift": True}
 
@@ -82,15 +84,9 @@ def test_the_pendulum_swings_to_the_pointer(env):
 
 def test_what_no_joint_moves_says_so(env):
     hand = Hand(env, FROM_FRONT).in_interaction()
-    hand.lines((0, 0))
     robot = env.GetRobots()[0]
-    base = robot.GetLinks()[0]
-    at = next(
-        (x, y)
-        for y in range(0, 600, 8)
-        for x in range(300, 500, 8)
-        if (hand.lines((x, y)), hand.gui.hover)[1] is not None and hand.gui.hover.link == base.GetIndex()
-    )
+    seen = ((at, pick(env.simulation, hand.view.ray(*at))) for at in itertools.product(range(300, 500, 8), repeat=2))
+    at = next(at for at, hit in seen if hit is not None and hit.link == 0)
     hand.drag(at, (at[0] + 40, at[1] + 10), **PULL)
     assert not robot.GetDOFValues().any()
     assert any("no joint moves" in line for line in hand.gui.overlay().lines)

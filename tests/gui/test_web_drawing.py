@@ -15,8 +15,9 @@ from agreement import CORPUS, NEEDS_THE_CORPUS
 from browsers import CHROMIUM, NEEDS_A_BROWSER, WEBGL_FLAGS, Desk, around
 from conftest import MODELS
 from slow_link import SlowLink
+from test_web import FROM_FRONT, SIZE
+from test_web import Page as PicturePage
 from waiting import PATIENCE, await_that
-from websockets.sync.client import connect
 
 import ravemj
 from ravemj.core.transforms import rows_from_wxyz
@@ -24,9 +25,6 @@ from ravemj.graphics.rendering import Camera, open_renderer
 from ravemj.gui.viewers.sharpness import REST
 from ravemj.gui.viewers.viewer import LOCKED
 from ravemj.gui.viewers.web.feed import DRAWINGS, FIGURES, FRAME
-
-FROM_FRONT = [[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]]
-SIZE = 400, 300
 
 
 @pytest.fixture
@@ -43,7 +41,7 @@ def viewer(env):
     return env.GetViewer()
 
 
-class Page:
+class Page(PicturePage):
     """What a page that draws does.
 
     Attributes:
@@ -54,25 +52,16 @@ class Page:
     """
 
     def __init__(self, viewer, tab="one"):
-        url = viewer.url.replace("http", "ws", 1) + f"socket?tab={tab}"
         self.url = viewer.url
-        self._connection = connect(url, origin=viewer.url.rsplit("/", 2)[0], compression=None)
-        self.socket = self._connection.__enter__()
         self.text, self.drawn, self.poses, self.colours, self.camera, self.bytes = {}, {}, {}, {}, None, 0
         self.said = self.acknowledged = 0
-        self.send(type="shape", width=SIZE[0], height=SIZE[1], ratio=1)
+        super().__init__(viewer, tab, is_there=False)
         self.send(type="draws", itself=True)
         self.ready()
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *reason):
-        self._connection.__exit__(*reason)
-
     def send(self, **message):
         self.said += 1
-        self.socket.send(json.dumps(message))
+        super().send(**message)
 
     def ready(self):
         self.socket.send('{"type": "ready"}')

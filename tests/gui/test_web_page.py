@@ -3,13 +3,12 @@
 The server draws, but for tests of ``BOTH``: these are done once more by a page that draws by itself, with WebGL.
 """
 
-import itertools
 import math
 import re
 
 import numpy as np
 import pytest
-from browsers import ASLANT, CLEAR, NEEDS_A_BROWSER, SIZE, Desk
+from browsers import ASLANT, CLEAR, NEEDS_A_BROWSER, SIZE, Desk, assert_apart
 from command_line import colour_of
 from conftest import MODELS
 from waiting import await_that
@@ -447,16 +446,7 @@ class TestPage:
         desk.page.set_viewport_size({"width": size[0], "height": size[1]})
         desk.viewer.SetCamera(desk.viewer.GetCameraTransform() - [[0, 0, 0, 0.3], [0] * 4, [0] * 4, [0] * 4])
         desk.page.mouse.move(size[0] / 2, size[1] / 2)
-        shown = desk.page.locator("button, .wheel, #text:not([hidden])")  # all at once: the text comes and goes
-        boxes = shown.evaluate_all("all => all.map((one) => one.getBoundingClientRect().toJSON())")
-        for box, other in itertools.combinations(boxes, 2):
-            assert any(one["right"] <= two["left"] for one, two in [(box, other), (other, box)]) or any(
-                one["bottom"] <= two["top"] for one, two in [(box, other), (other, box)]
-            )
-        for box in boxes:
-            assert 0 <= box["left"] < box["right"] <= size[0]
-            assert 0 <= box["top"] < box["bottom"] <= size[1]
-        assert len(boxes) >= 5
+        assert_apart(desk.page, "button, .wheel, #text", 5)
 
     def test_tabs_have_their_own_cameras_and_keep_them_when_they_are_loaded_again(self, desk):
         other = desk.open_page()

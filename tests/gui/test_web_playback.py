@@ -1,4 +1,4 @@
-"""Playing a motion, saving and the joints' sliders on the page, in a real browser, with mouse and keys."""
+"""Playing, saving, sliders, the tree and simulation time on the page, in a real browser, with mouse and keys."""
 
 import io
 import re
@@ -6,7 +6,7 @@ import re
 import imageio.v3
 import numpy as np
 import pytest
-from browsers import NEEDS_A_BROWSER, SIZE, Desk
+from browsers import NEEDS_A_BROWSER, SIZE, Desk, assert_apart
 from conftest import MODELS
 from waiting import await_that
 
@@ -281,21 +281,22 @@ def test_controls_do_not_cover_each_other(desk, size):
     desk.viewer.play(LONG).pause()
     desk.page.set_viewport_size({"width": size[0], "height": size[1]})
     fold(desk, True)
-    boxes = [desk.page.locator(f"#{name}").bounding_box() for name in ("motion", "tools", "joints", "modes")]
-    boxes += [one.bounding_box() for one in desk.page.locator(".wheel").all()]
-    for index, one in enumerate(boxes):
-        assert one["x"] >= 0
-        assert one["y"] >= 0
-        assert one["x"] + one["width"] <= size[0]
-        assert one["y"] + one["height"] <= size[1]
-        for other in boxes[:index]:
-            apart = (
-                one["x"] + one["width"] <= other["x"]
-                or other["x"] + other["width"] <= one["x"]
-                or one["y"] + one["height"] <= other["y"]
-                or other["y"] + other["height"] <= one["y"]
-            )
-            assert apart, (one, other)
+    assert_apart(desk.page, "#motion, #tools, #joints, #modes, .wheel", 7)
+
+
+@pytest.mark.parametrize("is_mobile", [False, True])
+def test_on_a_small_phone_the_tools_and_the_sliders_leave_the_wheels_free(desk, is_mobile):
+    size = {"width": 320, "height": 480}
+    with desk.context.browser.new_context(viewport=size, has_touch=True, is_mobile=is_mobile) as context:
+        page = context.new_page()
+        page.goto(desk.viewer.url)
+        page.wait_for_selector("[data-crisp]")
+        page.get_by_text("DOFs", exact=True).click()
+        page.wait_for_selector("#joints", state="visible")
+        assert_apart(page, "#tools, #joints, #modes, .wheel", 6)
+        texts = page.locator("#joint-tools button")
+        assert texts.count() == 4
+        assert texts.evaluate_all("all => all.every((one) => one.scrollWidth <= one.clientWidth)")
 
 
 @pytest.mark.parametrize("size", [(320, 480), (480, 320), (480, 640), (700, 400), (1000, 700)])
@@ -303,15 +304,73 @@ def test_the_tools_leave_the_text_free_and_all_sliders_are_on_the_page(desk, siz
     desk.page.set_viewport_size({"width": size[0], "height": size[1]})
     desk.robot.GetEnv().GetViewer().interaction.controls.notices.say("a notice that is longer than a small page", 60)
     await_that(lambda: "a notice" in desk.page.locator("#text").inner_text(), "the notice does not come")
-    text, tools = (desk.page.locator(f"#{name}").bounding_box() for name in ("text", "tools"))
-    apart = [
-        one[side] + one[length] <= other[side]
-        for one, other in ((text, tools), (tools, text))
-        for side, length in (("x", "width"), ("y", "height"))
-    ]
-    assert any(apart), (text, tools)
+    assert_apart(desk.page, "#text, #tools", 2)
     fold(desk, True)
-    joints = desk.page.locator("#joints").bounding_box()
-    assert joints["x"] >= 0
-    assert joints["x"] + joints["width"] <= size[0]
-    assert joints["y"] + joints["height"] <= size[1]
+    assert_apart(desk.page, "#joints", 1)
+
+
+# --- the tree, simulation time, files that are dropped
+
+
+def row(desk, name):
+    return desk.page.get_by_role("treeitem", name=name)
+
+
+def selected(desk) -> list[str]:
+    return desk.page.evaluate("[...document.querySelectorAll('#tree [aria-selected=true]')].map((row) => row.title)")
+
+
+def test_the_tree_selects_in_the_picture_and_the_picture_in_the_tree(desk):
+    desk.page.get_by_role("button", name="Bodies, links and joints").click()
+    await_that(lambda: row(desk, "Arm1").is_visible(), "no tree")
+    row(desk, "Joint1").click()
+    await_that(lambda: desk.viewer.GetSelectedJoint() is not None, "no joint")
+    assert desk.viewer.GetSelectedJoint().GetName() == "Joint1"
+    await_that(lambda: selected(desk) == ["body Pendulum", "joint Joint1", "link Arm1"], "other rows are marked")
+    desk.viewer.interaction.select(None)
+    await_that(lambda: selected(desk) == [], "the marks stay")
+    search = desk.page.get_by_role("searchbox")
+    search.fill("ARM")
+    assert not row(desk, "Base").is_visible()
+    search.press("ArrowDown")
+    desk.page.keyboard.press("ArrowDown")
+    desk.page.keyboard.press("Enter")
+    await_that(lambda: selected(desk) == ["body Pendulum", "link Arm1"], "the keys choose another row")
+    search.fill("")
+    assert row(desk, "Base").is_visible()
+    desk.page.keyboard.press("Control+A")  # keys are for the search while that has the focus
+    desk.page.focus("#view")
+    desk.page.keyboard.press("b")
+    await_that(lambda: not desk.page.locator("#tree").is_visible(), "the tree stays")
+
+
+def test_time_is_paused_stepped_and_paced(desk):
+    clock = desk.viewer.GetEnv().clock
+    assert not desk.page.locator("#time").is_visible()
+    desk.viewer.GetEnv().SetPhysicsEngine("mujoco")
+    desk.viewer.GetEnv().StartSimulation(0.01)
+    await_that(lambda: desk.page.locator("#time").is_visible(), "no controls")
+    desk.page.get_by_role("button", name="Stop simulation time").click()
+    await_that(lambda: not clock.is_running, "time goes on")
+    before = clock.now
+    desk.page.get_by_role("button", name="One step of simulation time").click()
+    await_that(lambda: clock.now == before + 10_000, "no step")
+    desk.page.focus("#view")
+    desk.page.keyboard.press("-")
+    await_that(lambda: clock.pace == 0.5, "the pace stays")
+    desk.page.keyboard.press("Space")
+    await_that(lambda: clock.is_running, "time stands still")
+    await_that(lambda: desk.page.text_content("#time output").endswith("x"), "the clock does not say how fast it is")
+    desk.page.keyboard.press("Space")
+    await_that(lambda: not clock.is_running, "time goes on")
+
+
+def test_a_file_that_is_dropped_is_added(desk):
+    shape = '<Geom type="sphere"><radius>0.1</radius></Geom>'
+    model = f'<KinBody name="cup"><!-- {"long " * 500}--><Body>{shape}</Body></KinBody>'
+    dropped = desk.page.evaluate_handle(
+        "xml => { const data = new DataTransfer(); data.items.add(new File([xml], 'my cup.xml')); return data; }", model
+    )
+    desk.page.dispatch_event("#view", "drop", {"dataTransfer": dropped})
+    await_that(lambda: desk.env.GetKinBody("cup") is not None, "it is not added")
+    await_that(lambda: "Added my cup.xml" in desk.page.text_content("#text"), "the view does not say so")

@@ -11,7 +11,7 @@
 
 from ravemj.gui.interaction.control import Control
 from ravemj.gui.interaction.control_layout import ControlLayout
-from ravemj.gui.interaction.controls import Controls, Request
+from ravemj.gui.interaction.controls import Request
 from ravemj.gui.interaction.core import Interaction
 from ravemj.gui.interaction.events import (
     Button,
@@ -31,7 +31,7 @@ from ravemj.gui.interaction.events import (
 from ravemj.gui.interaction.hand import Mode
 from ravemj.gui.interaction.mode_buttons import Panel, Rect, Tool, tools
 from ravemj.gui.interaction.notices import Notices
-from ravemj.gui.interaction.overlay import Label, Overlay
+from ravemj.gui.interaction.overlay import Overlay
 from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.playback import Playback
 from ravemj.gui.interaction.selection import Selection
@@ -41,13 +41,11 @@ __all__ = [
     "Button",
     "Control",
     "ControlLayout",
-    "Controls",
     "Event",
     "Fingers",
     "Hit",
     "Interaction",
     "Key",
-    "Label",
     "Leave",
     "Mode",
     "Move",

@@ -67,13 +67,7 @@ class ControlLayout(NamedTuple):
 
     @classmethod
     def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_row: int = 0) -> "ControlLayout":
-        """Lay controls out.
-
-        Args:
-            controls: The controls.
-            size: Width and height of the view [points].
-            first_row: Which of the joints' sliders, or of the rows of the tree or the help, should be the first one.
-        """
+        """Lay controls out on a view of some size [points], with one of the rows as the first where not all fit."""
         playing, time, others, menu, joints, joint_tools, tree, hiding = (
             [control for control in controls if control.group == group]
             for group in ("playing", "time", "tools", "menu", "joints", "joint tools", "tree", "help")

@@ -17,6 +17,7 @@ from ravemj.gui.interaction.selection import Selector
 from ravemj.gui.interaction.shortcuts import DISPLAY, VIEW, Shortcut, key_text
 from ravemj.gui.interaction.time_controls import TimeControls
 from ravemj.gui.interaction.tree import Node, Tree, choose, names_of
+from ravemj.gui.interaction.viewpoint import camera_line
 
 if TYPE_CHECKING:
     from ravemj.gui.interaction.reaching import Reach
@@ -47,11 +48,6 @@ class Request(Enum):
 
     PICTURE = "picture"
     VIDEO = "video"
-    CAMERA = "camera"
-    VALUES = "values"
-
-
-_REQUESTS = {request.value for request in Request}
 
 
 @dataclass
@@ -76,7 +72,6 @@ class Controls:
         notices: What the viewer tells; all views share it.
         display: What is shown besides the bodies; all views share it.
         unfolded: Name of the button whose menu is unfolded, or empty.
-        values_line: The line of a script that sets the values of the sliders, as they were when that was asked for.
         in_degrees: Whether angles are shown in degrees, not in radians.
         pulls: Whether a drag on a link pulls the arm, as it does with Ctrl and Shift.
         reach: The link that was pulled last, with its arm.
@@ -95,8 +90,7 @@ class Controls:
         self.in_degrees = False
         self.pulls = False
         self.reach: Reach | None = None
-        self.values_line = ""
-        self.requests: list[Request] = []
+        self.requests: list[Request | str] = []
         self._tree = Tree(selector.simulation)
 
     def another(self, navigation: Navigation) -> "Controls":
@@ -130,7 +124,7 @@ class Controls:
             *self.time.all(),
             Control(Request.PICTURE.value, "Save a picture (PNG)", "PNG"),
             Control(Request.VIDEO.value, video, "Stop" if recording else "MP4", is_on=recording),
-            Control(Request.CAMERA.value, "Copy the camera as a line of Python", "Copy"),
+            Control("camera", "Copy the camera as a line of Python", "Copy"),
             *(Control(name, label, text, is_on=self.unfolded == name) for name, (text, label, _) in MENUS.items()),
         ]
         reach = self._redundant_reach()
@@ -242,9 +236,10 @@ class Controls:
 
     def _operate(self, name: str, value: float) -> None:
         body = self._body()
-        if name in _REQUESTS:
-            self.values_line = "" if body is None else joint_controls.values_line(body)
+        if name in {"picture", "video"}:
             self.requests.append(Request(name))
+        elif name == "camera":
+            self.requests.append(camera_line(self.navigation.view.camera))
         elif name == "joints":
             self.unfolded = "" if self.unfolded == name else name
         elif name == "pull":
@@ -254,6 +249,12 @@ class Controls:
         elif name == "units":
             self.in_degrees = not self.in_degrees
         elif body is not None:
+            self._operate_joints(body, name, value)
+
+    def _operate_joints(self, body: BodyState, name: str, value: float) -> None:
+        if name == "values":
+            self.requests.append(joint_controls.values_line(body))
+        else:
             self.take(body)
             joint_controls.operate(body, name, value)
 
@@ -263,8 +264,8 @@ class Controls:
             self.take(reach.body)
             reach.sweep_to(value)
 
-    def take_requests(self) -> list[Request]:
-        """Return what was asked of the one who draws, and forget it."""
+    def take_requests(self) -> list[Request | str]:
+        """Return what was asked of the one who draws, and forget it; a text is to be copied."""
         requests, self.requests = self.requests, []
         return requests
 

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering import Camera, Style
-from ravemj.gui.interaction import floor, mode_buttons
+from ravemj.gui.interaction import mode_buttons
 from ravemj.gui.interaction.controls import Controls, Display
-from ravemj.gui.interaction.events import Event, Move, Press, Release, Wheel
-from ravemj.gui.interaction.figures import figures, names
+from ravemj.gui.interaction.events import Event, Key, Move, Press, Release, Wheel
+from ravemj.gui.interaction.figures import figures, floor_grid, floor_labels, names
 from ravemj.gui.interaction.hand import Hand, Mode
 from ravemj.gui.interaction.mode_buttons import Tool
 from ravemj.gui.interaction.navigation import Navigation
@@ -36,13 +36,9 @@ class Interaction:
     def __init__(
         self, simulation: Simulation, camera: Camera, size: tuple[int, int], on_select: OnSelect | None = None
     ) -> None:
-        """Begin in camera mode.
+        """Begin in camera mode, with a view of some size [points].
 
-        Args:
-            simulation: What is seen and moved.
-            camera: Where from.
-            size: Width and height of the view [points].
-            on_select: Asked before something is selected, with the simulation locked.
+        ``on_select`` is asked before something is selected, with the simulation locked.
         """
         self._simulation = simulation
         self._navigation = Navigation(View(camera, 0.0, size), simulation)
@@ -94,11 +90,9 @@ class Interaction:
         self.view = replace(self.view, camera=view.camera, distance=view.distance)
 
     def look_from(self, camera: Camera, distance: float = 0.0) -> None:
-        """Take another camera, which people come back to; what the mouse does with the old one ends.
+        """Take another camera, which people come back to, with a focus so far away [m]; 0: as far as before.
 
-        Args:
-            camera: The camera.
-            distance: How far its focus is [m]; 0: as far as before.
+        What the mouse does with the old camera ends.
         """
         with self._simulation.lock:
             if self.mode is Mode.CAMERA:
@@ -167,8 +161,8 @@ class Interaction:
                 parts += figures(self._simulation, shown, sphere[1])
                 labels += names(self._simulation) if "names" in shown else ()
                 if "floor" in shown:
-                    parts.append(floor.grid(*sphere))
-                    labels += floor.marks(*sphere)
+                    parts.append(floor_grid(*sphere))
+                    labels += floor_labels(*sphere)
             return Overlay(
                 primitives=merge(parts) if any(map(len, parts)) else NOTHING,
                 lines=lines,
@@ -215,9 +209,6 @@ class Interaction:
     def steer(self, events: Sequence[Event]) -> list[Event]:
         """Do what changes the view only, without the simulation, which others have locked.
 
-        Args:
-            events: What people did since the last time, and what had to wait then.
-
         Returns:
             What has to wait for the simulation. Clicks on what is no longer seen in this way are left out.
         """
@@ -227,6 +218,7 @@ class Interaction:
             if isinstance(event, Press) and not self._hand.needs_bodies(event):
                 waiting = _without_clicks(waiting)
             follows = is_pointer and any(isinstance(other, Press) for other in waiting)
+            follows |= isinstance(event, Key) and not event.pressed and Key(event.name) in waiting
             before = self.view
             if follows or not self._hand.steer(event):
                 waiting.append(event)

@@ -72,14 +72,7 @@ class Turn:
     """Measures how far the pointer has turned something about an axis; also by more than one turn."""
 
     def __init__(self, center: Floats, axis: Floats, grip: Floats, ray: Ray) -> None:
-        """Begin to turn.
-
-        Args:
-            center: A point on the axis, in the world [m], shape (3,).
-            axis: Its direction, unit vector, shape (3,).
-            grip: What the pointer holds, in the world [m], shape (3,).
-            ray: The pointer's ray.
-        """
+        """Begin at a grip about an axis (unit vector) through a centre; all in the world, of shape (3,) [m]."""
         self._center, self._axis, self._grip = center, axis, grip
         self._arm = _across(grip - center, axis)
         self._tangent = np.cross(axis, self._arm)  # the way of the grip for each radian

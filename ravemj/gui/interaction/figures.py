@@ -1,5 +1,6 @@
-"""What can be shown of a model that pictures do not show: frames, axes, masses, contacts, names."""
+"""What can be shown of a model that pictures do not show: frames, axes, masses, contacts, names, the floor."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -33,16 +34,28 @@ _PUSH = np.array([0.95, 0.75, 0.05, 1.0])
 _WIDTH = 2.5
 _ARC_STEP = np.radians(6)
 
+_FLOOR_REACH = 2.0
+"""How far the grid goes, in radii of what stands on it."""
+
+_STEPS = (0.1, 1.0, 10.0, 100.0, 1000.0)
+"""Distances between lines [m]."""
+
+_MOST_LINES = 24
+"""Most lines from the middle of the grid to a side."""
+
+_BELOW = 1e-3
+"""How far below z = 0 the lines are, in radii, so that a floor of the model hides them and they do not flicker."""
+
+_LINES, _MARKS = (0.62, 0.62, 0.65, 0.5), (0.45, 0.45, 0.5, 0.9)
+_AXIS_WIDTH = 3.0
+
 _Part = Callable[[Simulation, float], list[Primitives]]
 
 
 def figures(simulation: Simulation, shown: frozenset[str], radius: float) -> list[Primitives]:
-    """Return the figures of what is shown.
+    """Return the figures of what is shown, of ``shortcuts.DISPLAY``, in sizes that fit a scene of some radius [m].
 
-    Args:
-        simulation: The bodies; it is locked by the caller.
-        shown: Names of what is shown, of ``shortcuts.DISPLAY``.
-        radius: Radius of the scene [m]; figures have sizes that fit it.
+    The caller has locked the simulation.
     """
     return [figure for name, part in _PARTS.items() if name in shown for figure in part(simulation, radius)]
 
@@ -57,9 +70,14 @@ def names(simulation: Simulation) -> tuple[Label, ...]:
 
 
 def _frames(simulation: Simulation, radius: float) -> list[Primitives]:
-    cross = np.concatenate([[np.zeros(3), axis] for axis in _FRAME * radius * np.eye(3)])
-    figure = drawing.line_list(cross, _WIDTH, np.repeat(_RGB, 2, axis=0))
+    figure = _axes(_FRAME * radius, _WIDTH)
     return [figure.placed(T) for body in simulation.bodies for T in body.link_transforms()]
+
+
+def _axes(length: float, width: float) -> Primitives:
+    """Return the axes x, y, z of a frame in red, green, blue."""
+    ends = np.concatenate([[np.zeros(3), axis] for axis in length * np.eye(3)])
+    return drawing.line_list(ends, width, np.repeat(_RGB, 2, axis=0))
 
 
 def _joints(simulation: Simulation, radius: float) -> list[Primitives]:
@@ -173,3 +191,39 @@ def _centers(body: BodyState) -> Floats:
 
 
 _PARTS: dict[str, _Part] = {"frames": _frames, "axes": _joints, "masses": _masses, "contacts": _contacts}
+
+
+# --- the floor
+
+
+def floor_grid(center: Floats, radius: float) -> Primitives:
+    """Return lines on the floor around a sphere (centre and radius [m]), and the axes of the world at its origin."""
+    step, reach = _step_and_reach(center, radius)
+    places = step * np.arange(-round(reach / step), round(reach / step) + 1)
+    ends = np.array([[(place, -reach), (place, reach)] for place in places])
+    lines = np.concatenate([ends, ends[:, :, ::-1]]).reshape(-1, 2)
+    is_mark = np.isclose(np.remainder(np.abs(places) / step + 0.5, 10), 0.5)
+    rgba = np.where(is_mark[:, None], _MARKS, _LINES)
+    positions = np.column_stack([lines, np.full(len(lines), -_BELOW * radius)])
+    floor = drawing.line_list(positions, 1.0, np.repeat(np.concatenate([rgba, rgba]), 2, axis=0))
+    return drawing.merge([floor, _axes(min(max(0.5 * radius, step), reach), _AXIS_WIDTH)])
+
+
+def floor_labels(center: Floats, radius: float) -> tuple[Label, ...]:
+    """Return the texts on the grid: metres along x and y, and the names of the axes at their ends."""
+    step, reach = _step_and_reach(center, radius)
+    apart = max(10 * step, math.ceil(0.25 * reach)) if reach >= 1 else 0.5
+    labels = [
+        Label(place * axis, f"{place:g} m")
+        for axis in np.eye(3)[:2]
+        for place in np.arange(apart, reach + 1e-9, apart).tolist()
+    ]
+    length = min(max(0.5 * radius, step), reach)
+    return *labels, *(Label(length * axis, name) for axis, name in zip(np.eye(3), "xyz", strict=True))
+
+
+def _step_and_reach(center: Floats, radius: float) -> tuple[float, float]:
+    """Return the distance between lines, and how far they go to each side of the origin; whole steps [m]."""
+    wanted = _FLOOR_REACH * radius + float(np.abs(center[:2]).max())
+    step = next((step for step in _STEPS if wanted / step <= _MOST_LINES), _STEPS[-1])
+    return step, step * min(max(math.ceil(wanted / step), 1), _MOST_LINES)

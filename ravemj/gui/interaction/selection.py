@@ -57,7 +57,7 @@ class Selector:
 
     def __init__(self, simulation: Simulation, notices: Notices, on_select: OnSelect | None) -> None:
         self.simulation = simulation
-        self._on_select = on_select
+        self._may_select: OnSelect = on_select or (lambda _hit, _ray: True)
         self._notices = notices
         self.selection: Selection | None = None
         self.changes = 0
@@ -136,9 +136,6 @@ class Selector:
         if old is not None and old.body is body and old.dof is not None:
             number = old.dof - first
         return first + (number + 1) % len(joint.axes) if -1 <= number < len(joint.axes) else first
-
-    def _may_select(self, hit: Hit, ray: Ray) -> bool:
-        return self._on_select is None or self._on_select(hit, ray)
 
     def _selection(self, hit: Hit) -> Selection:
         T_world_link = hit.body.link_transform(hit.link)

@@ -59,12 +59,7 @@ class View:
         return Ray(self.camera.position, direction / np.linalg.norm(direction))
 
     def turned(self, right: float, down: float) -> "View":
-        """Turn about the focus; what is before it follows the pointer.
-
-        Args:
-            right: How far the pointer went to the right [points]; the height of the view is half a turn.
-            down: How far it went down [points].
-        """
+        """Turn about the focus, which the pointer drags [points]; the height of the view is half a turn."""
         if self.is_upright:
             return self._turned_upright(math.pi * right / self.size[1], math.pi * down / self.size[1])
         angle = math.pi * math.hypot(right, down) / self.size[1]
@@ -153,6 +148,12 @@ class View:
         T_world_camera[:3, :3] = rotation
         T_world_camera[:3, 3] = focus - distance * rotation[:, 2]
         return replace(self, camera=replace(self.camera, T_world_camera=T_world_camera), distance=distance)
+
+
+def camera_line(camera: Camera) -> str:
+    """Return the line of a script that sets a viewer's camera."""
+    rows = ", ".join(str([round(number, 8) + 0.0 for number in row]) for row in camera.T_world_camera.tolist())
+    return f"viewer.SetCamera([{rows}])"
 
 
 def _level(rotation: Floats) -> Floats:

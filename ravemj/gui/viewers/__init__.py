@@ -29,17 +29,10 @@ def has_display() -> bool:
 
 
 def open_viewer(simulation: Simulation, renderer: SimulationRenderer, name: str, show: bool) -> Viewer | None:
-    """Open the viewer that a name asks for.
+    """Open the viewer that a name of ``VIEWERS`` asks for; the log says which it is.
 
-    Args:
-        simulation: What it shows.
-        renderer: What draws pictures of it.
-        name: One of ``VIEWERS``: ``window``, ``web`` for a page in a browser, ``offscreen``; another is the best of
-            these that works here.
-        show: False for a viewer without a window.
-
-    Returns:
-        The viewer; the log says which it is. None, and an error in the log, for an unknown name.
+    ``window``, ``web`` (a page in a browser) and ``offscreen`` mean just that; the others mean the best of these that
+    works here. None, and an error in the log, for an unknown name.
     """
     if name not in VIEWERS:
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))

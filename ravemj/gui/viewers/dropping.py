@@ -81,4 +81,8 @@ class Upload:
 
     def add_to(self, env: Any, notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
         """Add the files to an environment, unless that is gone, and remove them then."""
-        add_files(env, self.paths, notices, self._remove)
+
+        def remove() -> None:
+            self._remove()  # ``self`` is kept until then, or the folder would go before it is read
+
+        add_files(env, self.paths, notices, remove)

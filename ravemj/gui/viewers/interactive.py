@@ -1,6 +1,9 @@
 """What every viewer has besides pictures: what people select in it, who is told, and what it plays."""
 
+import itertools
+import logging
 import weakref
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from ravemj.core.api_object import ApiObject
@@ -9,10 +12,46 @@ from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Hit, Interaction, Playback, Ray
-from ravemj.gui.viewers.callbacks import Callback, Callbacks
 from ravemj.trajectories.body_motion import BodyMotion
 from ravemj.trajectories.motion import Motion
 from ravemj.trajectories.waypoints import Waypoints
+
+_LOG = logging.getLogger("ravemj")
+
+Callback = Callable[..., object]
+
+
+class Callbacks:
+    """Functions for one occasion, each for as long as its handle lives."""
+
+    def __init__(self) -> None:
+        self._functions: dict[int, Callback] = {}
+        self._keys = itertools.count()
+
+    def add(self, function: Callback) -> Handle:
+        """Take a function up.
+
+        Raises:
+            ArgumentError: it cannot be called.
+        """
+        if not callable(function):
+            raise ArgumentError(f"callback: {function!r} cannot be called")
+        key = next(self._keys)
+        self._functions[key] = function
+        return Handle(self._functions.pop, key, None)
+
+    def call(self, *arguments: object) -> list[object]:
+        """Call all functions and return what they return; what they raise is logged."""
+        answers: list[object] = []
+        for function in self._functions.copy().values():
+            try:
+                answers.append(function(*arguments))
+            except Exception:
+                _LOG.exception("a viewer's callback failed")
+        return answers
+
+    def __bool__(self) -> bool:
+        return bool(self._functions)
 
 
 class _Trajectory(Protocol):
@@ -142,9 +181,3 @@ class Interactive(ApiObject):
             if body.scene.is_robot and body.scene.dof_axes:
                 return body
         raise ArgumentError("there is no robot with joints to move")
-
-
-def camera_line(camera: Camera) -> str:
-    """Return the line of a script that sets a viewer's camera."""
-    rows = ", ".join(str([round(number, 8) + 0.0 for number in row]) for row in camera.T_world_camera.tolist())
-    return f"viewer.SetCamera([{rows}])"

@@ -29,14 +29,7 @@ class FrameSource:
     def __init__(
         self, interaction: Interaction, renderer: SimulationRenderer, background: _Colour, ratio: float = 1.0
     ) -> None:
-        """Watch a view.
-
-        Args:
-            interaction: The view.
-            renderer: What draws it.
-            background: Colour where nothing is, in 0..1.
-            ratio: How many pixels a point has.
-        """
+        """Watch a view; its background is in 0..1, and a point has ``ratio`` pixels."""
         self._interaction, self._renderer = weakref.ref(interaction), weakref.ref(renderer)
         self._background = background
         width, height = (max(round(ratio * length), 1) for length in interaction.view.size)

@@ -18,8 +18,7 @@ from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
 from ravemj.graphics.rendering.checks import checked_colour
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Resize
-from ravemj.gui.viewers.callbacks import Callback, Callbacks
-from ravemj.gui.viewers.interactive import Interactive
+from ravemj.gui.viewers.interactive import Callback, Callbacks, Interactive
 from ravemj.gui.viewers.recorder import Recorder
 from ravemj.model.scene import View
 
@@ -32,11 +31,8 @@ _FIGURES = "SetFiguresInCamera"
 _LARGEST_TEXT = 200
 """Most points that letters are high: larger ones would fill the window."""
 
-LOCKED = "Locked by the script"
-"""What a window or a page says while a script has had the environment for long."""
-
-PATIENCE = 1.0
-"""How long that is [s]."""
+LOCKED, PATIENCE = "Locked by the script", 1.0
+"""What a window or a page says while a script has had the environment for so long [s]."""
 
 
 class Viewer(Interactive):
@@ -397,11 +393,7 @@ class Viewer(Interactive):
 
 
 def _checked_size(width: float, height: float, caller: str) -> tuple[int, int]:
-    """Return a size as whole pixels.
-
-    Raises:
-        ArgumentError: nothing has such a size.
-    """
+    """Return a size as whole pixels; raise ``ArgumentError`` where nothing has such a size."""
     size = checked_vector([width, height], 2, f"{caller}: size")
     if size.min() < 1 or size.max() > _LARGEST:
         limits = f"1 x 1 to {_LARGEST} x {_LARGEST}"

@@ -2,6 +2,7 @@
 
 import atexit
 import logging
+import re
 import threading
 import time
 import weakref
@@ -16,7 +17,6 @@ from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.interaction import Request, Resize
 from ravemj.gui.viewers.dropping import add_files
 from ravemj.gui.viewers.glfw_window import GlfwWindow
-from ravemj.gui.viewers.interactive import camera_line
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.sharpness import period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE, Viewer
@@ -199,7 +199,7 @@ class WindowViewer(Viewer):
             add_files(self.GetEnv(), window.dropped, self.interaction.controls.notices)
             window.dropped = []
 
-    def _grant(self, request: Request, window: GlfwWindow) -> None:
+    def _grant(self, request: Request | str, window: GlfwWindow) -> None:
         """Do what a button asked for that needs the window."""
         source = FrameSource(self.interaction, self._renderer, self._background, window.pixel_ratio)
         if request is Request.PICTURE:
@@ -207,13 +207,9 @@ class WindowViewer(Viewer):
         elif request is Request.VIDEO:
             self._recorder.record(source, self.playback)
         else:
-            is_camera = request is Request.CAMERA
-            line = camera_line(self.camera) if is_camera else self.interaction.controls.values_line
-            window.copy_text(line)
-            self.interaction.controls.notices.say(
-                f"Copied {'viewer.SetCamera' if is_camera else 'SetDOFValues'}([...])"
-            )
-            _LOG.info("%s", line)
+            window.copy_text(request)
+            self.interaction.controls.notices.say(f"Copied {re.sub(r'[[].*]', '[...]', request)}")
+            _LOG.info("%s", request)
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:

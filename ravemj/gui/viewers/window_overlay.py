@@ -26,13 +26,9 @@ _Rgb = tuple[int, int, int]
 
 @functools.lru_cache(maxsize=512)
 def text_image(text: str, size: int, rgb: _Rgb, halo: bool = False) -> NDArray[np.uint8]:
-    """Return a text as an image, (height, width, 4), top row first; all texts of a size have one height.
+    """Return a line of text as an image, (height, width, 4), top row first.
 
-    Args:
-        text: The text, on one line.
-        size: Height of its letters [pixels].
-        rgb: Their colour, in 0..255.
-        halo: Whether they have a light edge.
+    All texts of a size [pixels] have one height. The colour is in 0..255; a halo is a light edge of the letters.
     """
     from PIL import Image, ImageDraw  # noqa: PLC0415 - slow to import
 
@@ -59,14 +55,7 @@ class OverlayPainter:
         self._pixels, self._ratio = (1, 1), 1.0
 
     def paint(self, overlay: Overlay, view: View, pixels: tuple[int, int], ratio: float) -> None:
-        """Paint everything.
-
-        Args:
-            overlay: What.
-            view: The view, for what is somewhere in the world.
-            pixels: Width and height of the window.
-            ratio: How many pixels a point has.
-        """
+        """Paint everything on a window of so many pixels, of which a point has ``ratio``."""
         self._pixels, self._ratio = pixels, ratio
         for x, y, text in overlay.labels_on(view):
             self._text(text, x, y, _DARK, halo=True)

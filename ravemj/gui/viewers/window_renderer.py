@@ -61,12 +61,7 @@ class WindowRenderer:
         self._buffer = 1, 1
 
     def look(self, simulation: Simulation, interaction: Interaction, surface: Surface) -> bool:
-        """Take over how everything is now; the caller has locked the simulation.
-
-        Args:
-            simulation: What is drawn; it is not kept.
-            interaction: The view, and what is drawn over it.
-            surface: What it is drawn on.
+        """Take over how everything is now; the caller has locked the simulation, which is not kept.
 
         Returns:
             Whether anything looks different from last time.
@@ -87,15 +82,9 @@ class WindowRenderer:
         return True
 
     def look_again(self, interaction: Interaction, surface: Surface, line: str, published: Published) -> bool:
-        """Take over how the view is now, while others have the simulation.
+        """Take over how the view is now, while others have the simulation, and show a line about that.
 
         Bodies are where they were seen last, or where they were published since.
-
-        Args:
-            interaction: The view.
-            surface: What it is drawn on.
-            line: What is said about that.
-            published: Where bodies were published.
 
         Returns:
             Whether anything looks different from last time.

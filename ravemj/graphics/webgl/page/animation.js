@@ -126,7 +126,7 @@ function followPointers(player, canvas, onHover) {
 }
 
 /** Connect the bar, the keys and what is shown under the pointer. */
-function furnish(player) {
+function connectControls(player) {
   const element = (id) => document.getElementById(id);
   const [canvas, play, time, clock, table, label] = ["view", "play", "time", "clock", "values", "label"].map(element);
   time.max = player.duration;
@@ -181,7 +181,7 @@ function furnish(player) {
 unpacked(Uint8Array.from(atob(document.getElementById("scene").textContent), (letter) => letter.charCodeAt(0)))
   .then((scene) => {
     const player = new Player(document.getElementById("view"), scene);
-    furnish(player);
+    connectControls(player);
     window.ravemj = player;  // for scripts of pages that hold this one
   })
   .catch((error) => {

@@ -100,25 +100,25 @@ in vec4 color; out vec4 pixel;
 void main() { pixel = color; }`;
 
 /** A program with the places of its attributes and uniforms as fields. */
-function program(gl, vertex, fragment) {
-  const made = gl.createProgram(), places = {};
+function compile(gl, vertex, fragment) {
+  const program = gl.createProgram(), places = {};
   for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
     const shader = gl.createShader(kind);
     gl.shaderSource(shader, source);
     gl.compileShader(shader);
-    gl.attachShader(made, shader);
+    gl.attachShader(program, shader);
   }
-  gl.linkProgram(made);
-  if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made));
-  for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_ATTRIBUTES); i++) {
-    const { name } = gl.getActiveAttrib(made, i);
-    places[name] = gl.getAttribLocation(made, name);
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+  for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_ATTRIBUTES); i++) {
+    const { name } = gl.getActiveAttrib(program, i);
+    places[name] = gl.getAttribLocation(program, name);
   }
-  for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); i++) {
-    const { name } = gl.getActiveUniform(made, i);
-    places[name.replace("[0]", "")] = gl.getUniformLocation(made, name);
+  for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
+    const { name } = gl.getActiveUniform(program, i);
+    places[name.replace("[0]", "")] = gl.getUniformLocation(program, name);
   }
-  return { made, ...places };
+  return { program, ...places };
 }
 
 class Renderer {
@@ -127,8 +127,8 @@ class Renderer {
     const gl = canvas.getContext("webgl2", { antialias: false });  // crisp pictures have a framebuffer of their own
     if (!gl) throw new Error("this browser has no WebGL2");
     this.gl = gl;
-    this.surface = program(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
-    this.line = program(gl, LINE_VERTEX, LINE_FRAGMENT);
+    this.surface = compile(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
+    this.line = compile(gl, LINE_VERTEX, LINE_FRAGMENT);
     this.parts = new Map();
     this.groups = new Map();
     gl.enable(gl.DEPTH_TEST);
@@ -149,7 +149,7 @@ class Renderer {
     this.ball = (instances) => this.mesh(content.ball, array, instances);
     if (content.drawings) this.show("drawings", content.drawings, array);
     const lights = content.lights, sum = (i) => lights.reduce((total, { ambient }) => total + ambient[i], 0);
-    gl.useProgram(this.surface.made);
+    gl.useProgram(this.surface.program);
     gl.uniform1i(this.surface.lights, lights.length);
     gl.uniform3fv(this.surface.ambient, [0, 1, 2].map(sum));
     gl.uniform3fv(this.surface.diffuse, lights.flatMap(({ diffuse }) => diffuse));
@@ -160,7 +160,7 @@ class Renderer {
   remake(part, make) {
     this.gl.bindVertexArray(null);  // or new indices would become those of what was drawn last
     for (const free of this.parts.get(part) || []) free();
-    this.parts.set(part, this.made = []);
+    this.parts.set(part, this.disposers = []);
     make();
   }
 
@@ -174,11 +174,11 @@ class Renderer {
   }
 
   buffer(content, target = this.gl.ARRAY_BUFFER) {
-    const made = this.gl.createBuffer();
-    this.made.push(() => this.gl.deleteBuffer(made));
-    this.gl.bindBuffer(target, made);
+    const buffer = this.gl.createBuffer();
+    this.disposers.push(() => this.gl.deleteBuffer(buffer));
+    this.gl.bindBuffer(target, buffer);
     this.gl.bufferData(target, content, this.gl.STATIC_DRAW);
-    return made;
+    return buffer;
   }
 
   attribute(place, buffer, size, type, { stride = 0, offset = 0, divisor = 0, normalized = false } = {}) {
@@ -190,12 +190,12 @@ class Renderer {
   }
 
   vertices(fill) {
-    const { gl } = this, made = gl.createVertexArray();
-    this.made.push(() => gl.deleteVertexArray(made));
-    gl.bindVertexArray(made);
+    const { gl } = this, vertexArray = gl.createVertexArray();
+    this.disposers.push(() => gl.deleteVertexArray(vertexArray));
+    gl.bindVertexArray(vertexArray);
     fill();
     gl.bindVertexArray(null);
-    return made;
+    return vertexArray;
   }
 
   /** A mesh on the graphics card, for shapes one at a time or, with instances, for many at once. */
@@ -332,12 +332,12 @@ class Renderer {
     const all = [...this.shapes, ...figures], isSolid = ({ rgba }) => rgba[3] >= 1;
     for (const shape of all.filter(isSolid)) this.drawShape(shape, this.tinted(shape, marked));
     gl.enable(gl.BLEND);
-    gl.useProgram(this.line.made);
+    gl.useProgram(this.line.program);
     for (const { vertices, count } of [...this.groups.values()].flatMap((group) => group.strokes)) {
       gl.bindVertexArray(vertices);
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     }
-    gl.useProgram(this.surface.made);
+    gl.useProgram(this.surface.program);
     gl.depthMask(false);
     this.drawClear(all.filter((shape) => shape.rgba[3] > 0 && !isSolid(shape)), view, marked);
     gl.depthMask(true);
@@ -422,12 +422,12 @@ class Renderer {
       clip[12 + row] = scale * dot(axis) - (row === 2 ? 2 * far * near / (far - near) : 0);
     });
     gl.viewport(0, 0, width, height);
-    gl.useProgram(line.made);
+    gl.useProgram(line.program);
     gl.uniformMatrix4fv(line.clip, false, clip);
     gl.uniform2f(line.size, width, height);
     gl.uniform1f(line.scale, scale);
     gl.uniform1f(line.near, near);
-    gl.useProgram(surface.made);
+    gl.useProgram(surface.program);
     gl.uniformMatrix4fv(surface.clip, false, clip);
     gl.uniform3fv(surface.eye, view.position);
     gl.uniform1i(surface.isLit, isLit);
@@ -457,7 +457,7 @@ class Renderer {
         const corner = i >> 1, side = (corner % 3 + i % 2) % 3;
         return indices[corner - corner % 3 + side];
       });
-      this.made = this.parts.get("surfaces");
+      this.disposers = this.parts.get("surfaces");
       mesh.edges = this.buffer(ends, gl.ELEMENT_ARRAY_BUFFER);
     }
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.edges);

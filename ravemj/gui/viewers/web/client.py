@@ -143,7 +143,7 @@ class Client:
                 continue
             if isinstance(message, Shape):
                 self._ratio = message.ratio
-                message = Resize(message.width, message.height)
+                message = Resize(round(message.width), round(message.height))
             if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
                 self._waiting.pop()  # only where the pointer is now counts
             self._waiting.append(message)
@@ -160,13 +160,8 @@ class Client:
     def attend(self, connection: Connection, style: PageStyle, *, is_watched: bool = False) -> Frame | None:
         """Do what the page said, and send it what is new if it takes that and anything has changed or come to rest.
 
-        Args:
-            connection: The way to the page.
-            style: How the page looks.
-            is_watched: Whether a picture is wanted although the page draws by itself.
-
         Returns:
-            The picture that the page shows; None if nothing was sent.
+            The picture that the page shows; None if nothing was sent, or nobody watches a page that draws by itself.
         """
         try:
             update = self._update_if_due(style)

@@ -13,12 +13,7 @@ def moving(picture: Frame, quality: int) -> bytes:
 
 
 def resting(picture: Frame, *, is_exact: bool) -> bytes:
-    """Return a picture, shape (height, width, 3), as crisp as can be.
-
-    Args:
-        picture: The picture.
-        is_exact: PNG, for connections that have time for it; else JPEG with the colours of every pixel.
-    """
+    """Return a picture, shape (height, width, 3), as crisp as can be: as PNG if exact, else as JPEG."""
     if is_exact:
         return _file(picture, "PNG", compress_level=1)
     return _file(picture, "JPEG", quality=_CRISP_QUALITY, subsampling=0)

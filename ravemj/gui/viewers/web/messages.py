@@ -6,6 +6,7 @@ import logging
 import math
 import re
 from collections.abc import Callable
+from enum import Enum
 from typing import NamedTuple
 
 from ravemj.gui.interaction import (
@@ -39,8 +40,8 @@ _FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
 class Shape(NamedTuple):
     """The page has another size [points], or its screen other pixels for each point."""
 
-    width: int
-    height: int
+    width: float
+    height: float
     ratio: float
 
 
@@ -101,45 +102,34 @@ def _flag(value: object) -> bool:
     return value
 
 
-def _button(name: object) -> Button:
-    if name not in _BUTTONS:
-        raise ValueError("there is no such button of a mouse")
-    return _BUTTONS[name]
+def _between(least: float, most: float, trouble: str) -> Callable[[object], float]:
+    def read(value: object) -> float:
+        number = _number(value)
+        if not least <= number <= most:
+            raise ValueError(trouble)
+        return number
+
+    return read
 
 
-def _spread(value: object) -> float:
-    if _number(value) <= 0:
-        raise ValueError("fingers are never so near")
-    return _number(value)
+def _one_of(choices: type[Enum], trouble: str) -> Callable[[object], Enum]:
+    known: dict[object, Enum] = {choice.value: choice for choice in choices}
 
+    def read(name: object) -> Enum:
+        if name not in known:
+            raise ValueError(trouble)
+        return known[name]
 
-def _tool(name: object) -> Tool:
-    if name not in _TOOLS:
-        raise ValueError("there is no such tool")
-    return _TOOLS[name]
+    return read
 
 
 def _name(kind: str) -> Callable[[object], str]:
-    """Return what reads the name of a key or a control."""
-
     def read(name: object) -> str:
         if not isinstance(name, str) or len(name) > _LONGEST_NAME:
             raise ValueError(f"there is no such {kind}")
         return name
 
     return read
-
-
-def _length(value: object) -> int:
-    if not 1 <= _number(value) <= _LARGEST:
-        raise ValueError("there are no pages of this size")
-    return round(_number(value))
-
-
-def _ratio(value: object) -> float:
-    if not 0.1 <= _number(value) <= 10:
-        raise ValueError("there are no pages of this size")
-    return _number(value)
 
 
 def _file_name(name: object) -> str:
@@ -154,8 +144,10 @@ def _data(text: object) -> bytes:
     return base64.b64decode(text, validate=True)
 
 
-_BUTTONS: dict[object, Button] = {button.value: button for button in Button}
-_TOOLS: dict[object, Tool] = {tool.value: tool for tool in Tool}
+_button = _one_of(Button, "there is no such button of a mouse")
+_spread = _between(math.ulp(0.0), math.inf, "fingers are never so near")
+_length = _between(1, _LARGEST, "there are no pages of this size")
+_ratio = _between(0.1, 10, "there are no pages of this size")
 _POINT: dict[str, Callable[[object], object]] = {"x": _number, "y": _number}
 _KINDS: dict[str, tuple[Callable[..., Message], dict[str, Callable[[object], object]]]] = {
     "press": (Press, {**_POINT, "button": _button, "ctrl": _flag, "shift": _flag, "touch": _flag}),
@@ -163,7 +155,7 @@ _KINDS: dict[str, tuple[Callable[..., Message], dict[str, Callable[[object], obj
     "move": (Move, _POINT),
     "wheel": (Wheel, {"steps": _number}),
     "fingers": (Fingers, {**_POINT, "right": _number, "down": _number, "spread": _spread}),
-    "use": (Use, {"tool": _tool, "amount": _number}),
+    "use": (Use, {"tool": _one_of(Tool, "there is no such tool"), "amount": _number}),
     "operate": (Operate, {"name": _name("control"), "value": _number}),
     "key": (Key, {"name": _name("key"), "pressed": _flag}),
     "leave": (Leave, {}),

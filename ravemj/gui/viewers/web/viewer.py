@@ -17,7 +17,6 @@ from ravemj.errors import RavemjError
 from ravemj.graphics.rendering.style import AS_IT_IS
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.interaction import Interaction, Request
-from ravemj.gui.viewers.interactive import camera_line
 from ravemj.gui.viewers.notebook import frame
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.viewer import Viewer
@@ -165,7 +164,7 @@ class WebViewer(Viewer):
             client.complete_uploads.pop(0).add_to(self.GetEnv(), client.interaction.controls.notices)
         return client.patience
 
-    def _grant(self, request: Request, client: Client, connection: ServerConnection, style: PageStyle) -> None:
+    def _grant(self, request: Request | str, client: Client, connection: ServerConnection, style: PageStyle) -> None:
         """Do what a button asked for that needs the page, or writes here."""
         if request is Request.PICTURE:
             try:
@@ -175,11 +174,8 @@ class WebViewer(Viewer):
         elif request is Request.VIDEO:
             self._recorder.record(FrameSource(client.interaction, self._renderer, self._background), self.playback)
         else:
-            interaction = client.interaction
-            is_camera = request is Request.CAMERA
-            line = camera_line(interaction.view.camera) if is_camera else interaction.controls.values_line
-            client.send_text(connection, line)
-            _LOG.info("%s", line)
+            client.send_text(connection, request)
+            _LOG.info("%s", request)
 
     def dismiss(self, connection: ServerConnection) -> None:
         """Forget a page that has left, in the thread that drew for it."""

@@ -4,7 +4,7 @@
 const QUIET = 400;  // after so long without a touch [ms], a slider shows what the server says
 const PLAYING = ["back", "play", "forward", "seek", "speed"];
 const TOGGLES = ["joints", "view", "display", "tree", "help"];
-const CONTAINERS = { playing: "motion", time: "time", tools: "tools", menu: "menu", joints: "joints", "joint tools": "joint-tools" };
+const CONTAINERS = { playing: "motion", "joint tools": "joint-tools" };  // of groups whose element has another id
 const ICONS = {
   back: "M6 5h2.4v14H6zM19 5v14L9.5 12z",
   forward: "M15.6 5H18v14h-2.4zM5 5v14l9.5-7z",
@@ -37,7 +37,7 @@ function showControls(controls) {
 function createControl({ name, group, lower, upper }) {
   const entry = lower < upper ? createSlider(name) : name === "clock" ? createText(name) : createButton(name);
   const order = (row) => PLAYING.indexOf(row.dataset.name);
-  const container = document.getElementById(CONTAINERS[group]);
+  const container = document.getElementById(CONTAINERS[group] || group);
   const next = group === "playing" ? [...container.children].find((other) => order(other) > order(entry.row)) : null;
   container.insertBefore(entry.row, next || null);
   return entry;

@@ -9,7 +9,9 @@ canvas.addEventListener("webglcontextlost", (event) => {
   event.preventDefault();  // or it would not be restored
   showServerPictures("WebGL has stopped");
 });
-canvas.addEventListener("webglcontextrestored", () => { messageQueue = messageQueue.then(() => startDrawing(overlay.scene)); });
+canvas.addEventListener("webglcontextrestored", () => {
+  messageQueue = messageQueue.then(() => startDrawing(overlay.scene));
+});
 
 class Drawing {
   /** Raises an error where there is no WebGL2. */
@@ -21,7 +23,7 @@ class Drawing {
 
   /** Begin a connection. */
   reset() {
-    this.serverView = this.predicted = null;  // the view as the server says, and as it will become by what it was sent since
+    this.serverView = this.predicted = null;  // the view as the server says, and as it will say
     this.acknowledged = this.predictedBy = 0;  // numbers of messages
     this.resetPointer();
   }

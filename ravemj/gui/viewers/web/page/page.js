@@ -7,7 +7,8 @@ const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AW
 // --- the connection
 
 let socket = null, overlay = {}, reconnectDelay = FIRST_WAIT, reconnectTimer = 0, pendingReadies = 0, sentCount = 0;
-let drawing = null, messageQueue = Promise.resolve();  // draws in this page; null: the server does. Messages are handled in order
+let drawing = null;  // what draws in this page; null: the server draws
+let messageQueue = Promise.resolve();  // messages are handled one after the other
 
 const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(3)).join("-");
 
@@ -260,7 +261,8 @@ view.addEventListener("pointermove", (event) => {
     const [right, down, spread] = [now.x - before.x, now.y - before.y, now.apart / before.apart];
     send({ type: "fingers", x: now.x, y: now.y, right, down, spread });
   } else if (touchStart && !isPinching) {
-    if (Math.hypot(event.clientX - touchStart.clientX, event.clientY - touchStart.clientY) > FAR) clearTimeout(longPressTimer);
+    const distance = Math.hypot(event.clientX - touchStart.clientX, event.clientY - touchStart.clientY);
+    if (distance > FAR) clearTimeout(longPressTimer);
     send({ type: "move", x: event.clientX, y: event.clientY });
   }
 });
