@@ -226,10 +226,10 @@ def test_groups_of_a_geometry_for_robots():
     five = f'<polylist material="m">{INPUT}<vcount>5</vcount><p>0 1 2 3 4</p></polylist>'
     text = f"<COLLADA><geometry id='a'>{dented % (five + five)}</geometry><geometry id='b'/><effect id='a'/></COLLADA>"
     document = ColladaDocument(text.encode(), "x.dae")
-    first, second = primitive_groups(document, document.find("geometry", "#a"))
-    assert (first.symbol, len(second.corners)) == ("m", 3)
-    (fan, _) = primitive_groups(document, document.find("geometry", "a"), concave=False)
-    assert fan.corners[:, 0].tolist() == [[2, 0, 0]] * 3 or fan.corners[:, 0].tolist() == [[0, 0, 0]] * 3
+    (first, _), (_, corners) = primitive_groups(document, document.find("geometry", "#a"))
+    assert (first.get("material"), len(corners)) == ("m", 3)
+    ((_, fan), *_) = primitive_groups(document, document.find("geometry", "a"), of_robots=True)
+    assert fan[:, 0].tolist() == [[2, 0, 0]] * 3 or fan[:, 0].tolist() == [[0, 0, 0]] * 3
     assert primitive_groups(document, document.find("geometry", "#b")) == []
 
 

@@ -164,8 +164,8 @@ def test_geometry_of_collada_robots_has_openraves_triangles():
         metres = attribute_number(child(document.root, "asset", "unit"), "meter", 1.0)
         ours = {(0, 0.0)}
         for geometry in document.root.iter("{*}geometry"):
-            groups = primitive_groups(document, geometry, concave=False)
-            ours |= {(len(group.corners), round(area(group.corners * metres), 6)) for group in groups}
+            groups = primitive_groups(document, geometry, of_robots=True)
+            ours |= {(len(corners), round(area(corners * metres), 6)) for _, corners in groups}
         for body in expected["result"]["bodies"]:
             for geometry in (
                 item for link in body["links"] for item in link["geometries"] if item["type"] == "trimesh"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, cross_rows
 from ravemj.formats.meshes.collada.document import Element, local_name, numbers
 from ravemj.formats.meshes.matrices import rotation, translation
 
@@ -37,9 +37,9 @@ def _look_at(rows: Floats) -> Floats:
     """Return the frame at the first point that looks along -z at the second, with y near the third vector."""
     eye, interest, up = rows
     back = _unit(eye - interest)
-    right = _unit(np.cross(up, back))
+    right = _unit(cross_rows(up, back))
     matrix = np.eye(4)
-    matrix[:3] = np.stack([right, np.cross(back, right), back, eye], axis=1)
+    matrix[:3] = np.stack([right, cross_rows(back, right), back, eye], axis=1)
     return matrix
 
 

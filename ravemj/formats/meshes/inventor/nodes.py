@@ -68,12 +68,7 @@ class Node:
     children: list["Node"] = field(default_factory=list["Node"])
 
     def floats(self, name: str, width: int, default: tuple[float, ...]) -> Floats:
-        """Return a field of ``width`` numbers; of several such values the first.
-
-        Args:
-            name: The field.
-            width: How many numbers make a value.
-            default: What the standard says for a field that is not written.
+        """Return a field of ``width`` numbers, of several such values the first; else the standard's default.
 
         Raises:
             SourceError: There are fewer numbers, or something else stands there.

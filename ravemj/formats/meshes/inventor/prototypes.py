@@ -19,11 +19,7 @@ class Prototype:
     body: list[Node]
 
     def instance(self, node: Node, limit: int) -> tuple[Node, int]:
-        """Fill in the pattern.
-
-        Args:
-            node: The instance as written, with values for some fields.
-            limit: How many nodes may be made at most.
+        """Fill in the pattern with the fields of a node as written, making ``limit`` nodes at most.
 
         Returns:
             A group of the filled-in node, and how many nodes were made.
@@ -31,37 +27,26 @@ class Prototype:
         Raises:
             SourceError: More nodes than ``limit`` would be made.
         """
-        filling = _Filling({**self.defaults, **node.fields}, node, limit)
-        children = [filling.node(self.body[0])] if self.body else []
-        return Node("Group", node.document, node.offset, {"children": list(children)}), limit - filling.left
+        values = {**self.defaults, **node.fields}
+        made: dict[int, Node] = {}  # a node that USE repeats is filled in once
 
+        def filled(pattern: Node) -> Node:
+            known = made.get(id(pattern))
+            if known is not None:
+                return known
+            if len(made) >= limit:
+                node.fail("the prototypes make too many nodes")
+            copy = made[id(pattern)] = Node(pattern.kind, pattern.document, pattern.offset)
+            copy.fields = {name: value_of(value) for name, value in pattern.fields.items()}
+            copy.children = [filled(child) for child in pattern.children]
+            return copy
 
-class _Filling:
-    """One pass over a pattern; a node that USE repeats is filled in once."""
+        def value_of(value: Value) -> Value:
+            if isinstance(value, Is):
+                return values.get(value.name)
+            if isinstance(value, Node):
+                return filled(value)
+            return [value_of(item) for item in value] if isinstance(value, list) else value
 
-    def __init__(self, values: Mapping[str, Value], instance: Node, limit: int) -> None:
-        self._values = values
-        self._instance = instance
-        self._made: dict[int, Node] = {}
-        self.left = limit
-
-    def node(self, pattern: Node) -> Node:
-        made = self._made.get(id(pattern))
-        if made is not None:
-            return made
-        self.left -= 1
-        if self.left < 0:
-            self._instance.fail("the prototypes make too many nodes")
-        made = self._made[id(pattern)] = Node(pattern.kind, pattern.document, pattern.offset)
-        made.fields = {name: self._value(value) for name, value in pattern.fields.items()}
-        made.children = [self.node(child) for child in pattern.children]
-        return made
-
-    def _value(self, value: Value) -> Value:
-        if isinstance(value, Is):
-            return self._values.get(value.name)
-        if isinstance(value, Node):
-            return self.node(value)
-        if isinstance(value, list):
-            return [self._value(item) for item in value]
-        return value
+        children = [filled(self.body[0])] if self.body else []
+        return Node("Group", node.document, node.offset, {"children": list(children)}), len(made)
