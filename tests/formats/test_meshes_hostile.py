@@ -65,8 +65,6 @@ def survives(name, data):
 
 
 def damaged(name, edits):
-    if name.endswith(TRIMESH):
-        pytest.importorskip("trimesh")
     data = bytearray(SAMPLES[name])
     for place, length, new in edits:
         at = int(place * len(data))
@@ -89,8 +87,6 @@ def test_damaged_bytes(name, edits):
 @calm
 @given(swaps=st.lists(st.tuples(PLACES, st.sampled_from(WORDS)), min_size=1, max_size=3))
 def test_damaged_words(name, swaps):
-    if name.endswith(TRIMESH):
-        pytest.importorskip("trimesh")
     words = SAMPLES[name].replace(b"\n", b" \n ").split(b" ")
     for place, word in swaps:
         words[int(place * len(words))] = word
@@ -99,8 +95,6 @@ def test_damaged_words(name, swaps):
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_beginning_of_a_file(name):
-    if name.endswith(TRIMESH):
-        pytest.importorskip("trimesh")
     for end in range(1, len(SAMPLES[name]), 37):
         survives(name, SAMPLES[name][:end])
 
@@ -187,7 +181,6 @@ def test_entities_are_not_expanded(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".ply", ".off"])
 def test_counts_beyond_all_memory(refused, suffix):
-    pytest.importorskip("trimesh")
     huge = 10**15
     content = {
         ".ply": "ply\nformat binary_little_endian 1.0\n"
