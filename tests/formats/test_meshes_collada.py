@@ -10,6 +10,8 @@ from ravemj.formats.meshes.collada.document import ColladaDocument
 from ravemj.formats.meshes.collada.materials import read_material
 from ravemj.formats.meshes.collada.triangles import primitive_groups
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 FILES = DATA / "meshes"
 GRAY = pytest.approx((0.6, 0.6, 0.6))
 MESH = """<mesh><source id="p"><float_array id="pa">0 0 0 1 0 0 1 1 0 0 1 0 0 0 1</float_array><technique_common>
@@ -18,11 +20,6 @@ MESH = """<mesh><source id="p"><float_array id="pa">0 0 0 1 0 0 1 1 0 0 1 0 0 0 
 INPUT = '<input semantic="VERTEX" source="#v" offset="0"/>'
 NODE = '<node><instance_geometry url="#g"/></node>'
 MATERIALS = {"mb": "0 0 1", "ma": "1 0 0", "mc": "0 1 0"}
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 def triangles(indices, symbol=""):

@@ -11,15 +11,12 @@ from ravemj.errors import SourceError
 from ravemj.formats.meshes import area, read_mesh, volume
 from ravemj.formats.readers import read_file
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 FILES = DATA / "meshes"
 WEDGE_AREA = 0.06 + 0.04 + 0.03 + 0.5 * np.sqrt(0.08**2 + 0.06**2 + 0.12**2)
 GRAY = pytest.approx((0.6, 0.6, 0.6))
 BOX = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 @pytest.fixture

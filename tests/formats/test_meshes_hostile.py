@@ -15,6 +15,8 @@ from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.reading import _read, reader_of
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 FILES = DATA / "meshes"
 SAMPLES = {path.name: path.read_bytes() for path in sorted(FILES.iterdir()) if path.suffix in MESH_SUFFIXES}
 TRIMESH = (".off", ".ply")
@@ -23,11 +25,6 @@ _TEXT = (
     "Separator FaceSet Switch Transform vertex facet f v usemtl <p> </p> <node> <!-- </COLLADA> #p end_header"
 )
 WORDS = [*_TEXT.encode().split(), b"\0", b"\xff", b"\n", b"-" * 50, b"9" * 5000]
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 @pytest.fixture

@@ -14,15 +14,12 @@ from ravemj.formats.meshes.collada.document import ColladaDocument, attribute_nu
 from ravemj.formats.meshes.collada.triangles import primitive_groups
 from ravemj.model.scene import Mesh
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 CASES = CONFORMANCE / "cases"
 DATA = CORPUS / "models" / "rdiankov+openrave" / "src"
 
 (needs_corpus,) = NEEDS_THE_CORPUS
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 def corners(mesh: Mesh, scale=(1.0, 1.0, 1.0)):
