@@ -45,6 +45,12 @@ def robot(env) -> ravemj.Robot:
     return env.GetRobots()[0]
 
 
+@pytest.fixture
+def no_cache(monkeypatch):
+    """Meshes are read from their files."""
+    monkeypatch.setenv("RAVEMJ_CACHE", "off")
+
+
 @pytest.fixture(autouse=True, scope="session")
 def _home(tmp_path_factory):
     """``RaveInitialize`` makes OpenRAVE's folder, here and in processes of tests: not in the user's home."""

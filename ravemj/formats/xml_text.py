@@ -50,6 +50,11 @@ class XmlText:
         text = "" if content is None else text_of(content, tag)
         self._lines.append(f"{start}>{escape(text, {chr(13): '&#13;'})}</{tag}>" if text else f"{start}/>")
 
+    def element_inside(self, tag: str, inner: str, content: Content, /, **attributes: Content | None) -> None:
+        """Write an element with attributes around another one that holds a text."""
+        with self.inside(tag, **attributes):
+            self.element(inner, content)
+
 
 def text_of(content: Content, tag: str) -> str:
     """Return the text of a content: numbers with all their digits, whole ones without a point.

@@ -10,6 +10,8 @@ from ravemj.formats.meshes.collada.document import ColladaDocument
 from ravemj.formats.meshes.collada.materials import read_material
 from ravemj.formats.meshes.collada.triangles import primitive_groups
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 FILES = DATA / "meshes"
 GRAY = pytest.approx((0.6, 0.6, 0.6))
 MESH = """<mesh><source id="p"><float_array id="pa">0 0 0 1 0 0 1 1 0 0 1 0 0 0 1</float_array><technique_common>
@@ -18,11 +20,6 @@ MESH = """<mesh><source id="p"><float_array id="pa">0 0 0 1 0 0 1 1 0 0 1 0 0 0 
 INPUT = '<input semantic="VERTEX" source="#v" offset="0"/>'
 NODE = '<node><instance_geometry url="#g"/></node>'
 MATERIALS = {"mb": "0 0 1", "ma": "1 0 0", "mc": "0 1 0"}
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 def triangles(indices, symbol=""):
@@ -226,10 +223,10 @@ def test_groups_of_a_geometry_for_robots():
     five = f'<polylist material="m">{INPUT}<vcount>5</vcount><p>0 1 2 3 4</p></polylist>'
     text = f"<COLLADA><geometry id='a'>{dented % (five + five)}</geometry><geometry id='b'/><effect id='a'/></COLLADA>"
     document = ColladaDocument(text.encode(), "x.dae")
-    first, second = primitive_groups(document, document.find("geometry", "#a"))
-    assert (first.symbol, len(second.corners)) == ("m", 3)
-    (fan, _) = primitive_groups(document, document.find("geometry", "a"), concave=False)
-    assert fan.corners[:, 0].tolist() == [[2, 0, 0]] * 3 or fan.corners[:, 0].tolist() == [[0, 0, 0]] * 3
+    (first, _), (_, corners) = primitive_groups(document, document.find("geometry", "#a"))
+    assert (first.get("material"), len(corners)) == ("m", 3)
+    ((_, fan), *_) = primitive_groups(document, document.find("geometry", "a"), of_robots=True)
+    assert fan[:, 0].tolist() == [[2, 0, 0]] * 3 or fan[:, 0].tolist() == [[0, 0, 0]] * 3
     assert primitive_groups(document, document.find("geometry", "#b")) == []
 
 

@@ -11,15 +11,12 @@ from ravemj.errors import SourceError
 from ravemj.formats.meshes import area, read_mesh, volume
 from ravemj.formats.readers import read_file
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 FILES = DATA / "meshes"
 WEDGE_AREA = 0.06 + 0.04 + 0.03 + 0.5 * np.sqrt(0.08**2 + 0.06**2 + 0.12**2)
 GRAY = pytest.approx((0.6, 0.6, 0.6))
 BOX = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 @pytest.fixture
@@ -42,27 +39,14 @@ FACE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["wedge.stl", "wedge.off", "wedge.ply"],
+    ("name", "diffuse", "ambient"), [("wedge.stl", 1, 0.05), ("wedge.off", 0.6, 0.6), ("wedge.ply", 1, 1)]
 )
-def test_a_wedge(name):
+def test_a_wedge_has_the_default_colours_of_openraves_importer(name, diffuse, ambient):
     (part,) = read_mesh(str(FILES / name))
     assert len(part.mesh.triangles) == 4  # the degenerate one of the STL file is gone
     assert len(part.mesh.vertices) == 4
     assert volume(part.mesh) == pytest.approx(0.004)
     assert area(part.mesh) == pytest.approx(WEDGE_AREA)
-
-
-@pytest.mark.parametrize(
-    ("name", "diffuse", "ambient"),
-    [
-        ("wedge.stl", 1, 0.05),
-        ("wedge.off", 0.6, 0.6),
-        ("wedge.ply", 1, 1),
-    ],
-)
-def test_default_colours_are_those_of_openraves_importer(name, diffuse, ambient):
-    (part,) = read_mesh(str(FILES / name))
     assert part.diffuse == pytest.approx((diffuse,) * 3)
     assert part.ambient == pytest.approx((ambient,) * 3)
     assert part.transparency == 0
@@ -93,10 +77,6 @@ def test_ply_with_a_comment_in_latin_1(read):
     text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
     (part,) = read("mesh.ply", text.encode("latin-1"))
     assert len(part.mesh.triangles) == 1
-
-
-def test_stl_without_triangles(read):
-    assert read("mesh.stl", binary_stl()) == ()
 
 
 @pytest.mark.parametrize(
@@ -155,8 +135,9 @@ def test_malformed_obj(read, line):
     assert caught.value.source.line == 6
 
 
-def test_obj_without_faces(read):
-    assert read("mesh.obj", "v 0 0 0\n") == ()
+@pytest.mark.parametrize(("name", "content"), [("mesh.stl", binary_stl()), ("mesh.obj", "v 0 0 0\n")])
+def test_files_without_triangles(read, name, content):
+    assert read(name, content) == ()
 
 
 def test_glb_materials_and_placement(read):

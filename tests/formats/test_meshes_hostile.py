@@ -15,6 +15,8 @@ from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.reading import _read, reader_of
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 FILES = DATA / "meshes"
 SAMPLES = {path.name: path.read_bytes() for path in sorted(FILES.iterdir()) if path.suffix in MESH_SUFFIXES}
 TRIMESH = (".off", ".ply")
@@ -23,11 +25,6 @@ _TEXT = (
     "Separator FaceSet Switch Transform vertex facet f v usemtl <p> </p> <node> <!-- </COLLADA> #p end_header"
 )
 WORDS = [*_TEXT.encode().split(), b"\0", b"\xff", b"\n", b"-" * 50, b"9" * 5000]
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 @pytest.fixture
@@ -65,8 +62,6 @@ def survives(name, data):
 
 
 def damaged(name, edits):
-    if name.endswith(TRIMESH):
-        pytest.importorskip("trimesh")
     data = bytearray(SAMPLES[name])
     for place, length, new in edits:
         at = int(place * len(data))
@@ -89,8 +84,6 @@ def test_damaged_bytes(name, edits):
 @calm
 @given(swaps=st.lists(st.tuples(PLACES, st.sampled_from(WORDS)), min_size=1, max_size=3))
 def test_damaged_words(name, swaps):
-    if name.endswith(TRIMESH):
-        pytest.importorskip("trimesh")
     words = SAMPLES[name].replace(b"\n", b" \n ").split(b" ")
     for place, word in swaps:
         words[int(place * len(words))] = word
@@ -99,8 +92,6 @@ def test_damaged_words(name, swaps):
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_beginning_of_a_file(name):
-    if name.endswith(TRIMESH):
-        pytest.importorskip("trimesh")
     for end in range(1, len(SAMPLES[name]), 37):
         survives(name, SAMPLES[name][:end])
 
@@ -187,7 +178,6 @@ def test_entities_are_not_expanded(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".ply", ".off"])
 def test_counts_beyond_all_memory(refused, suffix):
-    pytest.importorskip("trimesh")
     huge = 10**15
     content = {
         ".ply": "ply\nformat binary_little_endian 1.0\n"

@@ -10,15 +10,12 @@ from conftest import DATA
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import area, read_mesh, volume
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 FILES = DATA / "meshes"
 BROWN = (0.5, 0.25, 0.125)
 SQUARE = "coord Coordinate { point [0 0 0, 1 0 0, 1 1 0, 0 1 0] }"
 DENTED = "2 0 0, 2 2 0, 1 0.5 0, 0 2 0, 0 0 0"
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 @pytest.fixture

@@ -14,15 +14,12 @@ from ravemj.formats.meshes.collada.document import ColladaDocument, attribute_nu
 from ravemj.formats.meshes.collada.triangles import primitive_groups
 from ravemj.model.scene import Mesh
 
+pytestmark = pytest.mark.usefixtures("no_cache")
+
 CASES = CONFORMANCE / "cases"
 DATA = CORPUS / "models" / "rdiankov+openrave" / "src"
 
 (needs_corpus,) = NEEDS_THE_CORPUS
-
-
-@pytest.fixture(autouse=True)
-def _no_cache(monkeypatch):
-    monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
 
 def corners(mesh: Mesh, scale=(1.0, 1.0, 1.0)):
@@ -164,8 +161,8 @@ def test_geometry_of_collada_robots_has_openraves_triangles():
         metres = attribute_number(child(document.root, "asset", "unit"), "meter", 1.0)
         ours = {(0, 0.0)}
         for geometry in document.root.iter("{*}geometry"):
-            groups = primitive_groups(document, geometry, concave=False)
-            ours |= {(len(group.corners), round(area(group.corners * metres), 6)) for group in groups}
+            groups = primitive_groups(document, geometry, of_robots=True)
+            ours |= {(len(corners), round(area(corners * metres), 6)) for _, corners in groups}
         for body in expected["result"]["bodies"]:
             for geometry in (
                 item for link in body["links"] for item in link["geometries"] if item["type"] == "trimesh"

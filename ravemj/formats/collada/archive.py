@@ -43,11 +43,12 @@ class Archive:
         Raises:
             SourceError: The manifest is broken or names a file outside of the archive, or there is no document.
         """
-        named = self._named_by_manifest()
+        manifest = Source(self.place("manifest.xml"))
+        named = self._named_by_manifest(manifest)
         if named is not None:
             name = self.member(named)
             if name is None:
-                raise SourceError(f"the manifest names '{named}', which is not in the archive", self._manifest)
+                raise SourceError(f"the manifest names '{named}', which is not in the archive", manifest)
             return name
         documents = [name for name in self._zip.namelist() if name.lower().endswith(".dae")]
         if not documents:
@@ -80,20 +81,16 @@ class Archive:
         """Return what a file of the archive is called in messages."""
         return f"{self.path}/{name}"
 
-    @property
-    def _manifest(self) -> Source:
-        return Source(self.place("manifest.xml"))
-
-    def _named_by_manifest(self) -> str | None:
+    def _named_by_manifest(self, manifest: Source) -> str | None:
         if self.member("manifest.xml") is None:
             return None
         parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
         try:
             root = etree.fromstring(self.read("manifest.xml"), parser)
         except etree.XMLSyntaxError as error:
-            raise SourceError(f"not well-formed XML: {error.msg}", self._manifest) from error
+            raise SourceError(f"not well-formed XML: {error.msg}", manifest) from error
         elements = [] if root is None else [*root.iter("{*}dae_root")]
         name = unquote("".join(words(elements[0])).partition("#")[0]) if elements else ""
         if name.startswith("/") or ":" in name or ".." in name.split("/"):
-            raise SourceError(f"the manifest names '{name}', which lies outside of the archive", self._manifest)
+            raise SourceError(f"the manifest names '{name}', which lies outside of the archive", manifest)
         return name or None

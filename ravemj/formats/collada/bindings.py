@@ -49,15 +49,10 @@ class Bindings:
 
     models: tuple[ModelBinding, ...]
     axes: tuple[AxisBinding, ...]
+    moved: frozenset[Node]
 
     def node_of(self, owner: Element, instance: Element, model: Element) -> Node | None:
-        """Return the node that shows a model.
-
-        Args:
-            owner: The instance in the kinematics scene that it belongs to.
-            instance: The ``<instance_kinematics_model>``.
-            model: The ``<kinematics_model>``.
-        """
+        """Return the node that shows an instance of a model, given the instance in the scene that it belongs to."""
         found = [binding for binding in self.models if binding.instance is instance or binding.instance is model]
         own = [binding for binding in found if binding.owner is owner]
         return (own or found)[0].node if found else None
@@ -67,7 +62,7 @@ class Bindings:
 
         Args:
             owner: The instance in the kinematics scene that it belongs to.
-            instance: The ``<instance_kinematics_model>``.
+            instance: The instance of its model.
             axis: The axis.
             holder: The ``<joint>`` or ``<instance_joint>`` that stands in the model.
         """
@@ -88,14 +83,7 @@ def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> boo
 
 
 def read_bindings(library: Library, instance: Element, scene: Element, root: Node | None) -> Bindings:
-    """Read the bindings of a kinematics scene.
-
-    Args:
-        library: The documents.
-        instance: The ``<instance_kinematics_scene>``.
-        scene: The ``<kinematics_scene>``.
-        root: The visual scene, or None.
-    """
+    """Read the bindings in an ``<instance_kinematics_scene>``, whose scene is given, to nodes of the visual scene."""
     models: list[ModelBinding] = []
     axes: list[AxisBinding] = []
     for element in children(instance, "bind_kinematics_model"):
@@ -116,7 +104,8 @@ def read_bindings(library: Library, instance: Element, scene: Element, root: Nod
         value = library.number(child(element, "value"), instance, scene)
         node = find_node(library, root, element.get("target") or "", element)
         axes.append(AxisBinding(owner, found.through, found.element, node, value))
-    return Bindings(tuple(models), tuple(axes))
+    nodes = (binding.node for binding in (*models, *axes))
+    return Bindings(tuple(models), tuple(axes), frozenset(node for node in nodes if node is not None))
 
 
 def _owner(library: Library, name: str, *scopes: Element) -> Element | None:

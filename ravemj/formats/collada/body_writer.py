@@ -69,8 +69,7 @@ class BodyWriter:
             return
         names = joint_variables([other.name for other in self._body.all_joints])
         with out.inside("formula", sid=f"formula{index}"):
-            with out.inside("target"):
-                out.element("param", self._joint_path(f"joint{index}"))
+            out.element_inside("target", "param", self._joint_path(f"joint{index}"))
             with out.inside("technique_common"):
                 out.append(position)
             with out.inside("technique", profile="OpenRAVE"):
@@ -103,8 +102,8 @@ class BodyWriter:
         out = self._sections.kinematics_models
         with out.inside("joint", sid=f"joint{index}", name=self._joint_names[index]):
             for place, direction in enumerate(self._directions(joint)):
-                with out.inside("prismatic" if joint.slides(place) else "revolute", sid=f"axis{place}"):
-                    out.element("axis", direction)
+                kind = "prismatic" if joint.slides(place) else "revolute"
+                out.element_inside(kind, "axis", direction, sid=f"axis{place}")
             if joint.kind == "spherical":
                 with out.inside("extra", type=PROFILE):
                     out.element("technique", profile=PROFILE)
@@ -154,8 +153,9 @@ class BodyWriter:
         """Write the two ends of joints that close loops."""
         out = self._sections.kinematics_models
         for tree in self._trees:
-            for index in tree.closing:
-                joint = self._body.all_joints[index]
+            for index, joint in ((index, self._body.all_joints[index]) for index in tree.joints):
+                if joint.places_child:
+                    continue
                 anchor, T_frame_child = self._joint_frames(joint)
                 if joint.parent == link:
                     with out.inside("attachment_start", joint=f"{tree.model}/joint{index}"):

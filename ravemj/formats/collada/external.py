@@ -10,10 +10,11 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import settled
 from ravemj.formats.collada.axis import AxisReader
 from ravemj.formats.collada.bindings import AxisBinding, Bindings, ModelBinding, read_bindings
-from ravemj.formats.collada.extras import extra_of
+from ravemj.formats.collada.extras import inside_extra
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.library import ARCHIVE_SUFFIX, Library
 from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.system_writer import bind_axis, write_grabs
 from ravemj.formats.collada.visual import Node, expand
 from ravemj.formats.data_folders import find, name_in_data_folders
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
@@ -222,14 +223,7 @@ def _top(node: Node) -> Node:
 
 
 def write_reference(sections: Sections, body: KinBody, number: int, external: ExternalBody) -> None:
-    """Write a body as a reference to another file: its name, pose and values, and what it holds.
-
-    Args:
-        sections: The libraries of the document.
-        body: The body.
-        number: Its number in the document.
-        external: How the other file names its parts.
-    """
+    """Write a body, by its number, as a reference to another file: its name, pose and values, and what it holds."""
     name = f"body{number}"
     out = sections.nodes
     with out.inside("node", id=f"{name}_external", name=body.name):
@@ -242,15 +236,9 @@ def write_reference(sections: Sections, body: KinBody, number: int, external: Ex
         with out.inside("motion"):
             out.element("instance_articulated_system", url=f"{external.uri}#{external.system}", sid=f"{name}_origin")
             out.element("technique_common")
-        with extra_of(out):
+        with inside_extra(out):
             out.element("name", body.name)
-            for grab in body.grabs:
-                paths = [
-                    f"{name}_origin/{external.links[body.links[link].source]}" for link in (grab.link, *grab.ignored)
-                ]
-                ignored = " ".join(paths[1:]) or None
-                with out.inside("grabbed", body=grab.body, link=paths[0], ignored=ignored):
-                    write_pose(out, settled.pose(grab.T_link_body))
+            write_grabs(out, body, lambda link: f"{name}_origin/{external.links[body.links[link].source]}")
     _write_bindings(sections, body, name, external)
     out = sections.physics_scene
     for physics in external.physics:
@@ -266,18 +254,12 @@ def _write_bindings(sections: Sections, body: KinBody, name: str, external: Exte
     out = sections.kinematics_scene
     with out.inside("instance_articulated_system", url=f"#{name}_motion", sid=scope, name=body.name):
         for place, path in enumerate(paths):
-            with out.inside("newparam", sid=f"{scope}_{place}"):
-                out.element("SIDREF", f"{scope}/{name}_origin/{path}")
+            out.element_inside("newparam", "SIDREF", f"{scope}/{name}_origin/{path}", sid=f"{scope}_{place}")
     out = sections.bindings
     for place, (_, node) in enumerate(external.models):
-        with out.inside("bind_kinematics_model", node=f"{name}_external/{node}"):
-            out.element("param", f"{scope}_{place}")
+        out.element_inside("bind_kinematics_model", "param", f"{scope}_{place}", node=f"{name}_external/{node}")
     joints = {joint.source: joint for joint in body.joints}
     for place, axis in enumerate(external.axes, len(external.models)):
         joint = joints.get(axis.joint)
         value = 0.0 if joint is None or axis.place >= len(joint.axes) else joint.axes[axis.place].value
-        with out.inside("bind_joint_axis", target=f"{name}_external/{axis.target}"):
-            with out.inside("axis"):
-                out.element("param", f"{scope}_{place}")
-            with out.inside("value"):
-                out.element("float", settled.number(value / axis.unit))
+        bind_axis(out, f"{name}_external/{axis.target}", f"{scope}_{place}", settled.number(value / axis.unit))

@@ -25,7 +25,7 @@ def own_techniques(element: Element | None) -> Iterator[Element]:
 
 
 @contextmanager
-def extra_of(out: XmlText, kind: str = PROFILE, name: str | None = None) -> Generator[None]:
+def inside_extra(out: XmlText, kind: str = PROFILE, name: str | None = None) -> Generator[None]:
     """Write an ``<extra>`` of a type around what the block writes."""
     with out.inside("extra", type=kind, name=name), out.inside("technique", profile=_profile(kind)):
         yield

@@ -38,14 +38,7 @@ _NameOf = Callable[[str], str | None]
 
 
 def read_formulas(library: Library, model: Element, joints: Mapping[Element, int], body: BodyBuilder) -> None:
-    """Give the followers of a model their equations.
-
-    Args:
-        library: The documents.
-        model: The ``<kinematics_model>``.
-        joints: Indices of its joints in the body, by their elements.
-        body: The body.
-    """
+    """Give the followers of a ``<kinematics_model>`` their equations, given the indices of its joints in a body."""
     reader = _FormulaReader(library, model, joints, body.joints)
     for item in children(child(model, "technique_common"), "formula", "instance_formula"):
         formula = library.follow(item) if local_name(item) == "instance_formula" else item

@@ -1,7 +1,7 @@
 """Geometries of links: the triangles of nodes, and the primitives that OpenRAVE writes beside them."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 
 import numpy as np
 
@@ -38,20 +38,15 @@ class GeometryReader:
         self._meshes: dict[Element, list[tuple[str, Mesh]]] = {}
         self._triangles = 0
 
-    def read(
-        self, node: Node, T_link_node: Callable[[Node], Floats], is_other_link: Callable[[Node], bool]
-    ) -> list[Geometry]:
-        """Return the shapes that a node gives to its link, with those of the nodes in it.
+    def read(self, node: Node, T_link_node: Callable[[Node], Floats], others: Container[Node] = ()) -> list[Geometry]:
+        """Return the shapes that a node gives to its link, with those of the nodes in it but for other links' nodes.
 
-        Args:
-            node: The node.
-            T_link_node: Gives the pose of a node in the link as OpenRAVE computes it, shape (4, 4).
-            is_other_link: Tells which nodes in it belong to other links.
+        ``T_link_node`` gives the pose of a node in the link as OpenRAVE computes it, shape (4, 4).
         """
         found: list[Geometry] = []
         for inner in node.nodes:
-            if not is_other_link(inner):
-                found += self.read(inner, T_link_node, is_other_link)
+            if inner not in others:
+                found += self.read(inner, T_link_node, others)
         return found + self.read_instances(node.element, T_link_node(node))
 
     def read_instances(self, element: Element, T_link_element: Floats) -> list[Geometry]:

@@ -5,7 +5,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats import settled
-from ravemj.formats.collada.extras import extra_of
+from ravemj.formats.collada.extras import inside_extra
 from ravemj.formats.meshes.parts import weld
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.scene import SHAPE_TYPES, Cylinder, Geometry, Mesh, Rgb, TriMesh
@@ -31,21 +31,15 @@ class GeometryWriter:
         self._known: dict[tuple[Rgb, Rgb, float], str] = {}
 
     def write(self, geometry: Geometry, name: str, node: XmlText) -> None:
-        """Write a shape.
-
-        Args:
-            geometry: The shape.
-            name: Its id.
-            node: The node of its link, which gets the instance.
-        """
+        """Write a shape under an id, and an instance of it into the node of its link."""
         T_link_geometry = settled.pose(geometry.T_link_geometry)
         out = self.geometries
         with out.inside("geometry", id=name, name=geometry.name or None):
             _write_mesh(out, name, _stored(geometry.shape.triangulated(), T_link_geometry))
-            with extra_of(out, "geometry_info"):
+            with inside_extra(out, "geometry_info"):
                 _write_info(out, geometry, T_link_geometry)
             if geometry.display is not None or not geometry.modifiable:
-                with extra_of(out):
+                with inside_extra(out):
                     out.element("modifiable", geometry.modifiable)
                     if geometry.display is not None:
                         out.element("render", url=f"#{name}_render")
@@ -80,10 +74,8 @@ class GeometryWriter:
             out.inside("phong"),
         ):
             for tag, colour in (("ambient", ambient), ("diffuse", diffuse)):
-                with out.inside(tag):
-                    out.element("color", (*colour, 1.0))
-            with out.inside("transparency"):
-                out.element("float", max(_LEAST_OPACITY, settled.number(1.0 - transparency, 1.0)))
+                out.element_inside(tag, "color", (*colour, 1.0))
+            out.element_inside("transparency", "float", max(_LEAST_OPACITY, settled.number(1.0 - transparency, 1.0)))
 
 
 def _write_info(out: XmlText, geometry: Geometry, T_link_geometry: Pose) -> None:
@@ -95,8 +87,7 @@ def _write_info(out: XmlText, geometry: Geometry, T_link_geometry: Pose) -> None
             value = getattr(geometry.shape, size.name)
             numbers = [part for corner in value for part in corner] if size.name == "cross_section" else value
             out.element(size.name, numbers)
-    with out.inside("visible"):
-        out.element("bool", geometry.visible)
+    out.element_inside("visible", "bool", geometry.visible)
 
 
 def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
@@ -110,12 +101,10 @@ def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
 
 def _write_mesh(out: XmlText, name: str, mesh: Mesh) -> None:
     """Write triangles; nothing where there are none."""
-    if not len(mesh.triangles):
-        with out.inside("mesh"):
-            pass
-        return
     count = len(mesh.vertices)
     with out.inside("mesh"):
+        if not len(mesh.triangles):
+            return
         with out.inside("source", id=f"{name}_positions"):
             text = " ".join(["%.9g"] * (3 * count)) % tuple(mesh.vertices.ravel().tolist())  # exact in single precision
             out.element("float_array", text, id=f"{name}_array", count=3 * count)

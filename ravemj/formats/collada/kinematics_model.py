@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -44,19 +43,13 @@ Infos = dict[Element, tuple[Element, Element | None]]
 """For axes, the ``<axis_info>`` of the system of kinematics, and that of the system of motion."""
 
 
-@dataclass(slots=True)
-class SceneContext:
+class SceneContext(NamedTuple):
     """What all bodies of a kinematics scene share."""
 
     library: Library
     bindings: Bindings
     physics: Physics
     geometry: GeometryReader
-    moved: set[Node] = field(default_factory=set[Node])
-
-    def __post_init__(self) -> None:
-        self.moved = {binding.node for binding in self.bindings.axes if binding.node is not None}
-        self.moved |= {binding.node for binding in self.bindings.models}
 
 
 class Names:
@@ -138,7 +131,10 @@ class ModelReader:
     def settle(self, others: "list[ModelReader]") -> None:
         """Give the joints to the body, with what they follow, once all models of the body are read."""
         self._close_loops([end for reader in others for end in reader.ends])
-        self._settle_joints()
+        for found in sorted(self._found, key=lambda found: found.place):  # OpenRAVE's order, where it wrote one
+            self.joints |= dict.fromkeys(found.keys, len(self._body.joints))
+            self.values.append(found.values)
+            self._body.joints.append(found.built)
         read_formulas(self._library, self.model, self.joints, self._body)
 
     def _close_loops(self, ends: "list[_LoopEnd]") -> None:
@@ -156,13 +152,6 @@ class ModelReader:
                 T_parent_frame = read_pose(self._library, start)
                 T_parent_child = T_parent_frame @ read_pose(self._library, end).inverse()
                 self._add_joint(start, (parent, child_link), T_parent_frame, T_parent_child)
-
-    def _settle_joints(self) -> None:
-        """Give the joints to the body, those with an index of OpenRAVE's in its order."""
-        for found in sorted(self._found, key=lambda found: found.place):
-            self.joints |= dict.fromkeys(found.keys, len(self._body.joints))
-            self.values.append(found.values)
-            self._body.joints.append(found.built)
 
     def _read_link(self, element: Element, node: Node | None, T_world_link: Pose) -> None:
         if len(self._body.links) >= _MAX_LINKS:
@@ -200,7 +189,7 @@ class ModelReader:
                 self._library.warn("openrave-bug", message, inner.element, "put the transforms into the vertices")
             return T_link_world @ self._world(inner)
 
-        link.geometries += self._scene.geometry.read(node, pose_in_link, lambda inner: inner in self._scene.moved)
+        link.geometries += self._scene.geometry.read(node, pose_in_link, self._scene.bindings.moved)
 
     def _world(self, node: Node) -> Floats:
         """Return the pose of a node as OpenRAVE composes it: in the first link, from below that link's node on.

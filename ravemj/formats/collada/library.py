@@ -197,10 +197,6 @@ class Library:
 
         The first name is an id, or a sid in the scope or in one around it; ``.`` is the scope itself. The others are
         sids, each below the one before; where that is an instance, in what it is an instance of.
-
-        Args:
-            path: Names with ``/`` between them.
-            scope: The element that the path stands in.
         """
         first, *rest = path.strip().split("/")
         for start in self._starts(first, scope):
@@ -258,14 +254,9 @@ class Library:
         return self.follow(element)
 
     def parameter(self, name: str, *scopes: Element) -> Found | None:
-        """Return the element that a parameter stands for.
+        """Return what a parameter stands for in the end: no parameter, or a parameter with a plain value.
 
-        Args:
-            name: Its name, or a path of names.
-            scopes: Where to look for it, in this order.
-
-        Returns:
-            What the chain of parameters ends at: an element that is no parameter, or a parameter with a plain value.
+        Its name, which may be a path of names, is looked for in the scopes, in their order.
         """
         found = next((item for scope in scopes if (item := self.resolve(name, scope)) is not None), None)
         for _ in range(_LONGEST_CHAIN):

@@ -23,11 +23,7 @@ class TooDeepError(Exception):
 
 
 def math_of(expression: Expression, path_of: Callable[[str], str]) -> XmlText:
-    """Return an equation as a ``<math>``.
-
-    Args:
-        expression: The equation.
-        path_of: Gives the path of a joint by the name of its variable.
+    """Return an equation as a ``<math>``, given the path of a joint by the name of its variable.
 
     Raises:
         TooDeepError: No reader would take it.

@@ -34,12 +34,7 @@ class RigidBody:
         return words(child(self.element, "technique_common", "dynamic"))[:1] == ["false"]
 
     def inertial(self, library: Library, T_world_link: Pose, T_world_root: Pose) -> Inertial:
-        """Return the mass properties in the frame of a link.
-
-        Args:
-            library: The documents.
-            T_world_link: Pose of the link where all joints are at 0.
-            T_world_root: Pose of the first link of the body.
+        """Return the mass properties in a link's frame, given where it and the body's first link are with joints at 0.
 
         Raises:
             SourceError: A number is not finite.

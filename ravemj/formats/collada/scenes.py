@@ -12,7 +12,7 @@ from ravemj.formats.collada.robot import ExtraReader, interface_kind
 from ravemj.formats.collada.sensor import read_loose
 from ravemj.formats.collada.supplement import SupplementReader
 from ravemj.formats.collada.visual import Node, expand, rigid_part
-from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children
+from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
 from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import AttachedSensor
 
@@ -62,8 +62,10 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
         if element is not None:
             bindings = read_bindings(library, kinematics, element, root)
             shared = SceneContext(library, bindings, physics, geometry)
-            shown |= shared.moved
-            bodies += _bodies(shared, element, wanted)
+            shown |= bindings.moved
+            for kind in ("instance_articulated_system", "instance_kinematics_model"):
+                found = (_body(shared, item, wanted) for item in children(element, kind))
+                bodies += [body for body in found if body is not None]
             sensors += read_loose(library, element)
     if wanted:
         if not bodies:
@@ -77,14 +79,8 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     return Content(bodies, others, physics.gravity, sensors, description)
 
 
-def _bodies(scene: SceneContext, element: Element, wanted: str) -> list[BodyBuilder]:
-    systems = [_system_body(scene, item, wanted) for item in children(element, "instance_articulated_system")]
-    models = [_model_body(scene, item, wanted) for item in children(element, "instance_kinematics_model")]
-    return [body for body in (*systems, *models) if body is not None]
-
-
 class _System(NamedTuple):
-    """An articulated system taken apart, the outermost part first."""
+    """An articulated system, the outermost part first, or a model that belongs to none."""
 
     systems: list[Element]
     models: list[Element]
@@ -96,30 +92,20 @@ class _System(NamedTuple):
         return any(name in (part.get("id"), part.get("sid"), (part.get("url") or "").lstrip("#")) for part in parts)
 
 
-def _system_body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
+def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
+    """Return the body of an instance of a system or model; None where it is not wanted, or has no model."""
     parts = _System([], [], {})
-    _take_apart(scene, instance, parts, {}, 0)
+    is_system = local_name(instance) == "instance_articulated_system"
+    if is_system:
+        _take_apart(scene, instance, parts, {}, 0)
+    else:
+        parts.models.append(instance)
     if wanted and not parts.has(wanted) and wanted != instance.get("sid"):
         return None
-    is_robot = interface_kind(instance, *parts.systems) != "kinbody"
-    body = BodyBuilder(is_robot, scene.library.source(_origin(scene.library, instance, parts.systems)))
-    return _filled(scene, body, instance, parts)
-
-
-def _origin(library: Library, instance: Element, systems: list[Element]) -> Element:
-    """Return the system of another file that an instance refers to, else the instance."""
-    here = library.document_of(instance)
-    return next((system for system in systems if library.document_of(system) is not here), instance)
-
-
-def _model_body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
-    body = BodyBuilder(is_robot=False, source=scene.library.source(instance))
-    parts = _System([], [instance], {})
-    return None if wanted and not parts.has(wanted) else _filled(scene, body, instance, parts)
-
-
-def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _System) -> BodyBuilder | None:
-    """Fill a body from its kinematics models; None where there is none."""
+    is_robot = is_system and interface_kind(instance, *parts.systems) != "kinbody"
+    here = scene.library.document_of(instance)
+    others = (system for system in parts.systems if scene.library.document_of(system) is not here)
+    body = BodyBuilder(is_robot, scene.library.source(next(others, instance)))  # of the file that defines it
     readers: list[ModelReader] = []
     for item in parts.models:
         model = scene.library.follow(item)
@@ -189,7 +175,7 @@ def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBu
     name = valid_name(node.name)
     T_world_link = rigid_part(node.world, source)
     T_link_world = inverse(T_world_link.matrix())
-    shapes = geometry.read(node, lambda inner: T_link_world @ inner.world, lambda inner: False)
+    shapes = geometry.read(node, lambda inner: T_link_world @ inner.world)
     if not shapes:
         return None
     body = BodyBuilder(is_robot=False, source=source, name=name)

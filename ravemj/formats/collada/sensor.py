@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ravemj.core.transforms import Pose
 from ravemj.formats import settled
-from ravemj.formats.collada.extras import extra_of, own_techniques
+from ravemj.formats.collada.extras import inside_extra, own_techniques
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.visual import read_pose
@@ -89,14 +89,7 @@ def _device_type(sensor: Element) -> str:
 
 
 def write_device(out: XmlText, library: XmlText, name: str, sensor: AttachedSensor) -> None:
-    """Write the description of a sensor into the library, and a reference to it.
-
-    Args:
-        out: The document, which gets the reference.
-        library: The library of sensors.
-        name: The id of the sensor in the library.
-        sensor: The sensor. For a frame without a device, nothing is written.
-    """
+    """Write a sensor into the library under an id, and a reference to it; nothing for a frame without a device."""
     if sensor.type is None:
         return
     out.element("instance_sensor", url=f"#{name}")
@@ -113,7 +106,7 @@ def write_loose(out: XmlText, library: XmlText, sensors: tuple[AttachedSensor, .
     """Write the sensors that no robot carries into a kinematics scene; only ``read_loose`` reads them."""
     if not sensors:
         return
-    with extra_of(out):
+    with inside_extra(out):
         for number, sensor in enumerate(sensors):
             with out.inside("sensor", name=sensor.name):
                 write_pose(out, settled.pose(sensor.T_link_sensor))

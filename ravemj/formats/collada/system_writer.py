@@ -1,10 +1,10 @@
 """The writer of articulated systems: what the axes are like, how they follow each other, and OpenRAVE's extras."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from ravemj.errors import Diagnostics
 from ravemj.formats import settled
-from ravemj.formats.collada.extras import extra_of
+from ravemj.formats.collada.extras import inside_extra
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.sensor import write_device
@@ -67,8 +67,8 @@ class SystemWriter:
             for place in range(len(self._body.all_joints[index].axes)):
                 named[f"joint{index}_axis{place}"] = f"{tree.model}_inst/joint{index}/axis{place}"
         for name, path in named.items():
-            with out.inside("newparam", sid=f"{scope}_{name}"):
-                out.element("SIDREF", f"{inner}/{inner}_{name}" if inner else f"{scope}/{path}")
+            named_here = f"{inner}/{inner}_{name}" if inner else f"{scope}/{path}"
+            out.element_inside("newparam", "SIDREF", named_here, sid=f"{scope}_{name}")
 
     def _write_kinematics(self, index: int, place: int, axis: Axis) -> None:
         """Write DOF, limits, weight and resolution of an axis."""
@@ -79,26 +79,25 @@ class SystemWriter:
             if axis.circular and not circular:
                 message = f"the slider '{joint.name}' is circular, as none is in COLLADA; there it has limits"
                 self._diagnostics.warn("not-written", message, joint.source)
-            _write_parameter(out, "circular", "bool", circular)
-            _write_parameter(out, "planning_weight", "float", axis.weight)
-            _write_parameter(out, "discretization_resolution", "float", axis.resolution)
-            _write_value(out, "active", "bool", index < len(self._body.joints))
-            _write_value(out, "locked", "bool", False)
+            out.element_inside("newparam", "bool", circular, sid="circular")
+            out.element_inside("newparam", "float", axis.weight, sid="planning_weight")
+            out.element_inside("newparam", "float", axis.resolution, sid="discretization_resolution")
+            out.element_inside("active", "bool", index < len(self._body.joints))
+            out.element_inside("locked", "bool", False)
             if index < len(self._body.joints):
                 first = sum(len(other.axes) for other in self._body.joints[:index])
-                with out.inside("index", semantic="OpenRAVE"):
-                    out.element("int", first + place)
+                out.element_inside("index", "int", first + place, semantic="OpenRAVE")
             if not circular:
                 with out.inside("limits"):
-                    _write_value(out, "min", "float", _in_file(joint, place, axis.lower))
-                    _write_value(out, "max", "float", _in_file(joint, place, axis.upper))
+                    out.element_inside("min", "float", _in_file(joint, place, axis.lower))
+                    out.element_inside("max", "float", _in_file(joint, place, axis.upper))
 
     def _write_motion(self, index: int, place: int, axis: Axis) -> None:
         """Write the largest velocity and acceleration of an axis."""
         out, joint = self._sections.systems, self._body.all_joints[index]
         with out.inside("axis_info", axis=f"{self._name}_kinematics/{self._name}_axis{index}_{place}"):
-            _write_value(out, "speed", "float", _in_file(joint, place, axis.max_velocity))
-            _write_value(out, "acceleration", "float", _in_file(joint, place, axis.max_acceleration))
+            out.element_inside("speed", "float", _in_file(joint, place, axis.max_velocity))
+            out.element_inside("acceleration", "float", _in_file(joint, place, axis.max_acceleration))
 
     def _write_scene(self) -> None:
         """Write the instance in the kinematics scene, and the bindings to nodes and values."""
@@ -107,49 +106,45 @@ class SystemWriter:
         with out.inside("instance_articulated_system", url=url, sid=scope, name=self._body.name):
             for tree in self._trees:
                 self._write_parameters(out, scope, tree, f"{self._name}_motion")
-        out = self._sections.bindings
         for tree in self._trees if self._body.links else ():
-            with out.inside("bind_kinematics_model", node=f"visual{tree.number}/node{tree.root}"):
-                out.element("param", f"{scope}_{tree.model}_inst")
+            node = f"visual{tree.number}/node{tree.root}"
+            self._sections.bindings.element_inside(
+                "bind_kinematics_model", "param", f"{scope}_{tree.model}_inst", node=node
+            )
             for index in tree.joints:
                 self._bind_axes(tree, index, scope)
 
     def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
         """Bind the axes of a joint to what they move and, if they are DOFs, to their values."""
-        out, joint = self._sections.bindings, self._body.all_joints[index]
+        joint = self._body.all_joints[index]
         for place, axis in enumerate(joint.axes):
             name = f"joint{self._number}.{index}_axis{place}"
             target = f"visual{tree.number}/{name}" if joint.places_child else f"node{self._number}.{joint.child}"
-            with out.inside("bind_joint_axis", target=target):
-                with out.inside("axis"):
-                    out.element("param", f"{scope}_joint{index}_axis{place}")
-                _write_value(
-                    out, "value", "float", _in_file(joint, place, axis.value) if index < len(self._body.joints) else 0
-                )
+            value = _in_file(joint, place, axis.value) if index < len(self._body.joints) else 0
+            bind_axis(self._sections.bindings, target, f"{scope}_joint{index}_axis{place}", value)
 
     def _write_extras(self) -> None:
         """Write what OpenRAVE's extras say about the body, and what they cannot say."""
         out, body = self._sections.systems, self._body
         kind = ("robot", "GenericRobot") if body.is_robot else ("kinbody", "KinBody")
-        with extra_of(out, "interface_type"):
+        with inside_extra(out, "interface_type"):
             out.element("interface", kind[1], type=kind[0])
         for manipulator in body.manipulators:
             self._write_manipulator(manipulator)
         for number, sensor in enumerate(body.sensors):
-            with extra_of(out, "attach_sensor", sensor.name):
+            with inside_extra(out, "attach_sensor", sensor.name):
                 self._write_sensor(number, sensor)
         for index, joint in enumerate(body.all_joints):
             axis = joint.axes[0]
             if axis.max_torque or axis.armature or axis.coulomb_friction or axis.viscous_friction:
-                with extra_of(out, "attach_actuator", f"joint{index}"):
+                with inside_extra(out, "attach_actuator", f"joint{index}"):
                     self._write_actuator(index, axis)
-        with extra_of(out, "collision"):
+        with inside_extra(out, "collision"):
             for first, second in body.adjacent:
                 out.element("ignore_link_pair", link0=self._link_path(first), link1=self._link_path(second))
             for index, link in enumerate(body.links):
-                with out.inside("link_collision_state", link=self._link_path(index)):
-                    out.element("bool", link.enabled)
-        with extra_of(out):
+                out.element_inside("link_collision_state", "bool", link.enabled, link=self._link_path(index))
+        with inside_extra(out):
             self._write_supplement()
 
     def _write_manipulator(self, manipulator: Manipulator) -> None:
@@ -158,7 +153,7 @@ class SystemWriter:
             message = f"the manipulator '{manipulator.name}' lacks its first or last link; readers leave it out"
             self._diagnostics.warn("not-written", message, manipulator.source)
             return
-        with extra_of(out, "manipulator", manipulator.name):
+        with inside_extra(out, "manipulator", manipulator.name):
             out.element("frame_origin", link=self._link_path(manipulator.base))
             with out.inside("frame_tip", link=self._link_path(manipulator.effector)):
                 write_pose(out, settled.pose(manipulator.T_effector_tool))
@@ -168,8 +163,7 @@ class SystemWriter:
                 closing = [next(signs) for _ in body.joints[index].axes]
                 with out.inside("gripper_joint", joint=self._joint_path(index)):
                     for place, sign in enumerate(closing):
-                        with out.inside("closing_direction", axis=f"./axis{place}"):
-                            out.element("float", sign)
+                        out.element_inside("closing_direction", "float", sign, axis=f"./axis{place}")
 
     def _write_sensor(self, number: int, sensor: AttachedSensor) -> None:
         out, name = self._sections.systems, f"{self._name}_sensor{number}"
@@ -232,10 +226,7 @@ class SystemWriter:
                         self._sections.geometry.write(geometry, identity, out)
         for index, joint in enumerate(body.all_joints):
             write_parameters(out, joint.parameters, self._joint_path(index))
-        for grab in body.grabs:
-            ignored = " ".join(self._link_path(link) for link in grab.ignored) or None
-            with out.inside("grabbed", body=grab.body, link=self._link_path(grab.link), ignored=ignored):
-                write_pose(out, settled.pose(grab.T_link_body))
+        write_grabs(out, body, self._link_path)
 
     def _link_path(self, index: int) -> str:
         return f"{self._model_of_link[index]}/link{index}"
@@ -249,11 +240,16 @@ def _in_file(joint: Joint, place: int, value: float) -> float:
     return value if joint.slides(place) else settled.degrees(value)
 
 
-def _write_parameter(out: XmlText, name: str, kind: str, value: float | bool) -> None:
-    with out.inside("newparam", sid=name):
-        out.element(kind, value)
+def bind_axis(out: XmlText, target: str, parameter: str, value: float) -> None:
+    """Bind the axis that a parameter stands for to what it moves and to a value."""
+    with out.inside("bind_joint_axis", target=target):
+        out.element_inside("axis", "param", parameter)
+        out.element_inside("value", "float", value)
 
 
-def _write_value(out: XmlText, tag: str, kind: str, value: float | bool) -> None:
-    with out.inside(tag):
-        out.element(kind, value)
+def write_grabs(out: XmlText, body: KinBody, path_of: Callable[[int], str]) -> None:
+    """Write what a body holds, given the paths of its links."""
+    for grab in body.grabs:
+        ignored = " ".join(map(path_of, grab.ignored)) or None
+        with out.inside("grabbed", body=grab.body, link=path_of(grab.link), ignored=ignored):
+            write_pose(out, settled.pose(grab.T_link_body))

@@ -13,7 +13,6 @@ class Tree(NamedTuple):
         root: The link that no joint places.
         links: The links, parents before children.
         joints: The joints, those that close loops included; they are counted as in ``KinBody.all_joints``.
-        closing: The joints that close loops.
         placing: For each link, the joints that carry links on it.
     """
 
@@ -21,7 +20,6 @@ class Tree(NamedTuple):
     root: int
     links: tuple[int, ...]
     joints: tuple[int, ...]
-    closing: tuple[int, ...]
     placing: dict[int, list[int]]
 
     @property
@@ -45,6 +43,5 @@ def trees_of(body: KinBody, first: int) -> list[Tree]:
         for link in links:  # grows meanwhile
             links += [joints[index].child for index in placing.get(link, ())]
         own = [index for index, joint in enumerate(joints) if joint.parent in links]
-        closing = [index for index in own if not joints[index].places_child]
-        trees.append(Tree(first + len(trees), root, tuple(links), tuple(own), tuple(closing), placing))
-    return trees or [Tree(first, 0, (), (), (), {})]
+        trees.append(Tree(first + len(trees), root, tuple(links), tuple(own), placing))
+    return trees or [Tree(first, 0, (), (), {})]

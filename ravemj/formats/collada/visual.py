@@ -109,32 +109,23 @@ def expand(library: Library, scene: Element) -> Node:
         if depth > _MAX_DEPTH or count > _MAX_NODES:
             raise library.error("the nodes are nested too deep or repeated too often", node.element)
         for element in children(node.element, "node", "instance_node"):
-            aliases: set[str] = set()
             target: Element | None = element
+            names: list[str | None] = []
             ending = suffix
             if local_name(element) == "instance_node":
-                aliases = {name for name in (element.get("sid"), element.get("id")) if name}
-                ending = _suffix(element) or suffix
-                target = library.follow(element)
+                target, names = library.follow(element), [element.get("sid"), element.get("id")]
+                suffixes = (item.get("name") for item in children(element, "extra") if item.get("type") == "idsuffix")
+                ending = next(suffixes, None) or suffix
             if target is None:
                 continue
-            names = aliases | {name for name in (target.get("sid"), _suffixed(target.get("id"), ending)) if name}
-            inner = Node(target, node, names, transform_of(library, target))
+            identity = target.get("id")
+            names += [target.get("sid"), identity + ending if identity else None]
+            inner = Node(target, node, {name for name in names if name}, transform_of(library, target))
             node.nodes.append(inner)
             fill(inner, depth + 1, ending)
 
     fill(root, 0, "")
     return root
-
-
-def _suffix(instance: Element) -> str:
-    extras = (item for item in children(instance, "extra") if item.get("type") == "idsuffix")
-    extra = next(extras, None)
-    return "" if extra is None else extra.get("name", "")
-
-
-def _suffixed(name: str | None, suffix: str) -> str | None:
-    return name + suffix if name else None
 
 
 def find_node(library: Library, root: Node | None, path: str, element: Element) -> Node | None:
@@ -155,14 +146,7 @@ def read_pose(library: Library, element: Element) -> Pose:
 
 
 def polar_decomposition(matrix: Floats, source: Source) -> tuple[Pose, Floats | None]:
-    """Decompose a 4x4 matrix into a pose and a stretch: ``matrix = pose @ stretch``.
-
-    Args:
-        matrix: Shape (4, 4).
-        source: Where it comes from.
-
-    Returns:
-        The pose, and the stretch, shape (3, 3); None for a matrix that is rigid.
+    """Decompose a 4x4 matrix into a pose and a 3x3 stretch, ``matrix = pose @ stretch``; None for one that is rigid.
 
     Raises:
         SourceError: A number in it is not finite.

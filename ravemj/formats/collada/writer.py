@@ -45,7 +45,7 @@ def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, Externa
     out = XmlText()
     with out.inside("COLLADA", xmlns=NAMESPACE, version="1.5.0"):
         _write_asset(out, scene.description)
-        _write_library(out, "visual_scene", sections.nodes, {"id": "vscene"})
+        _write_library(out, "visual_scene", sections.nodes, "vscene")
         for kind, content in (
             ("geometries", geometry.geometries),
             ("effects", geometry.effects),
@@ -55,11 +55,11 @@ def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, Externa
         ):
             with out.inside(f"library_{kind}"):
                 out.append(content)
-        _write_library(out, "kinematics_scene", sections.kinematics_scene, {"id": "kscene"})
+        _write_library(out, "kinematics_scene", sections.kinematics_scene, "kscene")
         if scene.gravity is not None:
             with sections.physics_scene.inside("technique_common"):
                 sections.physics_scene.element("gravity", scene.gravity)
-        _write_library(out, "physics_scene", sections.physics_scene, {"id": "pscene"})
+        _write_library(out, "physics_scene", sections.physics_scene, "pscene")
         with out.inside("library_physics_models"):
             out.append(sections.physics_models)
         with out.inside("scene"):
@@ -75,8 +75,7 @@ def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, Externa
 
 def _write_asset(out: XmlText, description: str) -> None:
     with out.inside("asset"):
-        with out.inside("contributor"):
-            out.element("authoring_tool", "ravemj")
+        out.element_inside("contributor", "authoring_tool", "ravemj")
         out.element("created", _NO_TIME)
         out.element("modified", _NO_TIME)
         if description:
@@ -85,6 +84,6 @@ def _write_asset(out: XmlText, description: str) -> None:
         out.element("up_axis", "Z_UP")
 
 
-def _write_library(out: XmlText, kind: str, content: XmlText, attributes: dict[str, str]) -> None:
-    with out.inside(f"library_{kind}s"), out.inside(kind, **attributes):
+def _write_library(out: XmlText, kind: str, content: XmlText, name: str) -> None:
+    with out.inside(f"library_{kind}s"), out.inside(kind, id=name):
         out.append(content)

@@ -77,13 +77,7 @@ def cached_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, Refer
 
 
 def cached(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
-    """Return the parts that ``read`` returns, from the cache where possible.
-
-    Args:
-        content: What the result is made from.
-        kind: What else it depends on.
-        read: Returns the parts.
-    """
+    """Return the parts that ``read`` makes of a content and a kind, from the cache where possible."""
     folder = cache_folder()
     if folder is None:
         return read()

@@ -25,12 +25,7 @@ _SINGLE, _DOUBLE, _TRIANGLE = np.dtype("<f4"), np.dtype("<f8"), np.dtype("<i4")
 
 
 def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
-    """Return the content of an entry.
-
-    Args:
-        parts: The parts of the mesh.
-        digests: The files that they come from besides the mesh file, as in ``ReferencedFiles``.
-    """
+    """Return the content of an entry: parts, and the files besides the mesh file, as in ``ReferencedFiles``."""
     about: list[object] = []
     arrays: list[bytes] = []
     for part in parts:
@@ -72,12 +67,7 @@ def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
 
 
 def pack_shortcut(entry: str, stamps: dict[str, str]) -> bytes:
-    """Return the content of a shortcut.
-
-    Args:
-        entry: The name of an entry.
-        stamps: The files that it comes from, as ``stamp_of`` describes them.
-    """
+    """Return the content of a shortcut to an entry, given the files that it comes from and what ``stamp_of`` says."""
     return _sealed(json.dumps((entry, stamps)).encode())
 
 

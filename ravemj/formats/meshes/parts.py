@@ -9,7 +9,16 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import Source, SourceError
 from ravemj.model.scene import Mesh, Rgb
 
-MESH_SUFFIXES = (".iv", ".wrl", ".vrml", ".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf")
+READERS = {
+    **dict.fromkeys((".iv", ".wrl", ".vrml"), ("inventor", "read_inventor")),
+    ".stl": ("stl", "read_stl"),
+    ".obj": ("obj", "read_obj"),
+    ".dae": ("collada", "read_collada"),
+    **dict.fromkeys((".ply", ".off", ".glb", ".gltf"), ("trimesh_formats", "read_with_trimesh")),
+}
+"""The module and the name of the reader for each end of a file's name."""
+
+MESH_SUFFIXES = tuple(READERS)
 """Ends of the names of files that can be read, in lower case."""
 
 MAX_TRIANGLES = 5_000_000
@@ -57,7 +66,7 @@ def weld(corners: ArrayLike) -> Mesh:
 def welded(
     corners: Floats, source: Source, diffuse: Rgb = WHITE, ambient: Rgb = BLACK, transparency: float = 0.0
 ) -> tuple[MeshPart, ...]:
-    """Return separate triangles as a part without degenerate triangles, as OpenRAVE's importer makes it; none if empty.
+    """Return separate triangles as one part without the degenerate ones, as OpenRAVE's importer does it, or as none.
 
     Raises:
         SourceError: There are too many triangles, or a coordinate is not finite.

@@ -10,24 +10,15 @@ from ravemj.core.transforms import UNSCALED, Vec3
 from ravemj.errors import Source, SourceError
 from ravemj.formats.meshes import cache
 from ravemj.formats.meshes.files import FileContent, ReferencedFiles, unpacked
-from ravemj.formats.meshes.parts import MESH_SUFFIXES, MeshPart
+from ravemj.formats.meshes.parts import MESH_SUFFIXES, READERS, MeshPart
 from ravemj.model.scene import Mesh
 
 _Reader = Callable[[FileContent], tuple[MeshPart, ...]]
 
-_READERS = {
-    **dict.fromkeys((".iv", ".wrl", ".vrml"), ("inventor", "read_inventor")),
-    ".stl": ("stl", "read_stl"),
-    ".obj": ("obj", "read_obj"),
-    ".dae": ("collada", "read_collada"),
-    **dict.fromkeys((".ply", ".off", ".glb", ".gltf"), ("trimesh_formats", "read_with_trimesh")),
-}
-"""Modules and names of the readers, which are imported when they are asked for: most meshes come from the cache."""
-
 
 def reader_of(suffix: str) -> _Reader:
-    """Return the reader of the files whose names have an end."""
-    module, name = _READERS[suffix]
+    """Return the reader for an end of names, which is imported only now: most meshes come from the cache."""
+    module, name = READERS[suffix]
     return getattr(importlib.import_module(f"ravemj.formats.meshes.{module}"), name)
 
 

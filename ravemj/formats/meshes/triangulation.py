@@ -30,16 +30,7 @@ def fans(starts: Ints, sizes: Ints) -> Ints:
 
 
 def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
-    """Triangulate polygons that may be concave.
-
-    Args:
-        points: The list of corners, shape (n, 3).
-        starts: As for ``fans``.
-        sizes: As for ``fans``.
-
-    Returns:
-        As ``fans``.
-    """
+    """Triangulate polygons that may be concave, as ``fans`` does it, given the list of corners, shape (n, 3)."""
     quads, large = sizes == 4, sizes > 4
     concave = _concave(points, starts, sizes) & large
     convex = large & ~concave

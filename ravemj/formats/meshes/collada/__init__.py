@@ -18,7 +18,7 @@ from ravemj.formats.meshes.collada.document import (
 )
 from ravemj.formats.meshes.collada.materials import ColladaMaterial, bindings, read_material
 from ravemj.formats.meshes.collada.node_transforms import local_transform
-from ravemj.formats.meshes.collada.triangles import PrimitiveGroup, primitive_groups
+from ravemj.formats.meshes.collada.triangles import primitive_groups
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
 from ravemj.formats.meshes.parts import WHITE, MeshPart, check_size, rgb, welded
@@ -79,7 +79,7 @@ class _Flattening:
         self._document = document
         self._nodes_left = _MAX_NODES
         self._count = 0
-        self._groups: dict[Element, list[PrimitiveGroup]] = {}
+        self._groups: dict[Element, list[tuple[Element, Floats]]] = {}
         library = (item for each in children(document.root, "library_materials") for item in children(each, "material"))
         found = {item.get("id", ""): read_material(document, item) for item in library}
         self._materials = {name: material for name, material in found.items() if material is not None}
@@ -113,11 +113,11 @@ class _Flattening:
         if geometry not in self._groups:
             self._groups[geometry] = primitive_groups(self._document, geometry)
         bound = bindings(instance)
-        for group in self._groups[geometry]:
-            self._count += len(group.corners)
+        for element, corners in self._groups[geometry]:
+            self._count += len(corners)
             check_size(self._count, self._document.source(instance))
-            placed = group.corners @ matrix[:3, :3].T + matrix[:3, 3]
-            self.pieces.setdefault(self._material_of(group.symbol, bound), []).append(placed)
+            placed = corners @ matrix[:3, :3].T + matrix[:3, 3]
+            self.pieces.setdefault(self._material_of(element.get("material", ""), bound), []).append(placed)
 
     def _geometry(self, instance: Element) -> Element | None:
         """Return the geometry of an instance; that of a controller is the shape that it deforms."""

@@ -39,7 +39,7 @@ def _look_at(rows: Floats) -> Floats:
     back = _unit(eye - interest)
     right = _unit(cross_rows(up, back))
     matrix = np.eye(4)
-    matrix[:3] = np.stack([right, np.cross(back, right), back, eye], axis=1)
+    matrix[:3] = np.stack([right, cross_rows(back, right), back, eye], axis=1)
     return matrix
 
 

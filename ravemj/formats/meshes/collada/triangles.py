@@ -1,7 +1,5 @@
 """The triangles of one COLLADA ``<geometry>``; shared by mesh files and robots."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
@@ -23,25 +21,11 @@ from ravemj.model.scene import Mesh
 
 _OF_ROBOTS = ("triangles", "trifans", "tristrips", "polylist")
 _NO_PRIMITIVES = {"source", "vertices", "extra", "asset"}
-_KINDS = (*_OF_ROBOTS, "polygons")
-
-
-@dataclass(frozen=True, slots=True)
-class PrimitiveGroup:
-    """The triangles of one primitive element.
-
-    Attributes:
-        symbol: The name that an ``<instance_material>`` binds to a material; empty if there is none.
-        corners: Three points for each triangle, in the units of the file, shape (n, 3, 3).
-    """
-
-    symbol: str
-    corners: Floats
 
 
 def primitive_groups(
-    document: ColladaDocument, geometry: Element, concave: bool = True, kinds: tuple[str, ...] = _KINDS
-) -> list[PrimitiveGroup]:
+    document: ColladaDocument, geometry: Element, of_robots: bool = False
+) -> list[tuple[Element, Floats]]:
     """Read a ``<geometry>``: its ``<mesh>`` or ``<convex_mesh>``, without units or transforms.
 
     Indices that point nowhere and elements that refer to missing ones are tolerated: their polygons are left out.
@@ -49,12 +33,12 @@ def primitive_groups(
     Args:
         document: The file.
         geometry: The element.
-        concave: Whether to cut polygons ear by ear; otherwise they become fans, as in OpenRAVE's robots.
-        kinds: Which primitive elements count.
+        of_robots: Whether to read it as OpenRAVE's robots do: without ``<polygons>``, and polygons become fans. Else
+            they are cut ear by ear.
 
     Returns:
-        One group for each primitive element, also where it has no triangles: in document order, in OpenRAVE's robots
-        those of one kind together.
+        Each primitive element with the three points of its triangles, shape (n, 3, 3), also where it has none: in
+        document order, in OpenRAVE's robots those of one kind together.
 
     Raises:
         SourceError: There are too many triangles.
@@ -63,14 +47,12 @@ def primitive_groups(
     if mesh is None:
         return []
     points = _positions(document, mesh)
-    groups: list[PrimitiveGroup] = []
-    for element in children(mesh, *kinds) if concave else _by_kind(mesh, kinds):
-        kind = local_name(element)
-        sizes, index = _polygons(element, kind)
+    groups: list[tuple[Element, Floats]] = []
+    for element in _by_kind(mesh) if of_robots else children(mesh, *_OF_ROBOTS, "polygons"):
+        sizes, index = _polygons(element, local_name(element))
         if int(np.maximum(sizes - 2, 0).sum()) > MAX_TRIANGLES:
             raise SourceError(f"the mesh has more than {MAX_TRIANGLES} triangles", document.source(element))
-        corners = triangulation.triangles(points, sizes, index, concave)
-        groups.append(PrimitiveGroup(element.get("material", ""), corners))
+        groups.append((element, triangulation.triangles(points, sizes, index, concave=not of_robots)))
     return groups
 
 
@@ -90,15 +72,14 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
     """
 
     def read() -> tuple[MeshPart, ...]:
-        corners = [group.corners * metres for group in primitive_groups(document, geometry, False, _OF_ROBOTS)]
+        corners = [corners * metres for _, corners in primitive_groups(document, geometry, of_robots=True)]
         for item in corners:
             check_finite(item, document.source(geometry))
         return tuple(MeshPart(weld(item)) for item in corners)
 
     key = f"{document.digest} {document.place(geometry)} {metres!r}"
     parts = cached(key.encode(), "geometry", read)
-    elements = _by_kind(_mesh(geometry), _OF_ROBOTS)
-    return [(element, part.mesh) for element, part in zip(elements, parts, strict=True)]
+    return [(element, part.mesh) for element, part in zip(_by_kind(_mesh(geometry)), parts, strict=True)]
 
 
 def unread_primitives(geometry: Element) -> list[Element]:
@@ -107,9 +88,9 @@ def unread_primitives(geometry: Element) -> list[Element]:
     return [element for element in children(_mesh(geometry)) if local_name(element) not in known]
 
 
-def _by_kind(mesh: Element | None, kinds: tuple[str, ...]) -> list[Element]:
-    """Return the primitive elements of a mesh, kind after kind."""
-    return [element for kind in kinds for element in children(mesh, kind)]
+def _by_kind(mesh: Element | None) -> list[Element]:
+    """Return the primitive elements of a mesh that OpenRAVE's robots have, kind after kind."""
+    return [element for kind in _OF_ROBOTS for element in children(mesh, kind)]
 
 
 def _mesh(geometry: Element) -> Element | None:

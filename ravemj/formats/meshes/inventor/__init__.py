@@ -34,14 +34,7 @@ def read_inventor(file: FileContent) -> tuple[MeshPart, ...]:
     draw(traversal, file, State())
     corners = traversal.corners()
     check_finite(corners, file.source)
-    if not len(corners):
-        return ()
-    mesh, material = weld(corners), traversal.material
-    return (
-        MeshPart(mesh)
-        if material is None
-        else MeshPart(mesh, material.diffuse, material.ambient, material.transparency),
-    )
+    return (MeshPart(weld(corners), *traversal.material),) if len(corners) else ()
 
 
 def _nodes(file: FileContent) -> list[Node]:

@@ -8,8 +8,16 @@ hundreds of field types is needed. Arrays of numbers are found by one regular ex
 import re
 from typing import NoReturn
 
-from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, MAX_NODES, InventorDocument, Is, Node, Numbers, Value
-from ravemj.formats.meshes.inventor.prototypes import Prototype
+from ravemj.formats.meshes.inventor.nodes import (
+    MAX_DEPTH,
+    MAX_NODES,
+    InventorDocument,
+    Is,
+    Node,
+    Numbers,
+    Prototype,
+    Value,
+)
 
 _GAP = r"(?:[\s,]++|#[^\n\r]*+)*+"
 _STRING = r'"(?:[^"\\]++|\\.)*+"'

@@ -1,6 +1,6 @@
 """Boxes, spheres, cylinders and cones as triangles, in the tessellation of Coin, which OpenRAVE loads Inventor with.
 
-Directions of the round ones start at -z; their axis is y.
+Directions of the round ones start at -z; their axis is y. All have the shape (n, 3, 3): three points for each triangle.
 """
 
 from collections.abc import Set
@@ -11,7 +11,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 
 DEFAULT_COMPLEXITY = 0.5
-"""Fineness where no Complexity node says otherwise: 20 sides for cylinders and cones, 15 for spheres."""
+"""Fineness, from 0 to 1, where no Complexity node says otherwise: 20 sides for cylinders and cones, 15 for spheres."""
 
 
 def box(size: Floats) -> Floats:
@@ -22,28 +22,14 @@ def box(size: Floats) -> Floats:
 
 
 def cylinder(radius: float, height: float, parts: Set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
-    """Return a centred cylinder.
-
-    Args:
-        radius: Its radius.
-        height: Its full height.
-        parts: Which of ``SIDES``, ``TOP`` and ``BOTTOM`` there are.
-        complexity: Fineness from 0 to 1.
-    """
+    """Return those of ``SIDES``, ``TOP`` and ``BOTTOM`` of a centred cylinder that are in ``parts``."""
     low = _bottom(radius, height, complexity)
     high = low + np.array([0.0, height, 0.0])
     return _joined(parts, SIDES=_band(high, low), TOP=_disc(high), BOTTOM=_disc(low[::-1]))
 
 
 def cone(radius: float, height: float, parts: Set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
-    """Return a cone whose tip is at ``height / 2``.
-
-    Args:
-        radius: Its radius at the bottom.
-        height: Its full height.
-        parts: Which of ``SIDES`` and ``BOTTOM`` there are.
-        complexity: Fineness from 0 to 1.
-    """
+    """Return those of ``SIDES`` and ``BOTTOM`` of a cone that are in ``parts``; its tip is at ``height / 2``."""
     low = _bottom(radius, height, complexity)
     tip = np.broadcast_to([0.0, height / 2, 0.0], low.shape)
     sides = np.stack([tip, low, np.roll(low, -1, axis=0)], axis=1)
@@ -51,12 +37,7 @@ def cone(radius: float, height: float, parts: Set[str], complexity: float = DEFA
 
 
 def sphere(radius: float, complexity: float = DEFAULT_COMPLEXITY) -> Floats:
-    """Return a sphere.
-
-    Args:
-        radius: Its radius.
-        complexity: Fineness from 0 to 1.
-    """
+    """Return a sphere."""
     slices = max(int(30 * complexity), 4)
     stacks = max(int(30 * complexity), 3) - 1
     circle = _circle(slices)

@@ -13,7 +13,7 @@ from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import MAX_NODES, Node
 from ravemj.formats.meshes.matrices import rotation, translation
-from ravemj.formats.meshes.parts import MAX_TRIANGLES
+from ravemj.formats.meshes.parts import BLACK, MAX_TRIANGLES, WHITE
 from ravemj.model.scene import Rgb
 
 _log = logging.getLogger(__name__)
@@ -40,13 +40,8 @@ class State:
     complexity: float = primitives.DEFAULT_COMPLEXITY
 
 
-@dataclass(frozen=True, slots=True)
-class Material:
-    """A material; several values for several faces are reduced to their first, as OpenRAVE does it."""
-
-    diffuse: Rgb
-    ambient: Rgb
-    transparency: float
+Material = tuple[Rgb, Rgb, float]
+"""Diffuse and ambient colour and transparency; of several for several faces the first, as OpenRAVE does it."""
 
 
 Handler = Callable[["Traversal", Node, State], State]
@@ -61,12 +56,12 @@ class Traversal:
 
     Attributes:
         file: The file that is traversed.
-        material: The last material so far.
+        material: The last material so far; white without one.
     """
 
     def __init__(self, file: FileContent, opener: Opener) -> None:
         self.file: FileContent = file
-        self.material: Material | None = None
+        self.material: Material = (WHITE, BLACK, 0.0)
         self._opener = opener
         self._handlers: dict[str, Handler] = {}
         self._pieces: list[Floats] = []
@@ -115,30 +110,16 @@ class Traversal:
         return state
 
     def add_polygons(self, sizes: Ints, index: Ints, node: Node, state: State) -> State:
-        """Keep polygons.
-
-        Args:
-            sizes: The number of corners of each polygon; those with fewer than three vanish.
-            index: Of each corner the number of its point in ``state.points``; polygons with others vanish.
-            node: The shape.
-            state: What is in force.
-        """
+        """Keep the polygons of a shape, given the sizes of all and the places of their corners in ``state.points``."""
         self._corners_left -= len(index)
         if self._corners_left < 0:
             node.fail("the mesh has too many corners of polygons")
         return self.add(triangulation.triangles(state.points, sizes, index, state.concave), node, state)
 
     def include(self, names: Iterable[str], node: Node, state: State, with_materials: bool) -> State:
-        """Traverse the first of the named files that can be read; none is no error, as in OpenRAVE.
+        """Traverse the first of the files that a node names that can be read; none is no error, as in OpenRAVE.
 
-        Args:
-            names: The files.
-            node: The node that names them.
-            state: What is in force.
-            with_materials: Whether the materials of the file count.
-
-        Returns:
-            The state at the end of the file.
+        Its materials count only ``with_materials``. Return the state at its end.
         """
         found = (self.file.refer(name) for name in names)
         file = next((candidate for candidate in found if candidate is not None), None)
@@ -177,9 +158,7 @@ def moved(state: State, step: Floats) -> State:
 def transform(node: Node, scale_field: str) -> Floats:
     """Return the matrix of a Transform: translation, centre, rotation, scale along its own axes.
 
-    Args:
-        node: The node.
-        scale_field: ``scale`` in VRML97, ``scaleFactor`` before.
+    ``scale_field`` is ``scale`` in VRML97, ``scaleFactor`` before.
     """
     still = (0.0, 0.0, 1.0, 0.0)
     zero = (0.0, 0.0, 0.0)

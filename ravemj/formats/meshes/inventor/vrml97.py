@@ -6,7 +6,7 @@ from ravemj.core.transforms import Floats
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import Node
-from ravemj.formats.meshes.inventor.traversal import Handler, Material, State, Traversal, moved, shape, transform
+from ravemj.formats.meshes.inventor.traversal import Handler, State, Traversal, moved, shape, transform
 from ravemj.formats.meshes.parts import rgb
 
 
@@ -53,7 +53,7 @@ def _appearance(traversal: Traversal, node: Node, state: State) -> State:
 def _material(traversal: Traversal, node: Node, state: State) -> State:
     diffuse = node.floats("diffuseColor", 3, (0.8, 0.8, 0.8))
     ambient = np.repeat(node.number("ambientIntensity", 0.2), 3)
-    traversal.set_material(Material(rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
+    traversal.set_material((rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
     return state
 
 
