@@ -68,8 +68,10 @@ class Context:
                 if not child.complete:
                     continue
                 read, _, left_out, once = tag
-                if once:
-                    self._check_first(child, before.setdefault(read if once is True else once, child))
+                if once and (first := before.setdefault(read if once is True else once, child)) is not child:
+                    place = f"<{first.spelled}> in line {first.source.line}"
+                    message = f"<{child.spelled}> overrides {place}; the last one counts"
+                    self.diagnostics.warn("repeated-tag", message, child.source, "write one")
                 try:
                     read(target, child)
                 except ArithmeticError as error:
@@ -85,14 +87,6 @@ class Context:
                     child.source,
                     _belongs(child) or did_you_mean(child.tag, tags),
                 )
-
-    def _check_first(self, element: Element, first: Element) -> None:
-        """Warn of an element that overrides another one."""
-        if first is not element:
-            message = (
-                f"<{element.spelled}> overrides <{first.spelled}> in line {first.source.line}; the last one counts"
-            )
-            self.diagnostics.warn("repeated-tag", message, element.source, "write one")
 
     def leave_out(self, element: Element, reason: str) -> None:
         """Report an element that has no effect here."""
