@@ -182,14 +182,15 @@ class Diagnostic:
     """One finding about a file that was read all the same.
 
     Attributes:
-        severity: ``error`` where OpenRAVE's ``Load`` returns False though the bodies are there.
+        severity: ``error`` where OpenRAVE's ``Load`` returns False though the bodies are there; ``note``, which only
+            ``ravemj check`` makes, where something is good to know.
         code: Stable name of the kind of finding, for instance ``unknown-tag``.
         message: What was found and what was done about it.
         source: The place in the file.
         hint: What the author can do about it; may be empty.
     """
 
-    severity: Literal["error", "warning"]
+    severity: Literal["error", "warning", "note"]
     code: str
     message: str
     source: Source

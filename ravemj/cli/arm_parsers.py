@@ -3,7 +3,7 @@
 import argparse
 
 from ravemj.cli.argument_types import file_name, positive, seed, vector
-from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, late
+from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command
 from ravemj.geometry_functions.ik_types import GOAL_TYPES
 
 _GOAL_TYPES = sorted(kind.name for kind in GOAL_TYPES)
@@ -13,7 +13,7 @@ def add_ik(commands: Commands) -> None:
     """Add ``ravemj ik``."""
     parser = command(
         commands,
-        "ik",
+        "ik.ik",
         "find the joint values that take the tool of an arm to a goal",
         'ravemj ik puma560 --to "0.3,0.3,0.9,0.7071,0,0.7071,0"',
         'ravemj ik puma560 --to "0.3,0.3,0.9,0.7071,0,0.7071,0" -o arms.png',
@@ -46,14 +46,13 @@ def add_ik(commands: Commands) -> None:
         help="picture with an arm at each solution; .png, .jpg or .webp",
     )
     add_picture_options(parser, "size of the picture (640x480)")
-    parser.set_defaults(run=late("ik", "ik"))
 
 
 def add_plan(commands: Commands) -> None:
     """Add ``ravemj plan``."""
     parser = command(
         commands,
-        "plan",
+        "plan.plan",
         "find a motion without collisions, and write it as a table, a picture or a video",
         'ravemj plan puma560 --to "1.2,0.4,-0.3,0,0.5,0"',
         'ravemj plan puma560 --pose "0.3,0.3,0.9,0.7071,0,0.7071,0" -o plan.mp4',
@@ -93,7 +92,6 @@ def add_plan(commands: Commands) -> None:
     parser.add_argument("--seed", type=seed, default=0, metavar="N", help="another number finds another motion (0)")
     parser.add_argument("--fps", type=positive, default=30.0, metavar="N", help="frames in a second (30)")
     add_picture_options(parser, "size of the picture or video (640x480)")
-    parser.set_defaults(run=late("plan", "plan"))
 
 
 def _add_arm_options(parser: argparse.ArgumentParser) -> None:

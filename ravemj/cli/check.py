@@ -6,17 +6,18 @@ import os
 import sys
 from collections import Counter
 
-from ravemj.cli.checking import Finding, check
+from ravemj.cli import checking
 from ravemj.cli.console import print_findings
 from ravemj.cli.models import model_file
-from ravemj.errors import Source
+from ravemj.errors import Diagnostic, Source
 
 
-def check_models(options: argparse.Namespace) -> int:
+def check(options: argparse.Namespace) -> int:
     """Report what is wrong or odd in models."""
-    found: dict[tuple[object, ...], Finding] = {}  # a file that several models include is reported once
+    found: dict[tuple[object, ...], Diagnostic] = {}  # a file that several models include is reported once
     for model in options.models:
-        fresh = {key: finding for finding in check(model_file(model)) if (key := _key(finding)) not in found}
+        findings = checking.check(model_file(model))
+        fresh = {key: finding for finding in findings if (key := _key(finding)) not in found}
         found.update(fresh)
         if not options.json:
             print_findings(fresh.values(), sys.stdout)
@@ -29,7 +30,7 @@ def check_models(options: argparse.Namespace) -> int:
     return 1 if counts["error"] or (options.strict and counts["warning"]) else 0
 
 
-def _key(finding: Finding) -> tuple[object, ...]:
+def _key(finding: Diagnostic) -> tuple[object, ...]:
     """Return what two reports of the same thing have in common, however the file was reached."""
     return os.path.realpath(finding.source.file), finding.source.line, finding.code, finding.message
 
@@ -38,7 +39,7 @@ def _number(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _entry(finding: Finding) -> dict[str, object]:
+def _entry(finding: Diagnostic) -> dict[str, object]:
     """Return a finding as JSON has it; these keys stay."""
     return {
         "file": finding.source.file,

@@ -8,7 +8,7 @@ from argcomplete.shell_integration import shellcode
 from ravemj.formats.shipped import SHIPPED_MODELS
 
 
-def print_completion(options: argparse.Namespace) -> int:
+def completion(options: argparse.Namespace) -> int:
     """Print what a shell has to run."""
     print(shellcode(["ravemj"], shell=options.shell))
     return 0

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from ravemj.cli.checking import Finding
-
 _LEAST_WIDTH = 100
 _PLACES = 4
 _WITHOUT_BAR = b"\r\x1b[2K\x1b[?25h"  # what erases a line of a terminal, and shows the cursor again
@@ -28,14 +26,14 @@ def print_error(error: RavemjError) -> None:
     print(" ".join(text.split()), file=sys.stderr)
 
 
-def print_findings(findings: "Iterable[Diagnostic | Finding]", file: TextIO | None = None) -> None:
+def print_findings(findings: Iterable[Diagnostic], file: TextIO | None = None) -> None:
     """Print findings; those that differ only in places or names share a line.
 
     Args:
         findings: What to print.
         file: Where; None: standard error.
     """
-    groups: dict[tuple[str, str], list[Diagnostic | Finding]] = {}
+    groups: dict[tuple[str, str], list[Diagnostic]] = {}
     for finding in findings:
         text = finding.message if finding.severity == "error" else re.sub("'[^']*'", "''", finding.message)
         groups.setdefault((finding.code, text), []).append(finding)

@@ -5,7 +5,7 @@ import argparse
 from ravemj.cli.argument_parser import Parser
 from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, file_name, port, positive, vector
 from ravemj.cli.arm_parsers import add_ik, add_plan
-from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, complete_models, late
+from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, complete_models
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
 
@@ -40,7 +40,7 @@ def make_parser() -> argparse.ArgumentParser:
 def _add_view(commands: Commands) -> None:
     parser = command(
         commands,
-        "view",
+        "view.view",
         "show a model in a window, or as a page in a browser, and move it with the mouse",
         "ravemj view pendulum",
         "ravemj view --web workshop            # prints the address of the page; Ctrl-C ends it",
@@ -72,13 +72,12 @@ def _add_view(commands: Commands) -> None:
         metavar="T",
         help="secret in the address of the page, 8 letters or more; with --port, the page outlives a restart",
     )
-    parser.set_defaults(run=late("view", "view"))
 
 
 def _add_play(commands: Commands) -> None:
     parser = command(
         commands,
-        "play",
+        "pictures.play",
         "play a motion of a robot: in a window, or into a video or a page",
         "ravemj play pendulum",
         "ravemj play pendulum -o swing.html    # a page that plays, turns and zooms by itself",
@@ -112,13 +111,12 @@ def _add_play(commands: Commands) -> None:
     )
     parser.add_argument("--fps", type=positive, default=30.0, metavar="N", help="frames in a second (30)")
     add_picture_options(parser, "size of the video (640x480); windows have a size of their own")
-    parser.set_defaults(run=late("pictures", "play"))
 
 
 def _add_render(commands: Commands) -> None:
     parser = command(
         commands,
-        "render",
+        "pictures.render",
         "draw a picture of a model",
         "ravemj render workshop -o workshop.png",
         'ravemj render pendulum -o pendulum.png --q "0.785,0.785" --size 1280x720',
@@ -129,13 +127,12 @@ def _add_render(commands: Commands) -> None:
         "--q", type=vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
     )
     add_picture_options(parser, "size of the picture (640x480)")
-    parser.set_defaults(run=late("pictures", "render"))
 
 
 def _add_convert(commands: Commands) -> None:
     parser = command(
         commands,
-        "convert",
+        "convert.convert",
         "translate a model to MJCF, MuJoCo's format, to COLLADA, OpenRAVE XML or OpenRAVE's JSON",
         "ravemj convert robot.xml -o robot/      # robot/robot.xml, and assets/ for meshes",
         "ravemj convert puma560 -o puma.mjcf.xml --actuators position",
@@ -179,13 +176,12 @@ def _add_convert(commands: Commands) -> None:
         action="store_true",
         help='let meshes collide as several convex parts, not as one hull; needs pip install "ravemj[decompose]"',
     )
-    parser.set_defaults(run=late("convert", "convert"))
 
 
 def _add_check(commands: Commands) -> None:
     parser = command(
         commands,
-        "check",
+        "check.check",
         "find what is wrong in models, and what OpenRAVE passes over in silence",
         "ravemj check env.xml",
         "ravemj check --strict models/*.xml",
@@ -196,13 +192,12 @@ def _add_check(commands: Commands) -> None:
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
-    parser.set_defaults(run=late("check", "check_models"))
 
 
 def _add_diff(commands: Commands) -> None:
     parser = command(
         commands,
-        "diff",
+        "diff.diff",
         "compare two models by their numbers; exit with 1 where they differ, with 2 where one cannot be read",
         "ravemj diff puma560 arm.xml",
         "ravemj diff old.robot.xml new.robot.xml --json      # a list of part, quantity, first, second, difference",
@@ -220,26 +215,24 @@ def _add_diff(commands: Commands) -> None:
         f"{MESH_TOLERANCE:g}",
     )
     parser.add_argument("--json", action="store_true", help="print the differences as JSON")
-    parser.set_defaults(run=late("diff", "diff"))
 
 
 def _add_info(commands: Commands) -> None:
     parser = command(
         commands,
-        "info",
+        "info.info",
         "show the links, joints, manipulators and sensors of a model",
         "ravemj info panda",
         "ravemj info panda --json > panda.json",
     )
     add_model(parser)
     parser.add_argument("--json", action="store_true", help="print all numbers as JSON")
-    parser.set_defaults(run=late("info", "info"))
 
 
 def _add_run(commands: Commands) -> None:
     parser = command(
         commands,
-        "run",
+        "sessions.run",
         "run a script that imports openravepy, on ravemj",
         "ravemj run myscript.py",
         "ravemj run -i myscript.py      # stays in IPython",
@@ -253,19 +246,19 @@ def _add_run(commands: Commands) -> None:
     parser.add_argument("script", type=file_name, metavar="SCRIPT", help="Python file")
     rest = parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="arguments of the script")
     rest.required = False  # Python 3.11 would name it beside a missing SCRIPT
-    parser.set_defaults(run=late("sessions", "run"))
 
 
 def _add_shell(commands: Commands) -> None:
-    parser = command(commands, "shell", "open IPython with env, robot and viewer of a model", "ravemj shell puma560")
+    parser = command(
+        commands, "sessions.shell", "open IPython with env, robot and viewer of a model", "ravemj shell puma560"
+    )
     add_model(parser)
-    parser.set_defaults(run=late("sessions", "shell"))
 
 
 def _add_alias(commands: Commands) -> None:
     parser = command(
         commands,
-        "alias",
+        "sessions.alias",
         "let scripts that import openravepy run on ravemj by themselves",
         "ravemj alias --install      # then: ipython -i myscript.py, ./myscript.py",
         "ravemj alias --remove",
@@ -275,24 +268,21 @@ def _add_alias(commands: Commands) -> None:
         "--install", action="store_true", help="put a package openravepy, which forwards to ravemj, into this Python"
     )
     action.add_argument("--remove", action="store_true", help="take it out again")
-    parser.set_defaults(run=late("sessions", "alias"))
 
 
 def _add_doctor(commands: Commands) -> None:
-    parser = command(
-        commands, "doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
+    command(
+        commands, "pictures.doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
     )
-    parser.set_defaults(run=late("pictures", "doctor"))
 
 
 def _add_completion(commands: Commands) -> None:
     parser = command(
         commands,
-        "completion",
+        "completion.completion",
         "print what lets a shell complete commands, options and models",
         "ravemj completion bash > ~/.local/share/bash-completion/completions/ravemj",
         "ravemj completion zsh > ~/.zfunc/_ravemj      # with fpath+=~/.zfunc before compinit in ~/.zshrc",
         "ravemj completion fish > ~/.config/fish/completions/ravemj.fish",
     )
     parser.add_argument("shell", choices=["bash", "zsh", "fish"], metavar="SHELL", help="bash, zsh or fish")
-    parser.set_defaults(run=late("completion", "print_completion"))

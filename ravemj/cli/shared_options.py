@@ -1,8 +1,7 @@
 """What the parsers of several commands share."""
 
 import argparse
-import importlib
-from collections.abc import Callable
+from importlib import import_module
 from typing import TypeAlias
 
 from ravemj.cli.argument_parser import Parser
@@ -15,31 +14,30 @@ VIDEOS = ".mp4, .avi, .mpg, .gif, .webp, or a folder for PNG frames"
 """The files that ``-o`` accepts in commands that write videos."""
 
 
-def command(commands: Commands, name: str, summary: str, *examples: str) -> argparse.ArgumentParser:
+def command(commands: Commands, run: str, summary: str, *examples: str) -> argparse.ArgumentParser:
     """Add a command.
 
     Args:
         commands: The parser of all commands.
-        name: What it is called.
+        run: What does the work, as ``module.function``, whose name is the command's. The module, of ``ravemj.cli``, is
+            imported when the command runs: help needs none of them.
         summary: What it does, beginning with a verb in lower case.
         examples: Lines of a shell that use it.
     """
-    return commands.add_parser(
+    module, _, name = run.partition(".")
+
+    def work(options: argparse.Namespace) -> int:
+        return getattr(import_module(f"ravemj.cli.{module}"), name)(options)
+
+    parser = commands.add_parser(
         name,
         help=summary,
         description=f"{summary[0].upper()}{summary[1:]}.",
         epilog="examples:\n" + "\n".join(f"  {example}" for example in examples),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-
-
-def late(module: str, function: str) -> Callable[[argparse.Namespace], int]:
-    """Return the function of a command, which imports its module when it is called: help needs none of them."""
-
-    def run(options: argparse.Namespace) -> int:
-        return getattr(importlib.import_module(f"ravemj.cli.{module}"), function)(options)
-
-    return run
+    parser.set_defaults(run=work)
+    return parser
 
 
 def complete_models(argument: argparse.Action) -> None:

@@ -2,10 +2,17 @@
 
 import math
 from collections.abc import Sequence
+from typing import cast
 
 from ravemj.model.scene import AttachedSensor, Axis, Geometry, Joint, KinBody, Link, Manipulator, TriMesh
 
 Summary = dict[str, object]
+
+_OF_AXES = (
+    "direction", "value", "lower", "upper", "circular",
+    "max_velocity", "max_acceleration", "max_torque", "weight", "resolution",
+)  # fmt: skip
+_OF_CAMERAS = ("fx", "fy", "cx", "cy", "width", "height")
 
 
 def summarize(body: KinBody) -> Summary:
@@ -14,10 +21,10 @@ def summarize(body: KinBody) -> Summary:
     Links and DOFs are referred to by their numbers; a number that is not finite is None.
     """
     first_dofs = dof_starts(body)
-    return {
+    summary = {
         "name": body.name,
         "is_robot": body.is_robot,
-        "mass": _finite(sum(link.inertial.mass for link in body.links)),
+        "mass": sum(link.inertial.mass for link in body.links),
         "dof": len(body.dof_axes),
         "links": [_link(index, link) for index, link in enumerate(body.links)],
         "joints": [_joint(joint, first) for joint, first in zip(body.joints, first_dofs, strict=True)],
@@ -25,6 +32,7 @@ def summarize(body: KinBody) -> Summary:
         "manipulators": [_manipulator(manipulator) for manipulator in body.manipulators],
         "sensors": [sensor_summary(sensor) for sensor in body.sensors],
     }
+    return cast("Summary", _finite(summary))
 
 
 def dof_starts(body: KinBody) -> list[int]:
@@ -41,13 +49,13 @@ def _link(index: int, link: Link) -> Summary:
     return {
         "index": index,
         "name": link.name,
-        "mass": _finite(link.inertial.mass),
-        "com": _finite(link.inertial.com),
-        "inertia": _finite(link.inertial.inertia),
+        "mass": link.inertial.mass,
+        "com": link.inertial.com,
+        "inertia": link.inertial.inertia,
         "static": link.static,
         "enabled": link.enabled,
-        "position": _finite(link.T_world_link.position),
-        "quaternion": _finite(link.T_world_link.wxyz),
+        "position": link.T_world_link.position,
+        "quaternion": link.T_world_link.wxyz,
         "geometries": [_geometry(geometry) for geometry in link.geometries],
     }
 
@@ -57,7 +65,7 @@ def _geometry(geometry: Geometry) -> Summary:
     if isinstance(shape, TriMesh):
         sizes: Summary = {"vertices": len(shape.mesh.vertices), "triangles": len(shape.mesh.triangles)}
     else:
-        sizes = {size.name: _finite(getattr(shape, size.name)) for size in shape.sizes()}
+        sizes = {size.name: getattr(shape, size.name) for size in shape.sizes()}
     return {"type": type(shape).__name__.lower(), "name": geometry.name, **sizes, "visible": geometry.visible}
 
 
@@ -70,25 +78,15 @@ def _joint(joint: Joint, first_dof: int | None) -> Summary:
         "child": joint.child,
         "static": joint.static,
         "closes_loop": not joint.places_child,
-        "anchor": _finite(joint.anchor),
+        "anchor": joint.anchor,
         "axes": [_axis(axis) for axis in joint.axes],
         "follows": None if joint.mimic is None else joint.mimic.position,
     }
 
 
 def _axis(axis: Axis) -> Summary:
-    return {
-        "direction": _finite(axis.direction),
-        "value": _finite(axis.value),
-        "lower": None if axis.circular else _finite(axis.lower),
-        "upper": None if axis.circular else _finite(axis.upper),
-        "circular": axis.circular,
-        "max_velocity": _finite(axis.max_velocity),
-        "max_acceleration": _finite(axis.max_acceleration),
-        "max_torque": _finite(axis.max_torque),
-        "weight": _finite(axis.weight),
-        "resolution": _finite(axis.resolution),
-    }
+    summary: Summary = {name: getattr(axis, name) for name in _OF_AXES}
+    return {**summary, "lower": None, "upper": None} if axis.circular else summary
 
 
 def _manipulator(manipulator: Manipulator) -> Summary:
@@ -98,29 +96,31 @@ def _manipulator(manipulator: Manipulator) -> Summary:
         "effector": manipulator.effector,
         "arm_dofs": list(manipulator.arm_dofs),
         "gripper_dofs": list(manipulator.gripper_dofs),
-        "chucking_direction": _finite(manipulator.chucking_direction),
-        "tool_position": _finite(manipulator.T_effector_tool.position),
-        "tool_quaternion": _finite(manipulator.T_effector_tool.wxyz),
-        "direction": _finite(manipulator.direction),
+        "chucking_direction": manipulator.chucking_direction,
+        "tool_position": manipulator.T_effector_tool.position,
+        "tool_quaternion": manipulator.T_effector_tool.wxyz,
+        "direction": manipulator.direction,
     }
 
 
 def sensor_summary(sensor: AttachedSensor) -> Summary:
     """Return a sensor; one that no robot carries is on no link, and its pose is that in the world."""
     camera = sensor.camera
-    names = ("fx", "fy", "cx", "cy", "width", "height")
-    return {
+    summary = {
         "name": sensor.name,
         "link": sensor.link,
         "type": sensor.type,
-        "position": _finite(sensor.T_link_sensor.position),
-        "quaternion": _finite(sensor.T_link_sensor.wxyz),
-        "camera": None if camera is None else {name: _finite(getattr(camera, name)) for name in names},
+        "position": sensor.T_link_sensor.position,
+        "quaternion": sensor.T_link_sensor.wxyz,
+        "camera": None if camera is None else {name: getattr(camera, name) for name in _OF_CAMERAS},
     }
+    return cast("Summary", _finite(summary))
 
 
-def _finite(value: float | Sequence[object]) -> object:
-    """Return a number, or the numbers in nested tuples, as JSON has them: None for one that is not finite."""
-    if isinstance(value, Sequence):
-        return [_finite(part) for part in value]  # pyright: ignore[reportArgumentType]
-    return value if math.isfinite(value) else None
+def _finite(value: object) -> object:
+    """Return what JSON can hold: None for each number that is not finite, and lists for tuples."""
+    if isinstance(value, dict):
+        return {name: _finite(part) for name, part in cast("Summary", value).items()}
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in cast("Sequence[object]", value)]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

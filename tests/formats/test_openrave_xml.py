@@ -525,6 +525,7 @@ class TestFindings:
             ("<Body name='a'><Translation>nan inf 1e999</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
             ("<Body name='a'><Translation>1\u00a02 3 4</Translation></Body>", "bad-number", "OpenRAVE reads 1 0 0"),
             ("<Body name='a'><Translation>\uff11 2 3</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<Body name='a'><Translation>1_0 2 3</Translation></Body>", "bad-number", "OpenRAVE reads 1 0 0"),
             ("<RotationMat>-1 0 0 0 1 0 0 0 1</RotationMat>", "bad-rotation", "holds no rotation"),
             ("<Translation unit='mm'>1 2 3</Translation>", "unknown-attribute", "'unit' of <Translation>"),
             (JOINT.format("", "<actuator kind='x'/>"), "unknown-attribute", "'kind' of <actuator>"),

@@ -299,17 +299,13 @@ class _Writer:
             torque = (-axis.max_torque, axis.max_torque) if axis.max_torque else None
             limits = None if axis.circular else (axis.lower, axis.upper)
             speed = (-axis.max_velocity, axis.max_velocity)
-            if kind == "torque":
-                self.actuators.element("motor", joint.source, name=name, joint=name, ctrlrange=torque)
-            elif kind == "velocity":
-                self.actuators.element(
-                    "velocity", joint.source, name=name, joint=name, kv=10.0, ctrlrange=speed, forcerange=torque
-                )
-            else:
-                gains: dict[str, Attribute] = {"kp": 100.0, "kv": 10.0}
-                self.actuators.element(
-                    "position", joint.source, name=name, joint=name, **gains, ctrlrange=limits, forcerange=torque
-                )
+            forms: dict[Actuators, tuple[str, dict[str, Attribute | None]]] = {
+                "torque": ("motor", {"ctrlrange": torque}),
+                "velocity": ("velocity", {"kv": 10.0, "ctrlrange": speed, "forcerange": torque}),
+                "position": ("position", {"kp": 100.0, "kv": 10.0, "ctrlrange": limits, "forcerange": torque}),
+            }
+            tag, attributes = forms[kind]
+            self.actuators.element(tag, joint.source, name=name, joint=name, **attributes)
 
 
 def _range(axis: Axis) -> dict[str, Attribute | None]:

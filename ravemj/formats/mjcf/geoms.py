@@ -34,7 +34,7 @@ class GeomWriter:
             self._write_solid(geometry, solid, out, seen=seen)
         collides = bool(solids) or self._write_mesh(geometry, geometry.shape.triangulated(), out, seen=seen)
         for surface in geometry.display or () if geometry.visible else ():
-            self._write_surface(geometry, surface, out)
+            self._write_mesh_geom(geometry, surface.mesh, "visual", surface, out)
         return self._written - before, collides
 
     def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
@@ -61,10 +61,10 @@ class GeomWriter:
         hulls = self._hulls(geometry, mesh)
         both = seen and hulls == (mesh,)
         if seen:
-            self._write_mesh_geom(geometry, mesh, None if both else "visual", out)
+            self._write_mesh_geom(geometry, mesh, None if both else "visual", geometry, out)
         if not both:
             for hull in hulls:
-                self._write_mesh_geom(geometry, hull, "collision", out)
+                self._write_mesh_geom(geometry, hull, "collision", geometry, out)
         return bool(hulls)
 
     def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
@@ -84,23 +84,15 @@ class GeomWriter:
 
         return decompose(mesh)
 
-    def _write_surface(self, geometry: Geometry, surface: Surface, out: Lines) -> None:
-        name = self._mesh_name(surface.mesh)
-        if name is not None:
-            colour = rgba(surface.diffuse, surface.transparency)
-            self._write_geom(geometry, name, "visual", colour, out)
-
-    def _write_mesh_geom(self, geometry: Geometry, mesh: Mesh, role: str | None, out: Lines) -> None:
+    def _write_mesh_geom(
+        self, geometry: Geometry, mesh: Mesh, role: str | None, look: Geometry | Surface, out: Lines
+    ) -> None:
         name = self._mesh_name(mesh)
         if name is not None:
-            self._write_geom(geometry, name, role, rgba(geometry.diffuse, geometry.transparency), out)
-
-    def _write_geom(
-        self, geometry: Geometry, mesh_name: str, role: str | None, colour: tuple[float, ...], out: Lines
-    ) -> None:
-        self._written += 1
-        attributes: dict[str, Attribute | None] = {"class": role, "type": "mesh", "mesh": mesh_name}
-        out.element("geom", geometry.source, **attributes, **pose_attributes(geometry.T_link_geometry), rgba=colour)
+            self._written += 1
+            attributes: dict[str, Attribute | None] = {"class": role, "type": "mesh", "mesh": name}
+            attributes |= pose_attributes(geometry.T_link_geometry)
+            out.element("geom", geometry.source, **attributes, rgba=rgba(look.diffuse, look.transparency))
 
     def _mesh_name(self, mesh: Mesh) -> str | None:
         """Return the name of a mesh, declared when it is met first; None for one that MuJoCo cannot load."""

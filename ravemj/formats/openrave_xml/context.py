@@ -68,8 +68,10 @@ class Context:
                 if not child.complete:
                     continue
                 read, _, left_out, once = tag
-                if once:
-                    self._check_first(child, before.setdefault(read if once is True else once, child))
+                if once and (first := before.setdefault(read if once is True else once, child)) is not child:
+                    place = f"<{first.spelled}> in line {first.source.line}"
+                    message = f"<{child.spelled}> overrides {place}; the last one counts"
+                    self.diagnostics.warn("repeated-tag", message, child.source, "write one")
                 try:
                     read(target, child)
                 except ArithmeticError as error:
@@ -85,14 +87,6 @@ class Context:
                     child.source,
                     _belongs(child) or did_you_mean(child.tag, tags),
                 )
-
-    def _check_first(self, element: Element, first: Element) -> None:
-        """Warn of an element that overrides another one."""
-        if first is not element:
-            message = (
-                f"<{element.spelled}> overrides <{first.spelled}> in line {first.source.line}; the last one counts"
-            )
-            self.diagnostics.warn("repeated-tag", message, element.source, "write one")
 
     def leave_out(self, element: Element, reason: str) -> None:
         """Report an element that has no effect here."""
@@ -179,24 +173,19 @@ class Context:
         found = self._found.get(question)
         if found is not None:
             return found
-        places = [*folders, os.path.dirname(source.file), *data_folders()]
-        looked_at: list[str] = []
-        for folder in places:
-            candidate = os.path.join(folder, name)
-            if os.path.isfile(candidate):
-                self._found[question] = candidate
-                return candidate
-            looked_at.append(candidate)
-        above = _found_above(name, os.path.dirname(source.file))
-        if above is not None:
-            message = f"{name} is in none of the places where OpenRAVE looks, so {above} is taken"
+        places = [os.path.join(folder, name) for folder in (*folders, os.path.dirname(source.file), *data_folders())]
+        found = next(filter(os.path.isfile, places), None)
+        if found is None:
+            found = _found_above(name, os.path.dirname(source.file))
+            if found is None:
+                hint = "" if data_folders() else "put it there, or set OPENRAVE_DATA to the folder that it is in"
+                message = f"there is no file '{name}'; looked at {', '.join(dict.fromkeys(places))}"
+                self.diagnostics.warn("missing-file", message, source, hint)
+                return None
+            message = f"{name} is in none of the places where OpenRAVE looks, so {found} is taken"
             self.diagnostics.warn("found-above", message, source, "OpenRAVE needs its folder in OPENRAVE_DATA")
-            self._found[question] = above
-            return above
-        hint = "" if data_folders() else "put it there, or set OPENRAVE_DATA to the folder that it is in"
-        message = f"there is no file '{name}'; looked at {', '.join(dict.fromkeys(looked_at))}"
-        self.diagnostics.warn("missing-file", message, source, hint)
-        return None
+        self._found[question] = found
+        return found
 
     def with_parameter(self, before: Parameters, element: Element) -> Parameters:
         """Return some parameters and that of a ``<parameter>``; a broken one is left out, with a warning."""

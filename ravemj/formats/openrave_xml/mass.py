@@ -113,7 +113,7 @@ MASS_TAGS: dict[str, Tag[_Mass]] = {
 
 
 def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: Context) -> MassRule:
-    """Read a ``<Mass>`` of a Body; what it leaves out is as before, which the result takes the place of."""
+    """Read a ``<Mass>`` of a Body into the rule before it, or into a new one; what it leaves out keeps its value."""
     context.check_attributes(element, MASS_ATTRIBUTES, {})
     kind = element.attributes.get("type", "sphere").lower()
     if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
@@ -219,7 +219,7 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     inertia = NO_INERTIA
     for (position, wxyz), (part, moments) in zip(poses, solids, strict=True):
         inertia = _add_rows(inertia, _rotated(moments, wxyz))
-        if position != com:
+        if position != com:  # a single shape has no arm
             inertia = _add_rows(inertia, _point_inertia(part * factor, add(position, scale(com, -1.0))))
     return Inertial(mass * factor, com, inertia)
 

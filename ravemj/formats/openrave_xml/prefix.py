@@ -61,9 +61,9 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
 
 
 def youngest_first(parts: list[Part], older: Sequence[Part]) -> list[Part]:
-    """Move parts that came since some moment before the older ones, the last one first (gap-44, gap-45).
+    """Return the parts that are new, the last one first, and then the older ones (gap-44, gap-45).
 
-    If there were none then, nothing moves (gap-43); parts of a COLLADA file do not turn (gap-75).
+    Without older ones the order stays (gap-43), and so does that of parts of a COLLADA file (gap-75).
     """
     return [*reversed(_newer(parts, older)), *older] if older else parts
 

@@ -61,11 +61,9 @@ class _Sensor(Placed):
             self.device = described(self.device, tag, number_list(element, self.context.diagnostics))
 
     def switch(self, element: Element) -> None:
-        """Read whether it measures from the start."""
         self.is_on = is_true(element.text.strip())
 
     def paint(self, element: Element) -> None:
-        """Read the colour of what viewers draw."""
         self.color = vector(element, self.context.diagnostics, self.color)
 
 
@@ -96,16 +94,12 @@ _IN_FILE = dict.fromkeys(
 def device_tags(kind: SensorKind) -> Mapping[str, Tag[_Sensor]]:
     """Return the table of what only a kind of sensor has."""
     shared = sensor_tags(kind.device).items()
-    return {name.lower(): Tag(partial(_describe, tag=tag), tag.meaning) for name, tag in shared}
+    return {name.lower(): Tag(partial(_Sensor.describe, tag=tag), tag.meaning) for name, tag in shared}
 
 
 def device_ignored(kind: SensorKind) -> Mapping[str, str]:
     """Return what only a kind of sensor has and is left out, and why."""
     return _CAMERA_IGNORED if isinstance(kind.device, Intrinsics) else {}
-
-
-def _describe(sensor: _Sensor, element: Element, tag: SensorTag) -> None:
-    sensor.describe(element, tag)
 
 
 def read_device(element: Element, context: Context) -> SensorElement:

@@ -185,7 +185,8 @@ class _Parser:
             if self._entities:
                 self._refuse_entities()
             attributes = {key.lower(): value for key, value in attributes.items()}
-        element = Element(name.lower(), name, attributes, self._here(), "", [])
+        source = Source(self._path, self._expat.CurrentLineNumber, self._included_from)
+        element = Element(name.lower(), name, attributes, source, "", [])
         opened = self._open
         if not opened:
             self.root = element

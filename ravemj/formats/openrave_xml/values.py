@@ -58,7 +58,7 @@ def leading_numbers(text: str) -> Numbers:
 
 def _plain_numbers(text: str) -> list[float] | None:
     """Return the numbers of a text that holds nothing else, or None."""
-    if "_" in text or not text.isascii():  # Python takes both for parts of numbers
+    if "_" in text or not text.isascii():  # float() takes 1_0 and digits of other scripts
         return None
     try:
         plain = list(map(float, text.split()))
