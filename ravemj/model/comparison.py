@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats, Pose
-from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.chains import adjacent_pairs
 from ravemj.model.inertia import principal_frame
 from ravemj.model.joints import poses_at
 from ravemj.model.mimic import MimicJoints
@@ -58,13 +58,7 @@ class Difference(NamedTuple):
 
 
 def compare(first: Scene, second: Scene, tolerance: float = TOLERANCE) -> list[Difference]:
-    """Compare two scenes body by body, in their order.
-
-    Args:
-        first: A scene.
-        second: Another one.
-        tolerance: Of all numbers but those of meshes, relative to numbers above 1.
-    """
+    """Compare two scenes body by body, in their order; the tolerance of numbers is relative to those above 1."""
     return list(_Comparison(tolerance).scenes(first, second))
 
 
@@ -279,12 +273,7 @@ class _Comparison:
 
 
 def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
-    """Return the poses of the links of a body in a configuration, its root links being where they are.
-
-    Args:
-        body: The body.
-        dof_values: Its joint values [rad or m].
-    """
+    """Return the poses of the links of a body at joint values [rad or m], its root links being where they are."""
     rest = iter(dof_values)
     values = [[next(rest) for _ in joint.axes] for joint in body.joints]
     values += [[axis.value for axis in joint.axes] for joint in body.passive_joints]

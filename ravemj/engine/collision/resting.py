@@ -7,7 +7,7 @@ from ravemj.core.graphs import Pair
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.world import CollisionWorld, cross, joined
 from ravemj.engine.simulation import BodyState
-from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.chains import adjacent_pairs
 
 _found: "WeakKeyDictionary[BodyState, tuple[Floats | None, frozenset[Pair]]]" = WeakKeyDictionary()
 
