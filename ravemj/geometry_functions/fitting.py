@@ -31,12 +31,7 @@ def fitCircle(points: ArrayLike, geometric_refinement: bool = True) -> tuple[Flo
 
 
 def fitSphere(points: ArrayLike, geometric_refinement: bool = True) -> tuple[Floats, float, float]:
-    """Return the sphere that fits points of shape (n, 3) best; see ``fitCircle``.
-
-    Args:
-        points: Points [m], shape (n, 3).
-        geometric_refinement: Whether to refine the algebraic solution.
-    """
+    """Return the sphere that fits ``points`` of shape (n, 3) best; ``geometric_refinement`` as for ``fitCircle``."""
     del geometric_refinement
     return _fitted(_points(points, (3,), 4))
 

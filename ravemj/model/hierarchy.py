@@ -49,12 +49,7 @@ class Hierarchy(NamedTuple):
 
 
 def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
-    """Direct the joints of a body.
-
-    Args:
-        static_links: For each link, whether it is static.
-        edges: The joints: active ones in DOF order, then passive ones.
-    """
+    """Direct the joints of a body: active ones in DOF order, then passive ones."""
     has_dofs = any(edge.active for edge in edges)  # without any, OpenRAVE makes no depths
     depths = _depths(static_links, edges) if has_dofs else [_UNREACHED] * len(static_links)
     swapped = tuple(_is_swapped(edge.links, static_links, depths, has_dofs=has_dofs) for edge in edges)

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterable
 
 from ravemj.engine.simulation import BodyState
+from ravemj.model.bounds import links_triangles
 from ravemj.model.scene import KinBody, Mesh
-from ravemj.model.triangles import links_triangles
 from ravemj.rave.enums import TriangulateOptions
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 
