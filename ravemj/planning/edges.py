@@ -1,4 +1,4 @@
-"""Straight lines between configurations: are they allowed everywhere?"""
+"""Which configurations and straight lines between them are allowed."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -48,10 +48,6 @@ class Edges:
         """Return whether the line from a configuration that is allowed is so everywhere, its end included.
 
         Lines in collision are mostly so in their middle: halves are tested before quarters.
-
-        Args:
-            start: Where it starts.
-            step: How far it goes.
         """
         allowed = self.allowed
         for part in bisection_order(self.space.steps(step)):
@@ -85,3 +81,20 @@ def path_is_allowed(edges: Edges, points: Floats) -> bool:
 def length(space: Space, points: Floats) -> float:
     """Return the length of a path of straight lines, in weighted distances."""
     return float(np.linalg.norm(space.weights * space.difference(points[1:], points[:-1]), axis=1).sum())
+
+
+def nearby(
+    space: Space, configuration: Floats, allowed: Allowed, tries: int, farthest: float, random: np.random.Generator
+) -> Floats | None:
+    """Return a configuration itself if it is allowed, else an allowed one near it, or None.
+
+    Each value moves by ``farthest`` [rad or m] at most; the first of the tries stay nearer.
+    """
+    if allowed(configuration):
+        return configuration
+    for attempt in range(tries if farthest > 0 else 0):
+        reach = farthest * (attempt + 1) / tries
+        candidate = space.clamp(configuration + random.uniform(-reach, reach, len(configuration)))
+        if allowed(candidate):
+            return candidate
+    return None

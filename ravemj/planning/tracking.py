@@ -36,14 +36,8 @@ class _Layer(NamedTuple):
 def track(space: Space, count: int, start: Floats, solve: Solve, connects: Connects) -> Floats:
     """Return the shortest way through configurations of all goals, as far as there is one, shape (m, n).
 
-    Shortest ways to all solutions of a goal are kept, so that a branch that ends is no harm to the others.
-
-    Args:
-        space: Measures ways.
-        count: How many goals there are.
-        start: Where it should begin if it can, shape (n,).
-        solve: Returns what reaches a goal.
-        connects: Says what leads from one goal to the next.
+    It begins at ``start`` if it can. Shortest ways to all solutions of a goal are kept, so that a branch that ends does
+    the others no harm.
     """
     layers: list[_Layer] = []
     last = _Layer(start[None], np.zeros(1), np.zeros(1, dtype=np.intp))

@@ -41,11 +41,7 @@ class BodyMotion:
 
     @classmethod
     def of_waypoints(cls, simulation: Simulation, waypoints: Waypoints) -> "BodyMotion":
-        """Let all bodies of a trajectory follow its joint values and poses.
-
-        Args:
-            simulation: Where the bodies are.
-            waypoints: The trajectory; it is not copied.
+        """Let all bodies of a trajectory, which is not copied, follow its joint values and poses.
 
         Raises:
             ArgumentError: it has no waypoint or no time, or names no body that is there, or joints that a body lacks.

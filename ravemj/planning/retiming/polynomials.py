@@ -6,10 +6,8 @@ from typing import Any
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.retiming.segments import Limits, Rows, Segment
+from ravemj.planning.retiming.segments import LONGER, MOST_ATTEMPTS, Limits, Rows, Segment
 
-_LONGER = 1.05
-_MOST_ATTEMPTS = 500
 _SLACK = 1e-12
 """Relative: rounding."""
 
@@ -48,12 +46,12 @@ class Polynomial:
         if segment.is_from_rest_to_rest:
             needed = self._from_rest_to_rest(np.abs(segment.step), limits) * (1 - _SLACK)
             while duration < needed:
-                duration *= _LONGER
+                duration *= LONGER
             return duration
-        for _ in range(_MOST_ATTEMPTS):
+        for _ in range(MOST_ATTEMPTS):
             if self._keeps_limits(segment, duration, limits):
                 return duration
-            duration *= _LONGER
+            duration *= LONGER
         return np.inf
 
     def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows:

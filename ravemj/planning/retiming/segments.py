@@ -8,15 +8,15 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.space import ON_LIMIT, Coordinates
+from ravemj.planning.space import Coordinates
 
 ENOUGH = 1e-9
 """How much shorter [s] than needed a given time may be: rounding."""
 
-_LONGER = 1.05
+LONGER = 1.05
 """Times that no formula gives are multiplied by this until the limits hold, as in OpenRAVE."""
 
-_MOST_ATTEMPTS = 500
+MOST_ATTEMPTS = 500
 
 
 class RetimingError(Exception):
@@ -53,10 +53,7 @@ class Limits:
         Raises:
             OutsideLimitsError: one is not.
         """
-        slack = ON_LIMIT * np.maximum(1.0, np.abs(points))
-        wrong = (points < self.lower - slack) | (points > self.upper + slack) | ~np.isfinite(points)
-        wrong[:, self.coordinates.circular] &= ~np.isfinite(points[:, self.coordinates.circular])
-        for row, column in np.argwhere(wrong):
+        for row, column in np.argwhere(self.coordinates.outside(points, self.lower, self.upper)):
             value, lower, upper = points[row, column], self.lower[column], self.upper[column]
             message = f"value {column} of waypoint {row} is {value:.15g}, outside its limits [{lower:g}, {upper:g}]"
             raise OutsideLimitsError(message)
@@ -194,11 +191,11 @@ def _driven(profile: Profile, segment: Segment, limits: Limits, given: float | N
     if given is not None:
         return _kept(profile, segment, limits, given, needed)
     duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
-    for _ in range(_MOST_ATTEMPTS):
+    for _ in range(MOST_ATTEMPTS):
         rows = profile.drive(segment, duration, limits)
         if rows is not None:
             return rows
-        duration *= _LONGER
+        duration *= LONGER
     raise RetimingError(f"no motion of {duration:.6g} s keeps the limits with the velocities at the waypoints")
 
 
