@@ -230,17 +230,10 @@ class _Comparison:
             yield max(found, key=lambda difference: difference.error or math.inf)
 
     def _poses(self, part: str, quantity: str, first: Pose | None, second: Pose | None) -> Iterator[Difference]:
-        if first != second:
-            matrices = (None if pose is None else pose.matrix() for pose in (first, second))
-            yield from self._optional(part, quantity, *matrices)
-
-    def _optional(
-        self, part: str, quantity: str, first: ArrayLike | None, second: ArrayLike | None
-    ) -> Iterator[Difference]:
         if first is None or second is None:
             yield from self._same(part, quantity, first is None, second is None)
-        else:
-            yield from self._near(part, quantity, first, second)
+        elif first != second:
+            yield from self._near(part, quantity, first.matrix(), second.matrix())
 
     def _meshes(self, part: str, quantity: str, first: Mesh, second: Mesh) -> Iterator[Difference]:
         if first is second or first == second:

@@ -175,22 +175,11 @@ class MimicJoints:
 def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:
     equation, axis = joints[index].equation, joints[index].axes[0]
     assert equation is not None
-    lower, upper = (-math.inf, math.inf) if axis.circular else (axis.lower, axis.upper)
-    multiple = _multiple(equation)
-    return MimicJoint(index, equation, multiple, _function(equation, multiple, len(joints)), lower, upper)
-
-
-def _multiple(equation: "Expression") -> Multiple | None:
-    affine = equation.affine
-    if affine is None or len(affine.slopes) != 1:
-        return None
-    ((name, slope),) = affine.slopes.items()
-    return Multiple(int(name.removeprefix("joint")), slope, affine.offset)
-
-
-def _function(equation: "Expression", multiple: Multiple | None, count: int) -> Callable[[Sequence[float]], float]:
-    """Return a fast form of an equation over the first values of that many joints."""
-    if multiple is None:
-        return equation.compiled([f"joint{number}" for number in range(count)])
-    leader, slope, offset = multiple
-    return lambda values: slope * values[leader] + offset
+    limits = (-math.inf, math.inf) if axis.circular else (axis.lower, axis.upper)
+    if equation.affine is None or len(equation.affine.slopes) != 1:
+        compiled = equation.compiled([f"joint{number}" for number in range(len(joints))])
+        return MimicJoint(index, equation, None, compiled, *limits)
+    offset, ((name, slope),) = equation.affine.offset, equation.affine.slopes.items()
+    leader = int(name.removeprefix("joint"))
+    multiple = Multiple(leader, slope, offset)
+    return MimicJoint(index, equation, multiple, lambda values: slope * values[leader] + offset, *limits)

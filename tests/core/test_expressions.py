@@ -625,6 +625,20 @@ def test_polynomials(text, expected):
     assert found == (expected if expected is None else pytest.approx(expected))
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("2*(x+y)/4-z+1", (1, {"x": 0.5, "y": 0.5, "z": -1})),
+        ("x*y-x*y+2*x", (0, {"x": 2})),
+        ("x*y", None),
+        ("1e999*(x-x)", None),
+        ("(x+y+z+1)^16", None),
+    ],
+)
+def test_affine_equations(text, expected):
+    assert parse(text, NAMES).affine == expected
+
+
 @settings(quick, max_examples=100)
 @given(
     equations(("add", "sub", "mul", "neg", "pow"), st.sampled_from([0.0, 1.0, 2.0, 3.0, -0.5])),

@@ -57,9 +57,10 @@ def _polynomial(nodes: list[Node]) -> _Polynomial | None:
             case Call(function, arguments):
                 known = [one for one in map(found.__getitem__, arguments) if one is not None]
                 terms = _combined(function, known) if len(known) == len(arguments) else None
-        # Only of finite numbers it is sure that 0 times them is 0.
-        is_finite = terms is not None and all(map(math.isfinite, terms.values()))
-        found[node] = {variables: factor for variables, factor in terms.items() if factor} if is_finite else None
+        if terms is not None and all(map(math.isfinite, terms.values())):  # else 0 times them may be no 0
+            found[node] = {variables: factor for variables, factor in terms.items() if factor}
+        else:
+            found[node] = None
     return found[nodes[-1]]
 
 
@@ -73,6 +74,14 @@ def _combined(function: str, known: list[_Polynomial]) -> _Polynomial | None:
 
 def _sum(x: _Polynomial, y: _Polynomial, sign: float = 1.0) -> _Polynomial:
     return x | {variables: x.get(variables, 0.0) + sign * factor for variables, factor in y.items()}
+
+
+def _difference(x: _Polynomial, y: _Polynomial) -> _Polynomial:
+    return _sum(x, y, -1.0)
+
+
+def _negative(x: _Polynomial) -> _Polynomial:
+    return _sum({}, x, -1.0)
 
 
 def _product(x: _Polynomial, y: _Polynomial) -> _Polynomial | None:
@@ -102,8 +111,8 @@ def _power(base: _Polynomial, exponent: _Polynomial) -> _Polynomial | None:
 
 _RULES: dict[str, Callable[..., _Polynomial | None]] = {
     "add": _sum,
-    "sub": lambda x, y: _sum(x, y, -1.0),
-    "neg": lambda x: _sum({}, x, -1.0),
+    "sub": _difference,
+    "neg": _negative,
     "mul": _product,
     "div": _quotient,
     "pow": _power,
