@@ -47,10 +47,7 @@ def quatArrayTDist(q: ArrayLike, qarray: ArrayLike) -> Floats:
 
 
 def normalizeZRotation(qarray: ArrayLike) -> tuple[Floats, Floats]:
-    """Take the turn about z out of rotations.
-
-    Args:
-        qarray: Unit quaternions, shape (n, 4).
+    """Take the turn about z out of the unit quaternions ``qarray``, shape (n, 4).
 
     Returns:
         The quaternions after a further turn about z that brings them closest to none, shape (n, 4); and the angles

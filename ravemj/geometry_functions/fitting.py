@@ -54,14 +54,10 @@ def _fitted(points: Floats) -> tuple[Floats, float, float]:
 
 
 def intersectSegments(L0: ArrayLike, L1: ArrayLike) -> tuple[Floats, float]:
-    """Return where two lines in space come closest.
-
-    Args:
-        L0: Two points of the first line, shape (2, 3).
-        L1: Two points of the second line, shape (2, 3).
+    """Return where two lines in space, each given by two points, shape (2, 3), come closest.
 
     Returns:
-        The point halfway between them, shape (3,), and their distance, with a sign that tells the side.
+        The point halfway between ``L0`` and ``L1``, shape (3,), and their distance, with a sign that tells the side.
 
     Raises:
         ArgumentError: the lines are parallel.

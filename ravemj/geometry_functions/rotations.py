@@ -187,14 +187,10 @@ def _orthogonal(direction: Floats) -> Floats:
 
 
 def normalizeAxisRotation(axis: ArrayLike, quat: ArrayLike) -> tuple[float, Floats]:
-    """Return the turn about an axis after which a rotation is closest to none.
-
-    Args:
-        axis: The axis, shape (3,).
-        quat: The rotation, a unit quaternion.
+    """Return the turn about an axis after which the rotation ``quat``, a unit quaternion, is closest to none.
 
     Returns:
-        The angle [rad], and the quaternion that turns by ``quat``, then about the axis by that angle, shape (4,).
+        The angle [rad], and the quaternion that turns by ``quat``, then about ``axis`` by that angle, shape (4,).
     """
     direction, quaternion = arguments.vec3(axis, "axis"), arguments.wxyz(quat, "quat")
     along = sum(part * other for part, other in zip(direction, quaternion[1:], strict=True))

@@ -1,9 +1,9 @@
 """Values between two waypoints: polynomials through their values and derivatives.
 
 Values and derivatives at the two ends determine a polynomial of odd degree (Hermite's). Those of even degree are the
-integrals
-of one for the derivatives, from the first waypoint on; they reach the second one if its values fit. A curve is an array
-of coefficients of the powers of the part of the way, from 0 at the first waypoint to 1 at the second, lowest first.
+integrals of one for the derivatives, from the first waypoint on; they reach the second one if its values fit. A curve
+is an array of coefficients of the powers of the part of the way, from 0 at the first waypoint to 1 at the second,
+lowest first.
 """
 
 import math
