@@ -26,7 +26,7 @@ def matrixFromPoses(poses: ArrayLike) -> list[Floats]:
 
 def poseFromMatrix(transform: ArrayLike) -> Floats:
     """Return the pose, shape (7,), of the matrix ``transform``, shape (4, 4) or (3, 4)."""
-    matrix = arguments.affine(transform, "transform")
+    matrix = arguments.matrix(transform, 4, "transform")
     return np.array([*wxyz_from_rows(matrix[:, :3].tolist()), *matrix[:, 3]])
 
 

@@ -80,7 +80,7 @@ def quatFromRotationMatrix(rotation: ArrayLike) -> Floats:
 
 
 def _of_matrix(rotation: ArrayLike) -> Wxyz:
-    return wxyz_from_rows(arguments.rotation(rotation, "rotation").tolist())
+    return wxyz_from_rows(arguments.matrix(rotation, 3, "rotation").tolist())
 
 
 def axisAngleFromRotationMatrix(rotation: ArrayLike) -> Floats:

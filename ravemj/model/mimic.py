@@ -181,5 +181,8 @@ def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:
         return MimicJoint(index, equation, None, compiled, *limits)
     offset, ((name, slope),) = equation.affine.offset, equation.affine.slopes.items()
     leader = int(name.removeprefix("joint"))
-    multiple = Multiple(leader, slope, offset)
-    return MimicJoint(index, equation, multiple, lambda values: slope * values[leader] + offset, *limits)
+
+    def evaluate(values: Sequence[float]) -> float:
+        return slope * values[leader] + offset
+
+    return MimicJoint(index, equation, Multiple(leader, slope, offset), evaluate, *limits)
