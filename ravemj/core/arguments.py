@@ -41,7 +41,7 @@ def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable
 
 
 def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name: str, wanted: str = "") -> Kind:
-    """Return an argument that a user gave; errors call it ``name``, and what is wanted by the class or ``wanted``.
+    """Return an argument that a user gave; errors call it ``name``, and ask for ``wanted``, else for the class.
 
     Raises:
         ArgumentError: it is not of the class, or of one of the classes.

@@ -47,7 +47,7 @@ def clamp(axis: Axis, value: float) -> float:
 
 
 def with_fields(axes: Sequence[Axis], indices: Sequence[int], fields: Mapping[str, Sequence[float]]) -> list[Axis]:
-    """Return axes of which some have other fields of ``Axis``: by the name of each a value for each index."""
+    """Return axes, those at some indices with other fields: by the name of a field, its value for each index."""
     changed = list(axes)
     for place, index in enumerate(indices):
         changes: dict[str, Any] = {name: values[place] for name, values in fields.items()}

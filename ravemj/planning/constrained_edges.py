@@ -82,7 +82,7 @@ class ConstrainedEdges(Edges):
 
         They are so near that straight lines between them keep the constraint. The start is allowed.
         """
-        if not (self._manifold.has(end) and self.point(end)):
+        if not (self._manifold.has(end) and self.allowed(end)):
             return None
         points, pending = {0.0: start, 1.0: end}, deque([(0.0, 1.0)])
         while pending:
@@ -90,7 +90,7 @@ class ConstrainedEdges(Edges):
             if self._is_straight(points[low], points[high]):
                 continue
             middle = self._middle(points[low], points[high])
-            if middle is None or high - low < _SHORTEST or not self.point(middle):
+            if middle is None or high - low < _SHORTEST or not self.allowed(middle):
                 return None
             between = (low + high) / 2
             points[between] = middle

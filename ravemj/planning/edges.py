@@ -17,22 +17,10 @@ Allowed = Callable[[Floats], bool]
 
 
 class Edges:
-    """Tests straight lines in steps of the space's resolution.
-
-    Attributes:
-        space: Where the lines are.
-        allowed: Tests one configuration.
-        tests: How many configurations were tested.
-    """
+    """Tests straight lines in steps of the space's resolution; ``allowed`` tests one configuration."""
 
     def __init__(self, space: Space, allowed: Allowed) -> None:
         self.space, self.allowed = space, allowed
-        self.tests = 0
-
-    def point(self, configuration: Floats) -> bool:
-        """Return whether a configuration is allowed."""
-        self.tests += 1
-        return self.allowed(configuration)
 
     def towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
         """Return a step towards a configuration, no longer than a line of a tree, and whether it gets there."""
@@ -50,11 +38,7 @@ class Edges:
         Lines in collision are mostly so in their middle: halves are tested before quarters.
         """
         allowed = self.allowed
-        for part in bisection_order(self.space.steps(step)):
-            self.tests += 1
-            if not allowed(start + part * step):
-                return False
-        return True
+        return all(allowed(start + part * step) for part in bisection_order(self.space.steps(step)))
 
 
 @lru_cache(maxsize=1024)
@@ -72,7 +56,7 @@ def bisection_order(steps: int) -> tuple[float, ...]:
 def path_is_allowed(edges: Edges, points: Floats) -> bool:
     """Return whether a path of straight lines is allowed everywhere, shape (m, n)."""
     space = edges.space
-    return edges.point(points[0]) and all(
+    return edges.allowed(points[0]) and all(
         edges.line(points[index], space.difference(points[index + 1], points[index]))
         for index in range(len(points) - 1)
     )

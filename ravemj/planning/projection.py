@@ -32,9 +32,9 @@ def damped_step(error: Floats, jacobian: Floats) -> Floats:
 
 
 def project(values: Floats, error: Error, space: Space, threshold: float, most: int) -> tuple[int, Floats]:
-    """Return after how many steps, ``most`` at most, a configuration has a small error, and it; -1 if it never has.
+    """Return after how many steps a configuration has a small error, and it; -1 if it has none after ``most`` steps.
 
-    The limits of the space are kept. An error is small from the norm ``threshold`` on.
+    A small error has a norm of ``threshold`` at most. The limits of the space are kept.
     """
     for step in range(most + 1):
         lacking, jacobian = error(values)

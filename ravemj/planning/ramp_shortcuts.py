@@ -136,5 +136,5 @@ def _is_allowed(edges: Edges, piece: Piece) -> bool:
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
     return all(
-        edges.point(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest))
+        edges.allowed(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest))
     )

@@ -119,11 +119,7 @@ def connect(
 
 
 class _Growth:
-    """Trees from starts and goals.
-
-    Attributes:
-        trees: That from the starts, and that from the goals.
-    """
+    """Trees from starts and goals."""
 
     def __init__(self, edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats]) -> None:
         self._edges = edges

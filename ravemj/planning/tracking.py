@@ -20,13 +20,7 @@ Connects = Callable[[int, Floats, Floats], bool]
 
 
 class _Layer(NamedTuple):
-    """The configurations that reach one goal.
-
-    Attributes:
-        rows: The configurations, shape (k, n).
-        costs: Lengths of the shortest ways to them, shape (k,).
-        parents: Where these ways come from in the layer before, shape (k,).
-    """
+    """Configurations that reach one goal, lengths of the shortest ways to them, and places in the layer before."""
 
     rows: Floats
     costs: Floats

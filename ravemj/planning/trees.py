@@ -11,11 +11,7 @@ _FIRST_CAPACITY = 256
 
 
 class Tree:
-    """Configurations, each but the roots with a parent that a line leads to.
-
-    Attributes:
-        count: How many there are.
-    """
+    """Configurations, ``count`` of them, each but the roots with a parent that a line leads to."""
 
     def __init__(self, space: Space, roots: Iterable[Floats] = ()) -> None:
         self._space = space

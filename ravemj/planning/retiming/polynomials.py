@@ -13,19 +13,15 @@ _SLACK = 1e-12
 
 
 class Polynomial:
-    """Drives each segment by the polynomial through values and derivatives at its ends; accelerations there are 0.
-
-    Attributes:
-        degree: 3 or 5.
-    """
+    """Drives each segment by the polynomial through values and derivatives at its ends."""
 
     interpolation: str
     order: int
     merges: bool
 
     def _first_time(self, way: Floats, limits: Limits) -> float:
-        """Return the first time to try [s], for joints that all move."""
-        raise NotImplementedError
+        """Return the first time to try [s], for joints that all move: the least from rest to rest."""
+        return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: Limits) -> float:
         """Return the least time from rest to rest [s]."""
@@ -100,9 +96,6 @@ class Quintic(Polynomial):
     interpolation = "quintic"
     order = 2
     merges = True
-
-    def _first_time(self, way: Floats, limits: Limits) -> float:
-        return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: Limits) -> float:
         by_speed = 15 / 8 * way / limits.velocity

@@ -103,14 +103,7 @@ def _check_values(values: Floats, cubics: "_Cubics", limits: Limits) -> None:
 
 
 class _Rows(NamedTuple):
-    """A motion at the rows of a grid.
-
-    Attributes:
-        values: Shape (m, n).
-        velocities: Shape (m, n).
-        deltas: Times between the rows [s], shape (m - 1,).
-        is_point: Which rows are waypoints, shape (m,).
-    """
+    """A motion at the m rows of a grid; deltas are the times between them [s]."""
 
     values: Floats
     velocities: Floats
