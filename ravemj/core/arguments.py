@@ -15,11 +15,7 @@ Result = TypeVar("Result")
 
 
 def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable[Arguments, Result]]:
-    """Accept arguments under further names, which OpenRAVE's overloads use.
-
-    Args:
-        names: The argument that each further name stands for.
-    """
+    """Accept arguments under further names, which OpenRAVE's overloads use: ``also_named(further="argument")``."""
 
     def decorate(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
         @wraps(function)
@@ -45,16 +41,10 @@ def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable
 
 
 def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name: str, wanted: str = "") -> Kind:
-    """Return an argument that a user gave.
-
-    Args:
-        thing: The argument.
-        kind: The class, or the classes, that it may have.
-        name: What to call it in errors.
-        wanted: How errors call what is wanted; empty: by the class.
+    """Return an argument that a user gave; errors call it ``name``, and ask for ``wanted``, else for the class.
 
     Raises:
-        ArgumentError: it is something else.
+        ArgumentError: it is not of the class, or of one of the classes.
     """
     if not isinstance(thing, kind):
         given = "None" if thing is None else f"of type {type(thing).__name__}"
@@ -65,12 +55,7 @@ def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name:
 
 
 def checked_index(index: int, count: int, name: str) -> int:
-    """Return an index that a user gave.
-
-    Args:
-        index: The argument.
-        count: How many things there are.
-        name: What to call it in errors.
+    """Return an index that a user gave; errors call it ``name``.
 
     Raises:
         ArgumentError: it is no number, or not from 0 to ``count - 1``.

@@ -176,12 +176,9 @@ def checked_whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
 
 
 def checked_transform(transform: ArrayLike, name: str) -> Floats:
-    """Return a rigid transform as a 4x4 matrix.
+    """Return a rigid transform as a 4x4 matrix, given as one of 4x4 or 3x4, or as a pose [w, x, y, z, tx, ty, tz].
 
-    Args:
-        transform: Shape (4, 4) or (3, 4), or a pose [w, x, y, z, tx, ty, tz]. The quaternion is normalised, and so is
-            a rotation that is scaled, as in OpenRAVE.
-        name: The name of the argument, for error messages.
+    The quaternion is normalised, and so is a rotation that is scaled, as in OpenRAVE.
 
     Raises:
         ValueError: it has another shape; this is Python's own error, as in OpenRAVE.

@@ -12,11 +12,7 @@ Pair = tuple[int, int]
 def topological_order(items: Iterable[int], dependencies: Callable[[int], Iterable[int]]) -> list[int]:
     """Return items and their dependencies in topological order: each comes after its own dependencies.
 
-    Of the members of a cycle, the one that is visited first comes last.
-
-    Args:
-        items: In the order that they keep where dependencies allow it.
-        dependencies: Returns what an item depends on.
+    Items keep their order where dependencies allow it. Of the members of a cycle, the one visited first comes last.
     """
     order: list[int] = []
     met: set[int] = set()

@@ -18,12 +18,9 @@ class Handle(ApiObject):
     def __init__(
         self, release: Callable[_Arguments, object], *args: _Arguments.args, **kwargs: _Arguments.kwargs
     ) -> None:
-        """Make a handle.
+        """Make a handle that calls ``release`` with the other arguments once, at the end.
 
-        Args:
-            release: Called once, at the end. It has to be safe in any thread at any time: garbage collection calls it.
-            args: What it is called with.
-            kwargs: What it is called with, by name.
+        It has to be safe in any thread at any time: garbage collection calls it.
         """
         self._release = weakref.finalize(self, release, *args, **kwargs)
         self._release.atexit = False

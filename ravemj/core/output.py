@@ -33,11 +33,9 @@ def check_file(path: AnyPath) -> None:
 
 
 def check_folder(path: AnyPath, *patterns: str) -> None:
-    """Check that a folder can be written, without touching anything.
+    """Check that a folder of files can be written, without touching anything.
 
-    Args:
-        path: The folder; what is there may only be an older one of its kind.
-        patterns: Paths of the files that the folder consists of, for instance ``frame_*.png``.
+    What is there may only be an older one of its kind, with files of these patterns, such as ``frame_*.png``.
 
     Raises:
         OutputError: The folder around it is missing or cannot be written, or something else is there.

@@ -51,14 +51,12 @@ def unit_wxyz(values: ArrayLike, name: str) -> Wxyz:
     return normalize(quaternion)
 
 
-def rotation(values: ArrayLike, name: str) -> Floats:
-    """Return the 3x3 rotation in a matrix of 3x3, 3x4 or 4x4."""
-    return _matrix(values, name, 3)[:3, :3]
-
-
-def affine(values: ArrayLike, name: str) -> Floats:
-    """Return the upper three rows of a matrix of 3x4 or 4x4."""
-    return _matrix(values, name, 4)[:3, :4]
+def matrix(values: ArrayLike, columns: int, name: str) -> Floats:
+    """Return the three upper rows, and so many columns, of a matrix that may have more."""
+    given = checked_numbers(values, name)
+    if given.ndim != 2 or given.shape[0] < 3 or given.shape[1] < columns:
+        raise ValueError(f"{name}: has shape {given.shape}, and should have shape (4, 4)")
+    return given[:3, :columns]
 
 
 def table(values: ArrayLike, columns: int, name: str) -> Floats:
@@ -81,16 +79,9 @@ def pose(values: ArrayLike, name: str) -> Pose:
     """
     given = checked_numbers(values, name)
     if given.ndim == 2:
-        matrix = affine(given, name)
-        return Pose(vec3(matrix[:, 3], name), wxyz_from_rows(matrix[:, :3].tolist()))
+        rows = matrix(given, 4, name)
+        return Pose(vec3(rows[:, 3], name), wxyz_from_rows(rows[:, :3].tolist()))
     quaternion = wxyz(given, name)
     if not any(quaternion):
         raise ArgumentError(f"{name}: its quaternion is zero, which is not a rotation")
     return Pose(vec3(numbers(given, 7, name)[4:], name), normalize(quaternion))
-
-
-def _matrix(values: ArrayLike, name: str, columns: int) -> Floats:
-    matrix = checked_numbers(values, name)
-    if matrix.ndim != 2 or matrix.shape[0] < 3 or matrix.shape[1] < columns:
-        raise ValueError(f"{name}: has shape {matrix.shape}, and should have shape (4, 4)")
-    return matrix

@@ -9,83 +9,45 @@ from ravemj.geometry_functions import arguments
 
 
 def quatArrayTMult(qarray: ArrayLike, q: ArrayLike) -> Floats:
-    """Return each quaternion of shape (n, 4) times ``q``, shape (n, 4).
-
-    Args:
-        qarray: Quaternions, a row each, shape (n, 4).
-        q: A quaternion [w, x, y, z], shape (4,).
-    """
+    """Return each quaternion of ``qarray``, shape (n, 4), times the quaternion ``q``; shape (n, 4)."""
     return _products(arguments.table(qarray, 4, "qarray"), arguments.numbers(q, 4, "q"))
 
 
 def quatMultArrayT(q: ArrayLike, qarray: ArrayLike) -> Floats:
-    """Return ``q`` times each quaternion of shape (n, 4), shape (n, 4).
-
-    Args:
-        q: A quaternion [w, x, y, z], shape (4,).
-        qarray: Quaternions, a row each, shape (n, 4).
-    """
+    """Return the quaternion ``q`` times each one of ``qarray``, shape (n, 4); shape (n, 4)."""
     return _products(arguments.numbers(q, 4, "q"), arguments.table(qarray, 4, "qarray"))
 
 
 def quatArrayRotate(qarray: ArrayLike, trans: ArrayLike) -> Floats:
-    """Return a vector turned by unit quaternions, which are the columns of shape (4, n); shape (3, n).
-
-    Args:
-        qarray: Quaternions, a column each, shape (4, n).
-        trans: A point or direction, shape (3,).
-    """
+    """Return the vector ``trans`` turned by unit quaternions, the columns of ``qarray``, shape (4, n); shape (3, n)."""
     return quatArrayTRotate(checked_numbers(qarray, "qarray").T, trans).T.copy()
 
 
 def quatArrayTRotate(qarray: ArrayLike, trans: ArrayLike) -> Floats:
-    """Return a vector turned by unit quaternions of shape (n, 4), shape (n, 3).
-
-    Args:
-        qarray: Quaternions, a row each, shape (n, 4).
-        trans: A point or direction, shape (3,).
-    """
+    """Return the vector ``trans`` turned by each unit quaternion of ``qarray``, shape (n, 4); shape (n, 3)."""
     return _rotated(arguments.table(qarray, 4, "qarray"), arguments.numbers(trans, 3, "trans"))
 
 
 def quatRotateArrayT(q: ArrayLike, transarray: ArrayLike) -> Floats:
-    """Return vectors of shape (n, 3) turned by a unit quaternion, shape (n, 3).
-
-    Args:
-        q: A quaternion [w, x, y, z], shape (4,).
-        transarray: Points or directions, shape (n, 3).
-    """
+    """Return the vectors of ``transarray``, shape (n, 3), turned by the unit quaternion ``q``; shape (n, 3)."""
     return _rotated(arguments.numbers(q, 4, "q"), arguments.table(transarray, 3, "transarray"))
 
 
 def poseMultArrayT(pose: ArrayLike, posearray: ArrayLike) -> Floats:
-    """Return a pose times each pose of shape (n, 7), shape (n, 7).
-
-    Args:
-        pose: A pose [w, x, y, z, tx, ty, tz], shape (7,).
-        posearray: Poses, a row each, shape (n, 7).
-    """
+    """Return ``pose``, seven numbers, times each pose of ``posearray``, shape (n, 7); shape (n, 7)."""
     first, others = arguments.numbers(pose, 7, "pose"), arguments.table(posearray, 7, "posearray")
     positions = _rotated(first[:4], others[:, 4:]) + first[4:]
     return np.hstack([_products(first[:4], others[:, :4]), positions])
 
 
 def quatArrayTDist(q: ArrayLike, qarray: ArrayLike) -> Floats:
-    """Return half the angles [rad] between a unit quaternion and those of shape (n, 4), shape (n,).
-
-    Args:
-        q: A quaternion [w, x, y, z], shape (4,).
-        qarray: Quaternions, a row each, shape (n, 4).
-    """
+    """Return half the angles [rad] from the unit quaternion ``q`` to those of ``qarray``, shape (n, 4); shape (n,)."""
     cosines = np.abs(arguments.table(qarray, 4, "qarray") @ arguments.numbers(q, 4, "q"))
     return np.arccos(np.minimum(1.0, cosines))
 
 
 def normalizeZRotation(qarray: ArrayLike) -> tuple[Floats, Floats]:
-    """Take the turn about z out of rotations.
-
-    Args:
-        qarray: Unit quaternions, shape (n, 4).
+    """Take the turn about z out of the unit quaternions ``qarray``, shape (n, 4).
 
     Returns:
         The quaternions after a further turn about z that brings them closest to none, shape (n, 4); and the angles

@@ -31,12 +31,7 @@ def fitCircle(points: ArrayLike, geometric_refinement: bool = True) -> tuple[Flo
 
 
 def fitSphere(points: ArrayLike, geometric_refinement: bool = True) -> tuple[Floats, float, float]:
-    """Return the sphere that fits points of shape (n, 3) best; see ``fitCircle``.
-
-    Args:
-        points: Points [m], shape (n, 3).
-        geometric_refinement: Whether to refine the algebraic solution.
-    """
+    """Return the sphere that fits ``points`` of shape (n, 3) best; ``geometric_refinement`` as for ``fitCircle``."""
     del geometric_refinement
     return _fitted(_points(points, (3,), 4))
 
@@ -59,14 +54,10 @@ def _fitted(points: Floats) -> tuple[Floats, float, float]:
 
 
 def intersectSegments(L0: ArrayLike, L1: ArrayLike) -> tuple[Floats, float]:
-    """Return where two lines in space come closest.
-
-    Args:
-        L0: Two points of the first line, shape (2, 3).
-        L1: Two points of the second line, shape (2, 3).
+    """Return where two lines in space, each given by two points, shape (2, 3), come closest.
 
     Returns:
-        The point halfway between them, shape (3,), and their distance, with a sign that tells the side.
+        The point halfway between ``L0`` and ``L1``, shape (3,), and their distance, with a sign that tells the side.
 
     Raises:
         ArgumentError: the lines are parallel.

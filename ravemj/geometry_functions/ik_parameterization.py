@@ -62,12 +62,7 @@ def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: A
 
 
 def length_scales(kind: IkParameterizationType, factor: float) -> Floats:
-    """Return what multiplies the numbers of a goal in another unit of length: the factor for lengths, else 1.
-
-    Args:
-        kind: Type of the goal.
-        factor: Lengths in the other unit, divided by those here.
-    """
+    """Return what multiplies the numbers of a goal in another unit of length: the factor for lengths, else 1."""
     scales = np.full(goal_size(kind), factor)
     if kind == _Type.TranslationXYOrientation3D:
         scales[2:] = 1

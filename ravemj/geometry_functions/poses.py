@@ -10,13 +10,7 @@ from ravemj.geometry_functions import arguments
 
 
 def matrixFromPose(pose: ArrayLike) -> Floats:
-    """Return the matrix of a pose.
-
-    Args:
-        pose: Quaternion and position, shape (7,).
-
-    Returns:
-        Shape (4, 4).
+    """Return the matrix, shape (4, 4), of a pose, shape (7,).
 
     Raises:
         ValueError: there are fewer than seven numbers.
@@ -31,24 +25,13 @@ def matrixFromPoses(poses: ArrayLike) -> list[Floats]:
 
 
 def poseFromMatrix(transform: ArrayLike) -> Floats:
-    """Return the pose of a matrix.
-
-    Args:
-        transform: Shape (4, 4) or (3, 4).
-
-    Returns:
-        Quaternion and position, shape (7,).
-    """
-    matrix = arguments.affine(transform, "transform")
+    """Return the pose, shape (7,), of the matrix ``transform``, shape (4, 4) or (3, 4)."""
+    matrix = arguments.matrix(transform, 4, "transform")
     return np.array([*wxyz_from_rows(matrix[:, :3].tolist()), *matrix[:, 3]])
 
 
 def poseFromMatrices(transforms: ArrayLike) -> Floats:
-    """Return the poses, shape (n, 7), of matrices of 4x4 or 3x4.
-
-    Args:
-        transforms: Matrices, shape (n, 4, 4).
-    """
+    """Return the poses, shape (n, 7), of the matrices ``transforms``, shape (n, 4, 4) or (n, 3, 4)."""
     matrices = checked_numbers(transforms, "transforms")
     return np.array([poseFromMatrix(matrix) for matrix in matrices]).reshape(-1, 7)
 
@@ -94,26 +77,13 @@ def poseTransformPoints(pose: ArrayLike, points: ArrayLike) -> Floats:
 
 
 def transformPoints(T: ArrayLike, points: ArrayLike) -> Floats:
-    """Return points moved by an affine matrix.
-
-    Args:
-        T: Shape (k + 1, k + 1) or (k, k + 1); k is 3 in space.
-        points: Shape (n, k).
-
-    Returns:
-        Shape (n, k).
-    """
+    """Return ``points``, shape (n, k), moved by the affine matrix ``T``, shape (k + 1, k + 1) or (k, k + 1)."""
     linear, offset = _linear(T)
     return arguments.table(points, len(offset), "points") @ linear.T + offset
 
 
 def transformInversePoints(T: ArrayLike, points: ArrayLike) -> Floats:
-    """Return points moved by the inverse of a rigid matrix; arguments as for ``transformPoints``.
-
-    Args:
-        T: The matrix, shape (4, 4).
-        points: Points [m], shape (n, 3).
-    """
+    """Return ``points``, shape (n, k), moved by the inverse of the rigid matrix ``T``, as for ``transformPoints``."""
     linear, offset = _linear(T)
     return (arguments.table(points, len(offset), "points") - offset) @ linear
 
@@ -127,16 +97,14 @@ def _linear(matrix: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def transformLookat(lookat: ArrayLike, camerapos: ArrayLike, cameraup: ArrayLike) -> Floats:
-    """Return the pose of a camera that looks at a point.
+    """Return the pose, shape (4, 4), of a camera that looks at a point, with z towards it.
+
+    Without a direction to look along, z is that of the world; without a usable y axis, y of the world is tried, then x.
 
     Args:
         lookat: The point.
         camerapos: Where the camera is.
         cameraup: Where its y axis should point. Cameras of viewers have y down, so give them the direction down.
-
-    Returns:
-        Shape (4, 4), with z towards the point. Without a direction to look along it is z of the world; without a
-        usable y axis, y of the world is tried, then x.
     """
     position = np.array(arguments.vec3(camerapos, "camerapos"))
     forward = np.array(arguments.vec3(lookat, "lookat")) - position
@@ -158,18 +126,13 @@ TransformLookat = transformLookat
 def ComputePoseDistSqr(pose0: ArrayLike, pose1: ArrayLike, quatweight: float = 1.0) -> float:
     """Return the squared distance of two poses: of the positions, plus ``quatweight`` times that of the quaternions.
 
-    The sign of a quaternion does not count.
-
-    Args:
-        pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
-        pose1: The other, shape (7,).
-        quatweight: Weight of the rotations against the positions.
+    The sign of a quaternion does not count. The poses ``pose0`` and ``pose1`` have shape (7,).
     """
     return float(ComputePoseArrayDistSqr(pose0, [arguments.numbers(pose1, 7, "pose1")], quatweight)[0])
 
 
 def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: float = 1.0) -> Floats:
-    """Return the squared distances, shape (n,), of a pose to poses of shape (n, 7); see ``ComputePoseDistSqr``.
+    """Return the squared distances, shape (n,), of ``pose0`` to poses of shape (n, 7); see ``ComputePoseDistSqr``.
 
     Args:
         pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).

@@ -25,15 +25,12 @@ FEW_DIGITS = 0.1
 def quatFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
-    """Return the quaternion of a turn about an axis.
+    """Return the quaternion (w, x, y, z) of a turn about an axis, shape (4,).
 
     Args:
         axisangle: The axis times the angle [rad]; with ``angle``, the axis, of any length. Zero is no turn.
         angle: The angle [rad].
         axis: The axis, by OpenRAVE's other name of the first argument.
-
-    Returns:
-        (w, x, y, z), shape (4,).
 
     Example:
         >>> quatFromAxisAngle([0, 0, 1], numpy.pi / 2)
@@ -45,12 +42,9 @@ def quatFromAxisAngle(
 def rotationMatrixFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
-    """Return the matrix of a turn about an axis, shape (3, 3); arguments as for ``quatFromAxisAngle``.
+    """Return the matrix of a turn about an axis, shape (3, 3).
 
-    Args:
-        axisangle: Unit axis times angle [rad], shape (3,); with ``angle``, the axis alone.
-        angle: The angle [rad]; None: the length of the first argument.
-        axis: The axis, by OpenRAVE's other name of the first argument.
+    The arguments ``axisangle``, ``angle`` and ``axis`` are as for ``quatFromAxisAngle``.
     """
     return np.array(rows_from_wxyz(_turn(axisangle if axis is None else axis, angle)))
 
@@ -58,12 +52,9 @@ def rotationMatrixFromAxisAngle(
 def matrixFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
-    """Return the transform of a turn about an axis, shape (4, 4); arguments as for ``quatFromAxisAngle``.
+    """Return the transform of a turn about an axis, shape (4, 4).
 
-    Args:
-        axisangle: Unit axis times angle [rad], shape (3,); with ``angle``, the axis alone.
-        angle: The angle [rad]; None: the length of the first argument.
-        axis: The axis, by OpenRAVE's other name of the first argument.
+    The arguments ``axisangle``, ``angle`` and ``axis`` are as for ``quatFromAxisAngle``.
 
     Example:
         >>> T = matrixFromAxisAngle([0, 0, numpy.pi / 2])
@@ -80,20 +71,16 @@ def _turn(axis: ArrayLike | None, angle: float | None) -> Wxyz:
 
 
 def quatFromRotationMatrix(rotation: ArrayLike) -> Floats:
-    """Return the quaternion of a rotation matrix.
+    """Return the quaternion (w, x, y, z), shape (4,), of the matrix ``rotation``, shape (3, 3), (3, 4) or (4, 4).
 
-    Args:
-        rotation: Shape (3, 3), (3, 4) or (4, 4).
-
-    Returns:
-        (w, x, y, z), shape (4,). w is negative or not as OpenRAVE has it: never with a trace of 0 and more, else the
-        part that belongs to the largest diagonal element is positive.
+    w is negative or not as OpenRAVE has it: never with a trace of 0 and more, else the part that belongs to the largest
+    diagonal element is positive.
     """
     return np.array(_of_matrix(rotation))
 
 
 def _of_matrix(rotation: ArrayLike) -> Wxyz:
-    return wxyz_from_rows(arguments.rotation(rotation, "rotation").tolist())
+    return wxyz_from_rows(arguments.matrix(rotation, 3, "rotation").tolist())
 
 
 def axisAngleFromRotationMatrix(rotation: ArrayLike) -> Floats:
@@ -102,11 +89,7 @@ def axisAngleFromRotationMatrix(rotation: ArrayLike) -> Floats:
 
 
 def axisAngleFromQuat(quat: ArrayLike) -> Floats:
-    """Return the axis times the angle [rad], up to pi, of a quaternion of any length, shape (3,).
-
-    Args:
-        quat: A quaternion [w, x, y, z], shape (4,).
-    """
+    """Return the axis times the angle [rad], up to pi, of the quaternion ``quat`` of any length, shape (3,)."""
     return _axis_angle(arguments.wxyz(quat, "quat"))
 
 
@@ -120,10 +103,7 @@ def _axis_angle(quaternion: Wxyz) -> Floats:
 
 
 def rotationMatrixFromQuat(quat: ArrayLike) -> Floats:
-    """Return the rotation matrix of a quaternion, shape (3, 3).
-
-    Args:
-        quat: A quaternion [w, x, y, z], shape (4,).
+    """Return the rotation matrix, shape (3, 3), of the quaternion ``quat``.
 
     Raises:
         ArgumentError: the quaternion is far from unit length.
@@ -132,19 +112,12 @@ def rotationMatrixFromQuat(quat: ArrayLike) -> Floats:
 
 
 def rotationMatrixFromQArray(quatarray: ArrayLike) -> list[Floats]:
-    """Return the rotation matrices, each of shape (3, 3), of quaternions of shape (n, 4).
-
-    Args:
-        quatarray: Quaternions, a row each, shape (n, 4).
-    """
+    """Return the rotation matrices, each of shape (3, 3), of the quaternions ``quatarray``, shape (n, 4)."""
     return [rotationMatrixFromQuat(quat) for quat in arguments.table(quatarray, 4, "quatarray")]
 
 
 def matrixFromQuat(quat: ArrayLike) -> Floats:
-    """Return the transform that turns by a quaternion, shape (4, 4).
-
-    Args:
-        quat: A quaternion [w, x, y, z], shape (4,).
+    """Return the transform that turns by the quaternion ``quat``, shape (4, 4).
 
     Raises:
         ArgumentError: the quaternion is far from unit length.
@@ -167,11 +140,7 @@ MultiplyQuat = quatMult = quatMultiply
 
 
 def quatInverse(quat: ArrayLike) -> Floats:
-    """Return the quaternion that turns back: the conjugate, shape (4,).
-
-    Args:
-        quat: A quaternion [w, x, y, z], shape (4,).
-    """
+    """Return the quaternion that turns back: the conjugate of ``quat``, shape (4,)."""
     return np.array(conjugate(arguments.wxyz(quat, "quat")))
 
 
@@ -179,21 +148,12 @@ InvertQuat = quatInverse
 
 
 def quatRotate(q: ArrayLike, trans: ArrayLike) -> Floats:
-    """Return a vector turned by a unit quaternion, shape (3,).
-
-    Args:
-        q: A quaternion [w, x, y, z], shape (4,).
-        trans: A point or direction, shape (3,).
-    """
+    """Return the vector ``trans`` turned by the unit quaternion ``q``, shape (3,)."""
     return np.array(rotate(arguments.wxyz(q, "q"), arguments.vec3(trans, "trans")))
 
 
 def ExtractAxisFromQuat(quat: ArrayLike, iaxis: int) -> Floats:
-    """Return where a unit quaternion turns the x, y or z axis (``iaxis`` 0, 1, 2), shape (3,).
-
-    Args:
-        quat: A quaternion [w, x, y, z], shape (4,).
-        iaxis: 0, 1 or 2 for x, y or z.
+    """Return where the unit quaternion ``quat`` turns the x, y or z axis (``iaxis`` 0, 1, 2), shape (3,).
 
     Raises:
         ArgumentError: there is no such axis.
@@ -204,11 +164,9 @@ def ExtractAxisFromQuat(quat: ArrayLike, iaxis: int) -> Floats:
 
 
 def quatRotateDirection(sourcedir: ArrayLike, targetdir: ArrayLike) -> Floats:
-    """Return the smallest turn that brings one direction onto another, as a quaternion of shape (4,).
+    """Return the smallest turn that brings the direction ``sourcedir`` onto ``targetdir``, a quaternion, shape (4,).
 
-    Args:
-        sourcedir: Direction before, shape (3,).
-        targetdir: Direction after, shape (3,). Opposite directions are half a turn apart about an axis close to x.
+    Opposite directions are half a turn apart about an axis close to x.
     """
     source = np.array(arguments.vec3(sourcedir, "sourcedir"))
     target = np.array(arguments.vec3(targetdir, "targetdir"))
@@ -229,14 +187,10 @@ def _orthogonal(direction: Floats) -> Floats:
 
 
 def normalizeAxisRotation(axis: ArrayLike, quat: ArrayLike) -> tuple[float, Floats]:
-    """Return the turn about an axis after which a rotation is closest to none.
-
-    Args:
-        axis: The axis, shape (3,).
-        quat: The rotation, a unit quaternion.
+    """Return the turn about an axis after which the rotation ``quat``, a unit quaternion, is closest to none.
 
     Returns:
-        The angle [rad], and the quaternion that turns by ``quat``, then about the axis by that angle, shape (4,).
+        The angle [rad], and the quaternion that turns by ``quat``, then about ``axis`` by that angle, shape (4,).
     """
     direction, quaternion = arguments.vec3(axis, "axis"), arguments.wxyz(quat, "quat")
     along = sum(part * other for part, other in zip(direction, quaternion[1:], strict=True))
@@ -245,16 +199,13 @@ def normalizeAxisRotation(axis: ArrayLike, quat: ArrayLike) -> tuple[float, Floa
 
 
 def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshortarc: bool = True) -> Floats:
-    """Return the rotation on the way from one to another, at constant angular velocity.
+    """Return the rotation on the way from one to another at constant angular velocity, a unit quaternion, shape (4,).
 
     Args:
         quat0: Unit quaternion at t = 0.
         quat1: Unit quaternion at t = 1.
         t: From 0 to 1.
         forceshortarc: Whether to take the shorter way; else the way between the quaternions as they are.
-
-    Returns:
-        Unit quaternion, shape (4,). Of quaternions of other lengths, which mean nothing here, it has another one.
     """
     start, end = np.array(arguments.wxyz(quat0, "quat0")), np.array(arguments.wxyz(quat1, "quat1"))
     cosine = float(start @ end)
@@ -277,7 +228,7 @@ quatSlerp = InterpolateQuatSlerp
 def InterpolateQuatSquad(
     quat0: ArrayLike, quat1: ArrayLike, quat2: ArrayLike, quat3: ArrayLike, t: float, forceshortarc: bool = True
 ) -> Floats:
-    """Return the rotation on a smooth way from ``quat0`` to ``quat3``, drawn towards two others.
+    """Return the rotation on a smooth way between two, drawn towards two others: a unit quaternion, shape (4,).
 
     Args:
         quat0: Unit quaternion at t = 0.
@@ -286,9 +237,6 @@ def InterpolateQuatSquad(
         quat3: Unit quaternion at t = 1.
         t: From 0 to 1.
         forceshortarc: As for ``quatSlerp``.
-
-    Returns:
-        Unit quaternion, shape (4,).
     """
     outer = InterpolateQuatSlerp(quat0, quat3, t, forceshortarc)
     inner = InterpolateQuatSlerp(quat1, quat2, t, forceshortarc)

@@ -6,15 +6,9 @@ from ravemj.core.transforms import Floats, Ints
 
 
 def halton(first: int, count: int, dimensions: int) -> Floats:
-    """Return points of Halton's sequence, in the prime bases 2, 3, 5, ...; the point 0 is the origin.
+    """Return ``count`` points of Halton's sequence from the place ``first`` on, in the prime bases 2, 3, 5, ...
 
-    Args:
-        first: The place of the first point.
-        count: How many points.
-        dimensions: Of the cube.
-
-    Returns:
-        Shape (count, dimensions), from 0 to 1, without 1.
+    The point 0 is the origin. Shape (count, dimensions), from 0 to 1, without 1.
 
     Source: J. H. Halton, On the efficiency of certain quasi-random sequences of points, 1960.
     """

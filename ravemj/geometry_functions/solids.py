@@ -24,14 +24,7 @@ _ICOSAHEDRON = [
 
 
 def ComputeBoxMesh(extents: ArrayLike) -> tuple[Floats, Ints]:
-    """Return the mesh of a box.
-
-    Args:
-        extents: Half the edge lengths [m], shape (3,).
-
-    Returns:
-        Corners, shape (8, 3), and triangles, shape (12, 3).
-    """
+    """Return corners, shape (8, 3), and triangles, shape (12, 3), of a box of half edge lengths ``extents`` [m]."""
     signs = np.array(list(itertools.product((1.0, -1.0), repeat=3)))
     return signs * arguments.numbers(extents, 3, "extents"), np.array(_BOX_TRIANGLES)
 
@@ -67,16 +60,12 @@ def ComputeGeodesicSphereMesh(radius: float = 1.0, level: int = 2) -> tuple[Floa
     Returns:
         Points, shape (2 + 10 * 4**level, 3), and triangles, shape (20 * 4**level, 3).
     """
-    points = [np.array(corner) / np.linalg.norm(corner) for corner in _ICOSAHEDRON]
-    triangles = _faces(np.array(points))
+    points = np.array(_ICOSAHEDRON)
+    points /= np.linalg.norm(points[0])
+    triangles = np.array(_faces(points))
     for _ in range(level):
-        middles: dict[frozenset[int], int] = {}
-        divided: list[tuple[int, int, int]] = []
-        for a, b, c in triangles:
-            ab, bc, ca = (_middle(points, middles, frozenset(edge)) for edge in ((a, b), (b, c), (c, a)))
-            divided += [(a, ab, ca), (ab, b, bc), (ca, ab, bc), (ca, bc, c)]
-        triangles = divided
-    return radius * np.array(points), np.array(triangles)
+        points, triangles = refined(points, triangles)
+    return radius * points, triangles
 
 
 def _faces(corners: Floats) -> list[tuple[int, int, int]]:
@@ -90,23 +79,25 @@ def _faces(corners: Floats) -> list[tuple[int, int, int]]:
     return faces
 
 
-def _middle(points: list[Floats], middles: dict[frozenset[int], int], edge: frozenset[int]) -> int:
-    if edge not in middles:
-        middle = sum((points[corner] for corner in edge), np.zeros(3))
-        middles[edge] = len(points)
-        points.append(middle / np.linalg.norm(middle))
-    return middles[edge]
+def refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
+    """Return each triangle of a mesh as four, the new corners on the unit sphere, in the order in which edges come."""
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    unique, first, places = np.unique(edges, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    middles = corners[unique[order]].sum(axis=1)
+    middles /= np.linalg.norm(middles, axis=1, keepdims=True)
+    ab, bc, ca = (np.argsort(order)[places].reshape(-1, 3) + len(corners)).T
+    a, b, c = triangles.T
+    four = [(a, ab, ca), (ab, b, bc), (ca, ab, bc), (ca, bc, c)]
+    return np.concatenate([corners, middles]), np.stack([np.column_stack(three) for three in four], 1).reshape(-1, 3)
 
 
 def TSP(solutions: ArrayLike, distfn: Callable[[Floats, Floats], float]) -> Floats:
-    """Return points in an order in which each is followed by the nearest of the rest.
+    """Return points in an order in which each is followed by the nearest of the rest, shape (n, k).
 
     Args:
         solutions: The points, shape (n, k); the first one stays first.
         distfn: Distance of two points.
-
-    Returns:
-        The same points, shape (n, k).
     """
     ordered = checked_numbers(solutions, "solutions")
     for place in range(1, len(ordered) - 1):

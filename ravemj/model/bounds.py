@@ -1,4 +1,4 @@
-"""Axis-aligned bounding boxes of geometries and links."""
+"""Axis-aligned bounding boxes and triangles of geometries and links."""
 
 from collections.abc import Iterable, Sequence
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.geometry_functions import AABB
-from ravemj.model.scene import Bounds, Extent, Geometry, Link
+from ravemj.model.scene import Bounds, Extent, Geometry, Link, Mesh
 
 
 def geometry_bounds(geometry: Geometry, T_a_link: Floats) -> Bounds:
@@ -47,11 +47,9 @@ class BodyBounds:
         self._radii = np.array([(extent.disk, extent.ball) for _, _, extent in extents]).reshape(-1, 2)
 
     def at(self, T_a_links: Floats, chosen: Sequence[bool]) -> Bounds | None:
-        """Return the exact bounds in frame a; None if nothing has an extent.
+        """Return the exact bounds in frame a of the links that are chosen; None if nothing has an extent.
 
-        Args:
-            T_a_links: Poses of all links, shape (links, 4, 4).
-            chosen: For each link whether it takes part.
+        ``T_a_links`` are the poses of all links, shape (links, 4, 4).
         """
         poses = T_a_links[self._links] @ self._poses
         centres, rotations = (poses @ self._centres)[:, :3, 0], poses[:, :3, :3]
@@ -75,3 +73,12 @@ def enclosing_box(bounds: Bounds | None, T_a_origin: Floats) -> AABB:
     """Return bounds as OpenRAVE's box; None is a point at the origin of a frame."""
     low, high = bounds or (T_a_origin[:3, 3], T_a_origin[:3, 3])
     return AABB((low + high) / 2, (high - low) / 2)
+
+
+def links_triangles(links: Iterable[Link], T_a_links: Iterable[Floats]) -> Mesh:
+    """Return the geometries of links, each link at its pose, as triangles in frame a."""
+    return Mesh.merged(
+        geometry.triangulated().moved(T_a_link @ geometry.T_link_geometry.matrix())
+        for link, T_a_link in zip(links, T_a_links, strict=True)
+        for geometry in link.geometries
+    )

@@ -152,17 +152,15 @@ class BodyBuilder:
         return next((index for index, link in enumerate(self.links) if link.name.lower() == wanted), None)
 
     def freeze(self, diagnostics: Diagnostics) -> scene.KinBody:
-        """Settle the body.
-
-        Args:
-            diagnostics: Takes a warning for every value that is moved into its limits.
+        """Settle the body, with a warning for every value that is moved into its limits.
 
         Raises:
             SourceError: a number is not finite.
         """
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
-        mimics = resolve(_named(listed), diagnostics)
+        named = [NamedJoint(one.name, len(one.axes) if one.active else 0, one.equations, one.source) for one in listed]
+        mimics = resolve(named, diagnostics)
         decided = self._decide(listed, mimics)
         poses = [link.pose for link in self.links]
         joints = [
@@ -296,16 +294,6 @@ class BodyParts(NamedTuple):
     adjacent: list[tuple[int, int]]
     manipulators: list[ManipulatorBuilder]
     sensors: list[SensorBuilder]
-
-
-def _named(listed: Sequence[JointBuilder]) -> list[NamedJoint]:
-    named: list[NamedJoint] = []
-    dof = 0
-    for joint in listed:
-        count = len(joint.axes) if joint.active else 0
-        named.append(NamedJoint(joint.name, tuple(range(dof, dof + count)), joint.equations, joint.source))
-        dof += count
-    return named
 
 
 def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool) -> scene.Joint:

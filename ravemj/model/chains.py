@@ -1,17 +1,15 @@
-"""The graph of links and joints of a body: chains, loops, rigid parts.
+"""The graph of links and joints of a body: chains, loops, rigid parts, adjacent links.
 
 Joints are counted as in a body's list: active ones, then passive ones.
 """
 
 import itertools
-from collections import deque
-from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
 
-from ravemj.core.graphs import Pair, ShortestPaths, ordered_pair
-from ravemj.model.scene import Joint, KinBody, Manipulator
+from ravemj.core.graphs import Pair, ShortestPaths, connected_components, ordered_pair
+from ravemj.model.scene import KinBody, Manipulator
 
 
 class Connections:
@@ -106,8 +104,9 @@ def parents(body: KinBody, link: int) -> list[int]:
 
 def rigidly_attached(body: KinBody, link: int) -> list[int]:
     """Return a link and those that welds fix to it; the link is the first."""
-    reached = _search(body, link, lambda joint: joint.static)
-    return [link, *sorted(reached.keys() - {link})]
+    welds = ((joint.parent, joint.child) for joint in body.all_joints if joint.static)
+    parts = connected_components(len(body.links), welds)
+    return [link, *(other for other, part in enumerate(parts) if part == parts[link] and other != link)]
 
 
 def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
@@ -121,33 +120,6 @@ def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
     for joint in joints:
         links.append(sum(ends[joint]) - links[-1])
     return (links, joints) if joints else ([], [])
-
-
-def _search(body: KinBody, start: int, passes: Callable[[Joint], bool]) -> dict[int, tuple[int, int]]:
-    """Walk the graph breadth first; return for each link the joint and the link that it was reached by."""
-    neighbours: dict[int, list[tuple[int, int]]] = {}
-    for index, joint in enumerate(body.all_joints):
-        if passes(joint):
-            neighbours.setdefault(joint.parent, []).append((index, joint.child))
-            neighbours.setdefault(joint.child, []).append((index, joint.parent))
-    reached = {start: (-1, start)}
-    queue = deque([start])
-    while queue:
-        link = queue.popleft()
-        for joint, other in neighbours.get(link, ()):
-            if other not in reached:
-                reached[other] = (joint, link)
-                queue.append(other)
-    return reached
-
-
-def _way_back(reached: dict[int, tuple[int, int]], first: int, last: int) -> tuple[list[int], list[int]]:
-    links, joints = [last], list[int]()
-    while links[-1] != first:
-        joint, link = reached[links[-1]]
-        joints.append(joint)
-        links.append(link)
-    return links[::-1], joints[::-1]
 
 
 def joints_above(body: KinBody, link: int) -> tuple[int, ...]:
@@ -173,13 +145,17 @@ def dependency_order(body: KinBody) -> list[int]:
 
 def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
     """Return for each joint that closes a loop the loop: links, each with the joint that leads on from it."""
-    loops: list[list[tuple[int, int]]] = []
-    for index, joint in enumerate(body.all_joints):
-        if not joint.places_child:
-            reached = _search(body, joint.child, lambda other: other.places_child)
-            if joint.parent in reached:
-                links, joints = _way_back(reached, joint.child, joint.parent)
-                loops.append(list(zip(links, [*joints, index], strict=True)))
+    joints, loops = body.all_joints, list[list[tuple[int, int]]]()
+    for index, joint in enumerate(joints):
+        if joint.places_child:
+            continue
+        up, down = list(joints_above(body, joint.child)), list(joints_above(body, joint.parent))
+        while up and down and up[-1] == down[-1]:  # above the link where the ways from both ends meet
+            del up[-1], down[-1]
+        links = [joint.child, *(joints[one].parent for one in up)]
+        if links[-1] == (joints[down[-1]].parent if down else joint.parent):  # else both hang on different roots
+            links += [joints[one].child for one in reversed(down)]
+            loops.append(list(zip(links, [*up, *reversed(down), index], strict=True)))
     return loops
 
 
@@ -216,3 +192,21 @@ def independent_links(body: KinBody, manipulator: Manipulator) -> list[int]:
     """Return the links that neither the arm nor the gripper of a manipulator moves."""
     own = {*manipulator.arm_dofs, *manipulator.gripper_dofs}
     return [link for link in range(len(body.links)) if not dofs_moving(body, link) & own]
+
+
+def adjacent_pairs(body: KinBody) -> frozenset[Pair]:
+    """Return the pairs of adjacent links, which OpenRAVE's self-collision test leaves out.
+
+    These are pairs that a joint joins, or whose shortest path of joints has at most one that moves, pairs that no chain
+    of joints connects, pairs that ``<adjacent>`` names, and pairs with a link without shapes. A body can do without the
+    first three.
+
+    Returns:
+        Pairs of link indices, the smaller one first.
+    """
+    if len(body.links) < 2:
+        return frozenset()
+    links = range(len(body.links))
+    joined = connections(body).close_pairs if body.joined_links_adjacent else frozenset[Pair]()
+    empty = {ordered_pair(i, j) for i in links if not body.links[i].geometries for j in links if i != j}
+    return joined | empty | set(body.adjacent)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats, Pose
-from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.chains import adjacent_pairs
 from ravemj.model.inertia import principal_frame
 from ravemj.model.joints import poses_at
 from ravemj.model.mimic import MimicJoints
@@ -58,13 +58,7 @@ class Difference(NamedTuple):
 
 
 def compare(first: Scene, second: Scene, tolerance: float = TOLERANCE) -> list[Difference]:
-    """Compare two scenes body by body, in their order.
-
-    Args:
-        first: A scene.
-        second: Another one.
-        tolerance: Of all numbers but those of meshes, relative to numbers above 1.
-    """
+    """Compare two scenes body by body, in their order; the tolerance of numbers is relative to those above 1."""
     return list(_Comparison(tolerance).scenes(first, second))
 
 
@@ -236,17 +230,10 @@ class _Comparison:
             yield max(found, key=lambda difference: difference.error or math.inf)
 
     def _poses(self, part: str, quantity: str, first: Pose | None, second: Pose | None) -> Iterator[Difference]:
-        if first != second:
-            matrices = (None if pose is None else pose.matrix() for pose in (first, second))
-            yield from self._optional(part, quantity, *matrices)
-
-    def _optional(
-        self, part: str, quantity: str, first: ArrayLike | None, second: ArrayLike | None
-    ) -> Iterator[Difference]:
         if first is None or second is None:
             yield from self._same(part, quantity, first is None, second is None)
-        else:
-            yield from self._near(part, quantity, first, second)
+        elif first != second:
+            yield from self._near(part, quantity, first.matrix(), second.matrix())
 
     def _meshes(self, part: str, quantity: str, first: Mesh, second: Mesh) -> Iterator[Difference]:
         if first is second or first == second:
@@ -279,12 +266,7 @@ class _Comparison:
 
 
 def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
-    """Return the poses of the links of a body in a configuration, its root links being where they are.
-
-    Args:
-        body: The body.
-        dof_values: Its joint values [rad or m].
-    """
+    """Return the poses of the links of a body at joint values [rad or m], its root links being where they are."""
     rest = iter(dof_values)
     values = [[next(rest) for _ in joint.axes] for joint in body.joints]
     values += [[axis.value for axis in joint.axes] for joint in body.passive_joints]

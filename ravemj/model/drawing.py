@@ -185,11 +185,11 @@ def box(center: Floats, extents: Floats, rgba: Floats) -> Primitives:
 
 
 def plane(transform: Floats, extents: Floats, texture: Floats) -> Primitives:
-    """Return an image on a rectangle.
+    """Return an image on a rectangle in the plane of x and y of a frame, its centre in the origin.
 
     Args:
-        transform: The rectangle lies in the plane of x and y of this frame, its centre in the origin; 4x4.
-        extents: Half of its sides along x and y, (2,) [m].
+        transform: Pose of the frame, shape (4, 4).
+        extents: Half of the sides along x and y [m], shape (2,).
         texture: Colours (H, W, 4) in 0..1. Columns run along +x, rows along +y.
     """
     cells = _averaged(_averaged(texture, 0), 1)

@@ -1,27 +1,18 @@
 """Joints that begin or cease to follow others."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from ravemj.errors import ArgumentError, Diagnostics
 from ravemj.model.manipulators import ManipulatorBuilder, freeze_manipulator
 from ravemj.model.mimic import Equations, NamedJoint, resolve
-from ravemj.model.scene import Joint, KinBody, Manipulator
+from ravemj.model.scene import KinBody, Manipulator
 
 
 def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[KinBody, list[int]]:
-    """Return a body where one joint follows by other equations.
+    """Return a body where one joint follows by other equations, and for each of its joints the index that it had.
 
-    As in OpenRAVE (gap-15), an active joint that follows becomes the last passive one, and one that ceases to follow
-    becomes the last active one. So DOFs are numbered anew.
-
-    Args:
-        body: The body.
-        index: Index of the joint among the active joints followed by the passive ones.
-        equations: How it should follow; without a position it follows none.
-
-    Returns:
-        The body, and for each of its joints the index that it had.
+    As in OpenRAVE (gap-15), an active joint that follows becomes the last passive one, and one that ceases to follow,
+    since no position is given, becomes the last active one. So DOFs are numbered anew.
 
     Raises:
         ArgumentError: these equations cannot be used.
@@ -34,32 +25,23 @@ def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Kin
         passive.remove(index)
         active.append(index)
     order = active + passive
-    written = {place: _written(joint) for place, joint in enumerate(body.all_joints)}
-    written[index] = equations if equations.position else None
-    joints = _resolved([body.all_joints[place] for place in order], [written[place] for place in order], len(active))
-    changed = replace(body, joints=joints[: len(active)], passive_joints=joints[len(active) :])
-    manipulators = tuple(_found_again(one, body, changed) for one in body.manipulators)
-    return replace(changed, manipulators=manipulators), order
-
-
-def _written(joint: Joint) -> Equations | None:
-    mimic = joint.mimic
-    return None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)
-
-
-def _resolved(joints: Sequence[Joint], written: Sequence[Equations | None], active: int) -> tuple[Joint, ...]:
-    """Return joints with their equations, of which the first ones have DOFs."""
     named: list[NamedJoint] = []
-    dof = 0
-    for place, (joint, equations) in enumerate(zip(joints, written, strict=True)):
-        count = len(joint.axes) if place < active else 0
-        named.append(NamedJoint(joint.name, tuple(range(dof, dof + count)), equations, joint.source))
-        dof += count
+    for place in order:
+        joint = body.all_joints[place]
+        mimic = joint.mimic
+        written = None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)
+        if place == index:
+            written = equations if equations.position else None
+        dof = len(joint.axes) if place in active else 0
+        named.append(NamedJoint(joint.name, dof, written, joint.source))
     diagnostics = Diagnostics()
     mimics = resolve(named, diagnostics)
     for finding in diagnostics:
         raise ArgumentError(finding.message)
-    return tuple(replace(joint, mimic=mimics.get(place)) for place, joint in enumerate(joints))
+    joints = tuple(replace(body.all_joints[place], mimic=mimics.get(new)) for new, place in enumerate(order))
+    changed = replace(body, joints=joints[: len(active)], passive_joints=joints[len(active) :])
+    manipulators = tuple(_found_again(one, body, changed) for one in body.manipulators)
+    return replace(changed, manipulators=manipulators), order
 
 
 def _found_again(arm: Manipulator, before: KinBody, body: KinBody) -> Manipulator:

@@ -39,14 +39,9 @@ def of_arm(body: KinBody, arm: Manipulator) -> str:
 
 
 def of_inverse_kinematics(body: KinBody, arm: Manipulator, kind: str, *, tool: bool, direction: bool) -> str:
-    """Return the hash of what a solver of inverse kinematics depends on.
+    """Return the hash of what a solver of inverse kinematics for a type of goal depends on.
 
-    Args:
-        body: The robot.
-        arm: The manipulator.
-        kind: The type of goal.
-        tool: Whether the tool in the effector counts.
-        direction: Whether the direction of the tool counts.
+    ``tool`` and ``direction`` say whether the tool in the effector and the direction of the tool count.
     """
     placed = (arm.T_effector_tool,) if tool else ()
     return _digest(kind, _way(body, arm), placed, (arm.direction,) if direction else ())

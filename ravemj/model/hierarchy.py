@@ -49,22 +49,17 @@ class Hierarchy(NamedTuple):
 
 
 def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
-    """Direct the joints of a body.
-
-    Args:
-        static_links: For each link, whether it is static.
-        edges: The joints: active ones in DOF order, then passive ones.
-    """
+    """Direct the joints of a body: active ones in DOF order, then passive ones."""
     if not edges:
         return Hierarchy((), ())
     has_dofs = any(edge.active for edge in edges)  # without any, OpenRAVE makes no depths
     depths = _depths(static_links, edges) if has_dofs else [_UNREACHED] * len(static_links)
     swapped = tuple(_is_swapped(edge.links, static_links, depths, has_dofs=has_dofs) for edge in edges)
     ends = [tuple(reversed(edge.links)) if swap else edge.links for edge, swap in zip(edges, swapped, strict=True)]
-    levels = [_level(links, depths) for links in ends]
+    levels = [tuple(sorted(depths[link] for link in links)) for links in ends]
     grounded = [static_links[first] or static_links[second] for first, second in ends]
     placed_by: dict[int, int] = {}
-    order = _leaders_first(_acting_order(levels, grounded), edges)
+    order = topological_order(_acting_order(levels, grounded), lambda index: edges[index].follows)
     for index in order:
         parent, child = ends[index]
         free = child != 0 and child not in placed_by
@@ -73,17 +68,12 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
     return Hierarchy(swapped, _parents_first(set(placed_by.values()), ends, order))
 
 
-def _level(links: tuple[int, ...], depths: Sequence[int]) -> tuple[int, int]:
-    """Return the depths of a joint's links, the smaller one first: joints on lower levels act first."""
-    first, second = sorted(depths[link] for link in links)
-    return first, second
-
-
-def _acting_order(levels: Sequence[tuple[int, int]], grounded: Sequence[bool]) -> list[int]:
+def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -> list[int]:
     """Return the joints in the order in which OpenRAVE lets them act.
 
-    A joint waits for all joints on lower levels, but one at a static link not for others at static links. Those that
-    wait no longer queue up in the order of the file.
+    The level of a joint is the depths of its links, the smaller one first. A joint waits for all joints on lower
+    levels, but one at a static link not for others at static links. Those that wait no longer queue up in the order of
+    the file.
     """
     queue, order = deque[int](), list[int]()
     waiting = list(range(len(levels)))
@@ -96,11 +86,6 @@ def _acting_order(levels: Sequence[tuple[int, int]], grounded: Sequence[bool]) -
         waiting = [index for index in waiting if index not in set(ready)] if ready else waiting
         order.append(queue.popleft())
     return order
-
-
-def _leaders_first(order: Sequence[int], edges: Sequence[Edge]) -> list[int]:
-    """Move each joint behind the passive joints that it follows."""
-    return topological_order(order, lambda index: edges[index].follows)
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:

@@ -34,13 +34,9 @@ class Inertias:
         )
 
     def center_of_mass(self, T_a_links: Floats) -> Floats:
-        """Return the common centre of mass of links, in frame a.
+        """Return the common centre of mass of links [m] in frame a, shape (3,); NaN where nothing has a mass.
 
-        Args:
-            T_a_links: Poses of the links, shape (links, 4, 4).
-
-        Returns:
-            The point [m], shape (3,); NaN where nothing has a mass.
+        ``T_a_links`` are their poses, shape (links, 4, 4).
         """
         coms = np.einsum("nij,nj->ni", T_a_links[:, :3, :3], self.coms) + T_a_links[:, :3, 3]
         mass = self.masses.sum()

@@ -1,7 +1,8 @@
-"""Joint kinematics: poses from joint values, joint values from poses, and differences of joint values."""
+"""Joint kinematics: poses from joint values, and back; differences of joint values; another zero of them."""
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,7 @@ from ravemj.core.transforms import (
     conjugate,
     dot,
     multiply,
+    pose_of,
     rotate,
     scale,
     wxyz_from_axis_angle,
@@ -29,23 +31,18 @@ ROUNDING = 1e-12
 
 
 def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Sequence[float]]) -> None:
-    """Place the child link of each joint, in order: forward kinematics in place.
+    """Place the child link of each joint in ``poses``, the world poses of all links: forward kinematics in place.
 
-    Args:
-        poses: World poses of all links.
-        joints: The joints that place a link, parents before children.
-        values: The values of each joint's axes [rad or m].
+    Parents come before children. ``values`` are those of each joint's axes [rad or m].
     """
     for joint, joint_values in zip(joints, values, strict=True):
         poses[joint.child] = poses[joint.parent] @ relative_pose(joint, joint_values)
 
 
 def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
-    """Return the poses of all links at given joint values, with the root links where they are.
+    """Return the poses of all links, with the root links where they are.
 
-    Args:
-        body: The body.
-        values: The values of each joint's axes [rad or m], active joints and then passive ones.
+    ``values`` are those of each joint's axes [rad or m], active joints and then passive ones.
     """
     poses = [link.T_world_link for link in body.links]
     joints = body.all_joints
@@ -117,14 +114,9 @@ def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
 
 
 def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
-    """Return the values of a joint that follow from the poses of its links.
+    """Return the values [rad or m] of a joint's axes that follow from the pose ``now`` of its child in its parent.
 
-    Args:
-        joint: The joint.
-        now: ``T_parent_child`` as it is.
-
-    Returns:
-        A value [rad or m] for each axis. An angle is at most half a turn; a joint with two axes counts as unmoved.
+    An angle is at most half a turn; a joint with two axes counts as unmoved.
     """
     if joint.static:
         return tuple(0.0 for _ in joint.axes)
@@ -179,3 +171,28 @@ def value_differences(body: KinBody, dofs: Iterable[int], values: Floats, others
 def wrapped_angle(angle: ArrayLike) -> Floats:
     """Return angles with full turns added so that they lie in (-pi, pi], shape as given."""
     return np.pi - (np.pi - np.asarray(angle, dtype=np.float64)) % (2 * np.pi)
+
+
+def rezeroed(body: KinBody, T_world_links: Floats, values: Sequence[float]) -> KinBody:
+    """Return a body whose DOFs are 0 where its links stand; limits keep their numbers, and passive joints their zero.
+
+    ``T_world_links`` says where these are, shape (links, 4, 4), and ``values`` what the DOFs have there [rad or m].
+    """
+    poses = [pose_of(transform) for transform in T_world_links]
+    links = tuple(replace(link, T_world_link=pose) for link, pose in zip(body.links, poses, strict=True))
+    rest = iter(values)
+    joints = tuple(
+        _rezeroed(joint, poses[joint.parent].inverse() @ poses[joint.child], [next(rest) for _ in joint.axes])
+        for joint in body.joints
+    )
+    return replace(body, links=links, joints=joints)
+
+
+def _rezeroed(joint: Joint, T_parent_child: Pose, values: Sequence[float]) -> Joint:
+    if joint.static:
+        return joint
+    axes = tuple(
+        replace(axis, direction=direction, reference=0.0, value=0.0)
+        for axis, direction in zip(joint.axes, directions_at(joint, values), strict=True)
+    )
+    return replace(joint, T_parent_child=T_parent_child, axes=axes)

@@ -53,13 +53,7 @@ def clamp(axis: Axis, value: float) -> float:
 
 
 def with_fields(axes: Sequence[Axis], indices: Sequence[int], fields: Mapping[str, Sequence[float]]) -> list[Axis]:
-    """Return axes with other limits, weights or resolutions.
-
-    Args:
-        axes: The axes.
-        indices: Which of them change.
-        fields: By the name of the field of ``Axis``: a value for each index.
-    """
+    """Return axes, those at some indices with other fields: by the name of a field, its value for each index."""
     changed = list(axes)
     for place, index in enumerate(indices):
         changes: dict[str, Any] = {name: values[place] for name, values in fields.items()}

@@ -55,19 +55,11 @@ def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnosti
 def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
     """Return the joints from one link up the tree to another, in that order; None if there is no such way.
 
-    Returns:
-        Indices into the active joints followed by the passive ones.
+    Joints are counted as the active ones followed by the passive ones.
     """
-    joints = body.all_joints
-    placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
-    way: list[int] = []
-    link = effector
-    while link != base:
-        if link not in placing:
-            return None
-        way.append(placing[link])
-        link = joints[placing[link]].parent
-    return way[::-1]
+    above = chains.joints_above(body, effector)
+    links = [effector, *(body.all_joints[index].parent for index in above)]
+    return [*reversed(above[: links.index(base)])] if base in links else None
 
 
 def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:

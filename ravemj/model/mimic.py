@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import accumulate
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -28,26 +29,21 @@ class NamedJoint(NamedTuple):
 
     Attributes:
         name: Its name.
-        dofs: Its DOFs; none for a passive joint.
+        dof: How many DOFs it has; 0 for a passive joint.
         equations: How it follows others, or None.
         source: Where it stands.
     """
 
     name: str
-    dofs: tuple[int, ...]
+    dof: int
     equations: Equations | None
     source: Source
 
 
 def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int, Mimic]:
-    """Return how each mimic joint follows the others.
+    """Return how each mimic joint follows the others, by its index; nothing where any equation is wrong.
 
-    Args:
-        joints: Active joints in DOF order, then passive ones.
-        diagnostics: Takes an error text for every equation that cannot be used.
-
-    Returns:
-        By index of the joint; empty where any equation is wrong: OpenRAVE then drops all of them.
+    OpenRAVE then drops all of them. Joints are active ones in DOF order, then passive ones.
     """
     if not any(joint.equations for joint in joints):
         return {}
@@ -61,7 +57,7 @@ def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int,
 
     mimics: dict[int, Expression] = {}
     variables = joint_variables([joint.name for joint in joints])
-    known = {f"joint{index}" for index, joint in enumerate(joints) if len(joint.dofs) <= 1}
+    known = {f"joint{index}" for index, joint in enumerate(joints) if joint.dof <= 1}
     for index, joint in enumerate(joints):
         text = joint.equations.position if joint.equations is not None else ""
         if not text:
@@ -74,7 +70,19 @@ def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int,
             diagnostics.warn("bad-mimic", f"joint '{joint.name}' cannot follow: {problem}", joint.source, hint)
     if len(mimics) < sum(1 for joint in joints if joint.equations and joint.equations.position):
         return {}
-    return {index: _mimic(index, joints, mimics, diagnostics) for index in mimics}
+    ends = list(accumulate(joint.dof for joint in joints))
+    dofs = [range(end - joint.dof, end) for joint, end in zip(joints, ends, strict=True)]
+    found: dict[int, Mimic] = {}
+    for index, expression in mimics.items():
+        joint, followed = joints[index], _followed(index, mimics)
+        equations = joint.equations or Equations()
+        if index in followed:
+            message = f"joint '{joint.name}' follows itself through others; none of them moves"
+            diagnostics.warn("bad-mimic", message, joint.source)
+            found[index] = Mimic(*equations, None, ())
+        else:
+            found[index] = Mimic(*equations, expression, tuple(sorted({dof for one in followed for dof in dofs[one]})))
+    return found
 
 
 def leaders(expression: "Expression") -> tuple[int, ...]:
@@ -82,26 +90,15 @@ def leaders(expression: "Expression") -> tuple[int, ...]:
     return tuple(int(name.removeprefix("joint")) for name in expression.variables)
 
 
-def _mimic(
-    index: int, joints: Sequence[NamedJoint], mimics: "dict[int, Expression]", diagnostics: Diagnostics
-) -> Mimic:
-    joint = joints[index]
-    equations = joint.equations or Equations()
-    dofs: set[int] = set()
-    pending, seen = [index], set[int]()
+def _followed(index: int, mimics: "dict[int, Expression]") -> set[int]:
+    """Return the joints that a mimic joint follows, directly or through others."""
+    pending, followed = [index], set[int]()
     while pending:
         current = pending.pop()
-        for leader in leaders(mimics[current]) if current in mimics else ():
-            if leader == index:
-                message = f"joint '{joint.name}' follows itself through others; none of them moves"
-                diagnostics.warn("bad-mimic", message, joint.source)
-                return Mimic(equations.position, equations.velocity, equations.acceleration, None, ())
-            dofs.update(joints[leader].dofs)
-            if leader not in seen:
-                seen.add(leader)
-                pending.append(leader)
-    texts = (equations.position, equations.velocity, equations.acceleration)
-    return Mimic(*texts, mimics[index], tuple(sorted(dofs)))
+        fresh = set(leaders(mimics[current]) if current in mimics else ()) - followed
+        followed |= fresh
+        pending += fresh
+    return followed
 
 
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
@@ -157,11 +154,9 @@ class MimicJoints:
         self.joints = [_prepared(index, joints) for index in evaluation_order(mimics)]
 
     def evaluate(self, values: list[float], *, clamp: bool = True) -> None:
-        """Compute the values of the mimic joints from those of the others, in place.
+        """Compute the values of the mimic joints from those of the others, in place, within limits if ``clamp``.
 
-        Args:
-            values: The first value of each joint [rad or m], active joints and then passive ones.
-            clamp: Whether mimic joints stop at their limits.
+        ``values`` are the first ones of each joint [rad or m], active joints and then passive ones.
         """
         for index, _, _, evaluate, lower, upper in self.joints:
             value = evaluate(values)
@@ -180,22 +175,14 @@ class MimicJoints:
 def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:
     equation, axis = joints[index].equation, joints[index].axes[0]
     assert equation is not None
-    lower, upper = (-math.inf, math.inf) if axis.circular else (axis.lower, axis.upper)
-    multiple = _multiple(equation)
-    return MimicJoint(index, equation, multiple, _function(equation, multiple, len(joints)), lower, upper)
+    limits = (-math.inf, math.inf) if axis.circular else (axis.lower, axis.upper)
+    if equation.affine is None or len(equation.affine.slopes) != 1:
+        compiled = equation.compiled([f"joint{number}" for number in range(len(joints))])
+        return MimicJoint(index, equation, None, compiled, *limits)
+    offset, ((name, slope),) = equation.affine.offset, equation.affine.slopes.items()
+    leader = int(name.removeprefix("joint"))
 
+    def evaluate(values: Sequence[float]) -> float:
+        return slope * values[leader] + offset
 
-def _multiple(equation: "Expression") -> Multiple | None:
-    affine = equation.affine
-    if affine is None or len(affine.slopes) != 1:
-        return None
-    ((name, slope),) = affine.slopes.items()
-    return Multiple(int(name.removeprefix("joint")), slope, affine.offset)
-
-
-def _function(equation: "Expression", multiple: Multiple | None, count: int) -> Callable[[Sequence[float]], float]:
-    """Return a fast form of an equation over the first values of that many joints."""
-    if multiple is None:
-        return equation.compiled([f"joint{number}" for number in range(count)])
-    leader, slope, offset = multiple
-    return lambda values: slope * values[leader] + offset
+    return MimicJoint(index, equation, Multiple(leader, slope, offset), evaluate, *limits)

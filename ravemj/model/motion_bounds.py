@@ -50,11 +50,7 @@ def _joint_reach(body: KinBody, joint: Joint) -> Floats:
 def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
     """Return the greatest distance of the shapes of a link and its descendants from a point, perpendicular to an axis.
 
-    Args:
-        body: The body.
-        link: The link that point and axis are fixed to.
-        point: In the link's frame.
-        axis: Unit vector through the point in the link's frame, along which nothing counts; zero for none.
+    Point and axis, a unit vector or zero for none, are fixed to the link and in its frame.
     """
     across = np.eye(3) - np.outer(axis, axis)
     found = [-math.inf]

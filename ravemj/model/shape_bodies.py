@@ -32,12 +32,10 @@ def shape_geometry(shape: Shape, T_link_geometry: Pose, *, visible: bool) -> Geo
 
 
 def box_geometries(boxes: Floats, *, visible: bool) -> list[Geometry]:
-    """Return boxes.
+    """Return boxes, drawn or not.
 
-    Args:
-        boxes: Centre and half extents [m], shape (n, 6); or centre, the directions of the box's x, y and z axes, and
-            half extents, shape (n, 15).
-        visible: Whether they are drawn.
+    Each row of numbers is centre and half extents [m], shape (n, 6); or centre, the directions of the box's x, y and z
+    axes, and half extents, shape (n, 15).
     """
     return [
         shape_geometry(Box((ex, ey, ez)), Pose((x, y, z), _rotation(axes)), visible=visible)
@@ -51,12 +49,7 @@ def _rotation(axes: Sequence[float]) -> tuple[float, float, float, float]:
 
 
 def sphere_geometries(spheres: Floats, *, visible: bool) -> list[Geometry]:
-    """Return spheres.
-
-    Args:
-        spheres: Centre and radius [m], shape (n, 4).
-        visible: Whether they are drawn.
-    """
+    """Return spheres, drawn or not: each row of numbers is centre and radius [m], shape (n, 4)."""
     return [shape_geometry(Sphere(radius), Pose((x, y, z)), visible=visible) for x, y, z, radius in spheres.tolist()]
 
 

@@ -48,13 +48,7 @@ class Manifold(NamedTuple):
 
 
 class ConstrainedEdges(Edges):
-    """Tests lines that are bent onto a constraint, in steps of the space's resolution.
-
-    Args:
-        space: The configuration space.
-        allowed: The test of one configuration; it need not test the constraint.
-        manifold: The configurations that keep the constraint.
-    """
+    """Tests lines that are bent onto a constraint, in steps of the space's resolution; ``allowed`` need not test it."""
 
     def __init__(self, space: Space, allowed: Allowed, manifold: Manifold) -> None:
         super().__init__(space, allowed)
@@ -84,16 +78,11 @@ class ConstrainedEdges(Edges):
         return self.bent(start, start + step) is not None
 
     def bent(self, start: Floats, end: Floats) -> Floats | None:
-        """Return the configurations along a bent line, so near that straight lines between them keep the constraint.
+        """Return the configurations along a bent line, shape (m, n); None where one of them is not allowed.
 
-        Args:
-            start: The first configuration, which is allowed.
-            end: The last configuration.
-
-        Returns:
-            Shape (m, n); None where one of them is not allowed.
+        They are so near that straight lines between them keep the constraint. The start is allowed.
         """
-        if not (self._manifold.has(end) and self.point(end)):
+        if not (self._manifold.has(end) and self.allowed(end)):
             return None
         points, pending = {0.0: start, 1.0: end}, deque([(0.0, 1.0)])
         while pending:
@@ -101,7 +90,7 @@ class ConstrainedEdges(Edges):
             if self._is_straight(points[low], points[high]):
                 continue
             middle = self._middle(points[low], points[high])
-            if middle is None or high - low < _SHORTEST or not self.point(middle):
+            if middle is None or high - low < _SHORTEST or not self.allowed(middle):
                 return None
             between = (low + high) / 2
             points[between] = middle

@@ -1,4 +1,4 @@
-"""Straight lines between configurations: are they allowed everywhere?"""
+"""Which configurations and straight lines between them are allowed."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -17,22 +17,10 @@ Allowed = Callable[[Floats], bool]
 
 
 class Edges:
-    """Tests straight lines in steps of the space's resolution.
-
-    Attributes:
-        space: Where the lines are.
-        allowed: Tests one configuration.
-        tests: How many configurations were tested.
-    """
+    """Tests straight lines in steps of the space's resolution; ``allowed`` tests one configuration."""
 
     def __init__(self, space: Space, allowed: Allowed) -> None:
         self.space, self.allowed = space, allowed
-        self.tests = 0
-
-    def point(self, configuration: Floats) -> bool:
-        """Return whether a configuration is allowed."""
-        self.tests += 1
-        return self.allowed(configuration)
 
     def towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
         """Return a step towards a configuration, no longer than a line of a tree, and whether it gets there."""
@@ -48,17 +36,9 @@ class Edges:
         """Return whether the line from a configuration that is allowed is so everywhere, its end included.
 
         Lines in collision are mostly so in their middle: halves are tested before quarters.
-
-        Args:
-            start: Where it starts.
-            step: How far it goes.
         """
         allowed = self.allowed
-        for part in bisection_order(self.space.steps(step)):
-            self.tests += 1
-            if not allowed(start + part * step):
-                return False
-        return True
+        return all(allowed(start + part * step) for part in bisection_order(self.space.steps(step)))
 
 
 @lru_cache(maxsize=1024)
@@ -76,7 +56,7 @@ def bisection_order(steps: int) -> tuple[float, ...]:
 def path_is_allowed(edges: Edges, points: Floats) -> bool:
     """Return whether a path of straight lines is allowed everywhere, shape (m, n)."""
     space = edges.space
-    return edges.point(points[0]) and all(
+    return edges.allowed(points[0]) and all(
         edges.line(points[index], space.difference(points[index + 1], points[index]))
         for index in range(len(points) - 1)
     )
@@ -85,3 +65,20 @@ def path_is_allowed(edges: Edges, points: Floats) -> bool:
 def length(space: Space, points: Floats) -> float:
     """Return the length of a path of straight lines, in weighted distances."""
     return float(np.linalg.norm(space.weights * space.difference(points[1:], points[:-1]), axis=1).sum())
+
+
+def nearby(
+    space: Space, configuration: Floats, allowed: Allowed, tries: int, farthest: float, random: np.random.Generator
+) -> Floats | None:
+    """Return a configuration itself if it is allowed, else an allowed one near it, or None.
+
+    Each value moves by ``farthest`` [rad or m] at most; the first of the tries stay nearer.
+    """
+    if allowed(configuration):
+        return configuration
+    for attempt in range(tries if farthest > 0 else 0):
+        reach = farthest * (attempt + 1) / tries
+        candidate = space.clamp(configuration + random.uniform(-reach, reach, len(configuration)))
+        if allowed(candidate):
+            return candidate
+    return None

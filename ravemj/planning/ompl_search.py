@@ -48,17 +48,11 @@ def search_with_ompl(
     seed: int,
     settings: Mapping[str, str],
 ) -> Search:
-    """Find a path by a planner of OMPL; those that look for the best one use up the budget.
+    """Find a path by a planner of OMPL, given by its class; those that look for the best one use up the budget.
 
-    Args:
-        planner: Its class.
-        edges: Tests lines; starts and goals are allowed.
-        starts: Where paths may start.
-        goals: Where they may end.
-        budget: How long to go on; an iteration is a question of the planner whether to, or a node of a roadmap.
-        seed: Of the random numbers.
-        settings: Texts by the names of the planner's own parameters, such as ``range`` or ``goal_bias``; other names
-            mean nothing to it.
+    Starts and goals are allowed. An iteration is a question of the planner whether to go on, or a node of a roadmap.
+    ``settings`` has texts by the names of the planner's own parameters, such as ``range`` or ``goal_bias``; other names
+    mean nothing to it.
 
     Raises:
         OmplError: the planner cannot work in this space, or a setting is wrong.
@@ -153,12 +147,7 @@ def _truth(text: str) -> bool:
 
 
 class _Questions:
-    """What OMPL asks. What its questions raise ends the search, and is kept, since C++ cannot pass it on.
-
-    Attributes:
-        end: Why the search ended; None: it has not.
-        count: How many iterations are over.
-    """
+    """What OMPL asks. What its questions raise ends the search, and is kept, since C++ cannot pass it on."""
 
     def __init__(self, edges: Edges, budget: Budget) -> None:
         self._edges, self._budget = edges, budget
@@ -181,7 +170,7 @@ class _Questions:
 
     def point(self, values: Floats) -> bool:
         """Return whether a configuration is within the limits and allowed."""
-        return self.safely(lambda: self._edges.space.outside(values) is None and self._edges.point(values))
+        return self.safely(lambda: self._edges.space.outside(values) is None and self._edges.allowed(values))
 
     def line(self, start: Floats, end: Floats) -> bool:
         """Return whether a line is allowed."""
@@ -199,11 +188,7 @@ class _Questions:
 
 
 class _Space:
-    """OMPL's space for one of ours: a box, whose values are weighted, and a circle for each circular value.
-
-    Attributes:
-        made: OMPL's space.
-    """
+    """OMPL's space for one of ours: a box, whose values are weighted, and a circle for each circular value."""
 
     def __init__(self, base: Ompl, space: Space) -> None:
         circular = space.coordinates.circular

@@ -32,14 +32,9 @@ def damped_step(error: Floats, jacobian: Floats) -> Floats:
 
 
 def project(values: Floats, error: Error, space: Space, threshold: float, most: int) -> tuple[int, Floats]:
-    """Return after how many steps a configuration has a small error, and it; -1 if it never has.
+    """Return after how many steps a configuration has a small error, and it; -1 if it has none after ``most`` steps.
 
-    Args:
-        values: Where to begin, shape (n,).
-        error: What configurations lack.
-        space: Its limits are kept.
-        threshold: The norm of the error from which on it is small.
-        most: How many steps there are at most.
+    A small error has a norm of ``threshold`` at most. The limits of the space are kept.
     """
     for step in range(most + 1):
         lacking, jacobian = error(values)
@@ -58,18 +53,9 @@ def descend(
     random: np.random.Generator,
     tries: int,
 ) -> Search:
-    """Go down the gradient of one error after the other, each from the start, until one is small.
+    """Go down the gradient of one error after the other, each from the start, until the norm of one is small.
 
-    Where the way down is not allowed, the best one of some random steps is taken.
-
-    Args:
-        edges: Tests lines; the start is allowed.
-        start: Where to begin, shape (n,).
-        errors: What configurations lack of each goal.
-        tolerance: The norm of the error that is small enough.
-        budget: How long to go on.
-        random: Draws steps.
-        tries: How many of them are compared.
+    Where the way down is not allowed, the best one of ``tries`` random steps is taken.
     """
     iteration, stopped = 0, budget.end(0)
     for goal, error in enumerate(errors):

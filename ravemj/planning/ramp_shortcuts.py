@@ -51,12 +51,7 @@ class Piece(NamedTuple):
 
 
 def lines(points: Floats, limits: Limits) -> list[Piece]:
-    """Return the motion along straight lines that stops at each corner; all joints keep to the line.
-
-    Args:
-        points: The path, shape (m, n).
-        limits: What the motion may do.
-    """
+    """Return the motion along the straight lines of a path, shape (m, n), that stops at each corner."""
     motion: list[Piece] = []
     for start, end in pairwise(points):
         step = limits.coordinates.difference(end, start)
@@ -97,13 +92,7 @@ def faster(
 ) -> list[Piece]:
     """Return a motion that is nowhere slower, from the same start to the same end.
 
-    Args:
-        edges: Tests configurations.
-        motion: The motion; it is allowed.
-        limits: What the motion may do.
-        tries: How many shortcuts are tried.
-        random: Draws times.
-        proceed: Asked before each try, with its number, whether to go on.
+    It tries ``tries`` shortcuts between random times, while ``proceed``, asked with the number of the try, says so.
     """
     for attempt in range(tries):
         if not motion or not proceed(attempt):
@@ -147,5 +136,5 @@ def _is_allowed(edges: Edges, piece: Piece) -> bool:
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
     return all(
-        edges.point(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest))
+        edges.allowed(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest))
     )

@@ -91,14 +91,7 @@ def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, accelerat
 
 
 def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: Floats) -> Ramps | None:
-    """Return what ``fit_ramps`` does for motions from rest to rest, in a third of its time.
-
-    Args:
-        steps: How far [rad or m], shape (n,).
-        duration: The time [s], above 0.
-        speed: Greatest speeds, shape (n,).
-        acceleration: Greatest accelerations, shape (n,).
-    """
+    """Return what ``fit_ramps`` does for motions from rest to rest, in a third of its time."""
     first = last = np.full(len(steps), duration / 2)
     rate = steps * (4 / duration**2)
     way = np.abs(steps)
@@ -119,18 +112,10 @@ def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: F
 def fit_ramps(
     steps: Floats, start: Floats, end: Floats, duration: float, speed: Floats, acceleration: Floats
 ) -> Ramps | None:
-    """Return motions that take a given time with the least accelerations, or None where a joint has none.
+    """Return motions that take a time above 0 with the least accelerations, or None where a joint has none.
 
     The accelerations of both ramps of a joint are the same, in opposite directions. A joint that would get too fast
-    cruises at its greatest speed.
-
-    Args:
-        steps: How far [rad or m], shape (n,).
-        start: Velocities at the start, shape (n,).
-        end: Velocities at the end, shape (n,).
-        duration: The time [s], above 0.
-        speed: Greatest speeds, shape (n,).
-        acceleration: Greatest accelerations, shape (n,).
+    cruises at its greatest speed. Arguments are as for ``shortest_ramps``.
     """
     change, excess = end - start, steps - (start + end) * (duration / 2)
     # From the area under two ramps: a^2 T^2 - 4 a (d - (v0 + v1) T / 2) - (v1 - v0)^2 = 0; the greater root has its

@@ -26,15 +26,7 @@ _NEIGHBOURS = 8
 def search_by_cost(
     edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats], budget: Budget, random: np.random.Generator
 ) -> Search:
-    """Follow the configurations with the least way so far and to the nearest goal.
-
-    Args:
-        edges: Tests lines; starts and goals are allowed.
-        starts: Where paths may start.
-        goals: Where they may end.
-        budget: How long to go on; an iteration looks at one configuration.
-        random: Draws neighbours.
-    """
+    """Follow the configurations with the least way so far and to the nearest goal; an iteration looks at one."""
     space, tree = edges.space, Tree(edges.space)
     ways: list[float] = []
     pending: list[tuple[float, int]] = []

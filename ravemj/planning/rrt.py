@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,11 +80,16 @@ class Search:
     trees: Sequence[Tree]
 
 
-class MoreGoals:
-    """Goals that come while a search is under way; ``next`` returns one, or None if there is none now."""
+class MoreGoals(NamedTuple):
+    """Goals that come while a search is under way.
 
-    def __init__(self, sample: Callable[[], Floats | None], probability: float) -> None:
-        self.sample, self.probability = sample, probability
+    Attributes:
+        sample: Returns one, or None if there is none now.
+        probability: Part of the iterations in which it is asked.
+    """
+
+    sample: Callable[[], Floats | None]
+    probability: float
 
 
 def connect(
@@ -94,16 +100,7 @@ def connect(
     random: np.random.Generator,
     more_goals: MoreGoals | None = None,
 ) -> Search:
-    """Grow trees from starts and goals towards each other.
-
-    Args:
-        edges: Tests lines; starts and goals are allowed.
-        starts: Where paths may start.
-        goals: Where they may end.
-        budget: How long to go on.
-        random: Draws configurations.
-        more_goals: Further goals.
-    """
+    """Grow trees from starts and goals, which are allowed, towards each other."""
     growth = _Growth(edges, starts, goals)
     stopped = budget.end(0)
     if stopped is None and (found := growth.straight(starts, goals)) is not None:
@@ -122,18 +119,12 @@ def connect(
 
 
 class _Growth:
-    """Trees from starts and goals.
-
-    Attributes:
-        trees: That from the starts, and that from the goals.
-    """
+    """Trees from starts and goals."""
 
     def __init__(self, edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats]) -> None:
         self._edges = edges
-        self.trees = Tree(edges.space), Tree(edges.space)
-        for start in starts:
-            self.trees[0].add(start)
-        self._goals = [self.trees[1].add(goal) for goal in goals]
+        self.trees = Tree(edges.space, starts), Tree(edges.space, goals)
+        self._goals = list(range(len(goals)))
         self._grown = self._blocked = 0
 
     def add_goal(self, goal: Floats | None) -> None:
@@ -180,17 +171,9 @@ def single(
 ) -> Search:
     """Grow one tree from the starts, now and then towards a goal: the basic RRT.
 
-    Args:
-        edges: Tests lines; starts and goals are allowed.
-        starts: Where paths may start.
-        goals: Where they may end.
-        budget: How long to go on.
-        random: Draws configurations.
-        goal_bias: Part of the iterations in which the tree grows towards a goal.
+    Starts and goals are allowed. ``goal_bias`` is the part of the iterations in which the tree grows towards a goal.
     """
-    tree = Tree(edges.space)
-    for start in starts:
-        tree.add(start)
+    tree = Tree(edges.space, starts)
     iteration = 0
     while (stopped := budget.end(iteration)) is None:
         to_goal = iteration == 0 or random.random() < goal_bias
@@ -198,9 +181,8 @@ def single(
         if to_goal:
             reached = _reach(edges, tree, goals[goal])
             if reached is not None:
-                path = np.array([*tree.branch(reached)[::-1], goals[goal]])
-                found = without_repetitions(path)
-                return Search(End.found, found, tree.root(reached), goal, iteration + 1, (tree,))
+                path = without_repetitions(np.array([*tree.branch(reached)[::-1], goals[goal]]))
+                return Search(End.found, path, tree.root(reached), goal, iteration + 1, (tree,))
         else:
             _extend(edges, tree, edges.space.sample(random))
         iteration += 1
@@ -209,9 +191,7 @@ def single(
 
 def explore(edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, random: np.random.Generator) -> Tree:
     """Grow one tree from the starts until it has a size, without any goal."""
-    tree = Tree(edges.space)
-    for start in starts:
-        tree.add(start)
+    tree = Tree(edges.space, starts)
     iteration = 0
     while tree.count < size and budget.end(iteration) is None:
         _extend(edges, tree, edges.space.sample(random))

@@ -18,20 +18,11 @@ def shorten(
     random: np.random.Generator,
     proceed: Callable[[int], bool] = lambda attempt: True,
 ) -> Floats:
-    """Return a path that is nowhere longer, from the same start to the same goal.
+    """Return a path that is nowhere longer, from the same start to the same goal, shape (k, n).
 
     Straight lines between points of the path take the place of detours; then two random places at a time are connected
-    by one, if it is allowed and shorter.
-
-    Args:
-        edges: Tests lines.
-        points: The path, shape (m, n); it is allowed.
-        tries: How many lines are tried.
-        random: Draws places.
-        proceed: Asked before each try, with its number, whether to go on.
-
-    Returns:
-        Shape (k, n).
+    by one, if it is allowed and shorter. This is tried ``tries`` times, while ``proceed``, asked with the number of the
+    try, says so.
     """
     space = edges.space
     path = list(_without_detours(edges, points))

@@ -39,6 +39,15 @@ class Coordinates:
             )
         return step
 
+    def outside(self, values: Floats, lower: Floats, upper: Floats, tolerance: float = ON_LIMIT) -> NDArray[np.bool_]:
+        """Return which values, shape (…, n), are outside their limits or not finite; circular ones have no limits.
+
+        ``tolerance`` is how far beyond a limit a value may be, relative to its size above 1.
+        """
+        slack = tolerance * np.maximum(1.0, np.abs(values))
+        beyond = (values < lower - slack) | (values > upper + slack)
+        return beyond & ~self.circular | ~np.isfinite(values)
+
 
 @dataclass(frozen=True, slots=True)
 class Space:
@@ -78,9 +87,7 @@ class Space:
 
     def outside(self, configuration: Floats) -> int | None:
         """Return the first number that is outside its limits, or None."""
-        slack = ON_LIMIT * np.maximum(1.0, np.abs(configuration))
-        wrong = (configuration < self.lower - slack) | (configuration > self.upper + slack)
-        wrong &= ~self.coordinates.circular
+        wrong = self.coordinates.outside(configuration, self.lower, self.upper)
         return int(wrong.argmax()) if wrong.any() else None
 
     def steps(self, difference: Floats) -> int:

@@ -20,13 +20,7 @@ Connects = Callable[[int, Floats, Floats], bool]
 
 
 class _Layer(NamedTuple):
-    """The configurations that reach one goal.
-
-    Attributes:
-        rows: The configurations, shape (k, n).
-        costs: Lengths of the shortest ways to them, shape (k,).
-        parents: Where these ways come from in the layer before, shape (k,).
-    """
+    """Configurations that reach one goal, lengths of the shortest ways to them, and places in the layer before."""
 
     rows: Floats
     costs: Floats
@@ -36,14 +30,8 @@ class _Layer(NamedTuple):
 def track(space: Space, count: int, start: Floats, solve: Solve, connects: Connects) -> Floats:
     """Return the shortest way through configurations of all goals, as far as there is one, shape (m, n).
 
-    Shortest ways to all solutions of a goal are kept, so that a branch that ends is no harm to the others.
-
-    Args:
-        space: Measures ways.
-        count: How many goals there are.
-        start: Where it should begin if it can, shape (n,).
-        solve: Returns what reaches a goal.
-        connects: Says what leads from one goal to the next.
+    It begins at ``start`` if it can. Shortest ways to all solutions of a goal are kept, so that a branch that ends does
+    the others no harm.
     """
     layers: list[_Layer] = []
     last = _Layer(start[None], np.zeros(1), np.zeros(1, dtype=np.intp))

@@ -1,5 +1,7 @@
 """Trees of configurations that are connected by allowed lines."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ravemj.core.transforms import Floats
@@ -9,18 +11,16 @@ _FIRST_CAPACITY = 256
 
 
 class Tree:
-    """Configurations, each but the roots with a parent that a line leads to.
+    """Configurations, ``count`` of them, each but the roots with a parent that a line leads to."""
 
-    Attributes:
-        count: How many there are.
-    """
-
-    def __init__(self, space: Space) -> None:
+    def __init__(self, space: Space, roots: Iterable[Floats] = ()) -> None:
         self._space = space
         self.count = 0
         self._nodes: Floats = np.empty((_FIRST_CAPACITY, len(space.lower)))
         self._parents: list[int] = []
         self._weights = space.weights
+        for root in roots:
+            self.add(root)
 
     def add(self, configuration: Floats, parent: int = -1) -> int:
         """Add a configuration; return its number. -1 as parent makes it a root."""

@@ -38,11 +38,6 @@ def flaw(samples: Samples, limits: Limits, allowed: Allowed) -> str | None:
 
     Speeds are those that the motion has between two samples, and those that the trajectory says; accelerations are
     compared likewise where velocities do not jump.
-
-    Args:
-        samples: The motion.
-        limits: What it may do.
-        allowed: Whether a configuration is without collisions.
     """
     return (
         _outside(samples, limits)
@@ -54,10 +49,7 @@ def flaw(samples: Samples, limits: Limits, allowed: Allowed) -> str | None:
 
 def _outside(samples: Samples, limits: Limits) -> str | None:
     values = samples.values
-    slack = EXACT * np.maximum(1.0, np.abs(values))
-    wrong = ~np.isfinite(values) | (values < limits.lower - slack) | (values > limits.upper + slack)
-    wrong[:, limits.coordinates.circular] = ~np.isfinite(values[:, limits.coordinates.circular])
-    for row, column in np.argwhere(wrong):
+    for row, column in np.argwhere(limits.coordinates.outside(values, limits.lower, limits.upper, EXACT)):
         bounds = f"[{limits.lower[column]:g}, {limits.upper[column]:g}]"
         return f"value {column} is {values[row, column]:.9g} at {samples.times[row]:.6g} s, outside its limits {bounds}"
     return None

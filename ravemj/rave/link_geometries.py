@@ -10,8 +10,7 @@ from ravemj.core.arrays import checked_transform
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
-from ravemj.model.bounds import enclosing_box, link_bounds
-from ravemj.model.triangles import links_triangles
+from ravemj.model.bounds import enclosing_box, link_bounds, links_triangles
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.infos.link import geometries_of

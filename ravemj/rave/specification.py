@@ -13,7 +13,7 @@ from ravemj.rave.ikparameterization import IkParameterizationData
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.bodies import body_groups
 from ravemj.trajectories.groups import DELTATIME, Group, ik_type
-from ravemj.trajectories.text import layout_text, read_layout
+from ravemj.trajectories.serialization import layout_text, read_layout
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

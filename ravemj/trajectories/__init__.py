@@ -5,6 +5,6 @@ is the general one, with any layout and interpolation; OpenRAVE's ``Trajectory``
 ``BodyMotion`` moves bodies by samples of either, for viewers.
 
 Layouts: ``groups`` say what the numbers of a configuration are, ``layout`` works on lists of groups, ``extraction`` and
-``conversion`` on the numbers. ``interpolation`` finds what lies between two waypoints, ``text`` and ``serialization``
-write and read files.
+``conversion`` on the numbers. ``interpolation`` finds what lies between two waypoints, ``serialization``
+writes and reads files.
 """

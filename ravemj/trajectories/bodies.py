@@ -12,14 +12,7 @@ from ravemj.trajectories.layout import packed
 
 
 def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolation: str) -> list[Group]:
-    """Return the layout of some joints of a body, then of parts of its pose; what is empty is left out.
-
-    Args:
-        name: The body's name.
-        indices: DOF indices, in order.
-        affinedofs: Parts of the pose, a ``DOFAffine``.
-        interpolation: How all of them change between waypoints.
-    """
+    """Return the layout of some joints of a body, then of parts of its pose (``DOFAffine``), without empty groups."""
     joints = Group(" ".join([JOINTS[0], name, *map(str, indices)]), 0, len(indices), interpolation)
     affine = Group(f"{AFFINE[0]} {name} {int(affinedofs)}", 0, RaveGetAffineDOF(affinedofs), interpolation)
     return packed([group for group in (joints, affine) if group.dof])

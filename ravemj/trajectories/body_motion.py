@@ -1,7 +1,10 @@
-"""Bodies that follow a motion or a trajectory, as viewers play them."""
+"""Bodies that follow a motion or a trajectory, as viewers play them, and bodies that a robot grabs meanwhile."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState, Simulation
@@ -41,11 +44,7 @@ class BodyMotion:
 
     @classmethod
     def of_waypoints(cls, simulation: Simulation, waypoints: Waypoints) -> "BodyMotion":
-        """Let all bodies of a trajectory follow its joint values and poses.
-
-        Args:
-            simulation: Where the bodies are.
-            waypoints: The trajectory; it is not copied.
+        """Let all bodies of a trajectory, which is not copied, follow its joint values and poses.
 
         Raises:
             ArgumentError: it has no waypoint or no time, or names no body that is there, or joints that a body lacks.
@@ -87,3 +86,37 @@ def set_within_limits(body: BodyState, values: Floats) -> None:
     if len(values) != kinematics.dof:
         raise ArgumentError(f"'{body.scene.name}' has {kinematics.dof} DOFs, and no more {len(values)}")
     body.set_values(kinematics.limits.clamp(values))
+
+
+class GrabChange(NamedTuple):
+    """A body that is grabbed or released.
+
+    Attributes:
+        time: When, from the start of the trajectory [s].
+        link: Index of the link that holds the body.
+        body: ``GetEnvironmentBodyIndex()`` of the body; negative: it is released.
+    """
+
+    time: float
+    link: int
+    body: int
+
+
+def grab_changes(waypoints: Waypoints, robot_name: str) -> list[GrabChange]:
+    """Return what a trajectory grabs and releases, in the order of time.
+
+    A group ``grab ROBOT LINK …`` has a value for each link of these indices: the index of a body to grab with it, the
+    negative index of one to release, or 0 for no change.
+    """
+    times = waypoints.times()
+    found: list[GrabChange] = []
+    for group in waypoints.groups:
+        if group.kind != "grab" or group.body != robot_name:
+            continue
+        links = [int(word) for word in group.name.split()[2:] if word.isdecimal()]
+        bodies = waypoints.data[:, group.columns][:, : len(links)].round().astype(int)
+        found += [
+            GrabChange(float(times[row]), links[column], int(bodies[row, column]))
+            for row, column in zip(*np.nonzero(bodies), strict=True)
+        ]
+    return sorted(found, key=lambda change: change.time)

@@ -59,14 +59,7 @@ def converted(
 def convert_group(
     source_group: Group, source: Floats, target_group: Group, target: Floats, find_body: FindBody | None
 ) -> None:
-    """Write the values of a group, a configuration in each row, into those of another group of its kind.
-
-    Args:
-        source_group: The group.
-        source: Its values.
-        target_group: The other group.
-        target: Its values, which change.
-        find_body: As for ``converted``.
+    """Write the values of a group, a configuration in each row, into ``target``, those of another group of its kind.
 
     Raises:
         ArgumentError: the groups have nothing in common.

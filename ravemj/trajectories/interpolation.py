@@ -1,9 +1,9 @@
 """Values between two waypoints: polynomials through their values and derivatives.
 
 Values and derivatives at the two ends determine a polynomial of odd degree (Hermite's). Those of even degree are the
-integrals
-of one for the derivatives, from the first waypoint on; they reach the second one if its values fit. A curve is an array
-of coefficients of the powers of the part of the way, from 0 at the first waypoint to 1 at the second, lowest first.
+integrals of one for the derivatives, from the first waypoint on; they reach the second one if its values fit. A curve
+is an array of coefficients of the powers of the part of the way, from 0 at the first waypoint to 1 at the second,
+lowest first.
 """
 
 import math
@@ -28,13 +28,7 @@ DERIVATIVES = {"linear": 0, "quadratic": 1, "cubic": 1, "quartic": 2, "quintic":
 
 
 def held(interpolation: str, part: float, ends: Ends) -> Floats:
-    """Return one of the two values.
-
-    Args:
-        interpolation: One of ``HELD``.
-        part: The part of the way.
-        ends: The values at both waypoints.
-    """
+    """Return one of the two values, by one of the interpolations ``HELD``, at a part of the way."""
     first, second = ends
     if interpolation == "previous":
         return second if part > 1 - ROUNDING else first
@@ -44,12 +38,7 @@ def held(interpolation: str, part: float, ends: Ends) -> Floats:
 
 
 def between(ends: Ends, part: float) -> Floats:
-    """Return the values on the straight line, which rounding takes nowhere beyond the ends, as ``curve`` may.
-
-    Args:
-        ends: The values at both waypoints.
-        part: The part of the way.
-    """
+    """Return the values at a part of the straight line; rounding takes them nowhere beyond the ends."""
     first, second = ends
     return np.clip((1.0 - part) * first + part * second, np.minimum(first, second), np.maximum(first, second))
 

@@ -28,10 +28,10 @@ def check_motion_file(path: str | os.PathLike[str]) -> None:
 
 
 def write_motion(path: str | os.PathLike[str], motion: Motion, joint_names: Sequence[str]) -> Path:
-    """Write a motion as ``.csv`` or ``.npz``; ``read_motion`` reads back the very numbers.
+    """Write a motion as ``.csv`` or ``.npz``, by the suffix; ``read_motion`` reads back the very numbers.
 
     Args:
-        path: The file; its suffix selects the format.
+        path: The file.
         motion: The motion.
         joint_names: Names of its columns.
 

@@ -12,7 +12,7 @@ from ravemj.errors import Diagnostics
 from ravemj.formats import mjcf
 from ravemj.formats.mjcf import Options
 from ravemj.formats.openrave_xml import read
-from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.chains import adjacent_pairs
 from ravemj.model.scene import Scene
 
 KINDS = {"hinge": "", "weld": "<limits>0 0</limits>", "loose": ""}

@@ -5,8 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ravemj.planning.edges import RANGE, Edges, bisection_order, length, path_is_allowed
-from ravemj.planning.jitter import nearby
+from ravemj.planning.edges import RANGE, Edges, bisection_order, length, nearby, path_is_allowed
 from ravemj.planning.ramp_shortcuts import faster, lines
 from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.randomized_astar import search_by_cost

@@ -13,7 +13,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Pose, normalize
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.planning.jitter import nearby
+from ravemj.planning.edges import nearby
 from ravemj.planning.verification import Samples, flaw
 from ravemj.rave.enums import ConstraintFilterOptions, Interval
 from ravemj.rave.kinbody import KinBody

@@ -15,8 +15,7 @@ from ravemj.core.transforms import Floats, Ints, inverse
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.world import CollisionWorld, cross, joined
 from ravemj.engine.simulation import BodyState
-from ravemj.model.adjacency import adjacent_pairs
-from ravemj.model.chains import dofs_moving
+from ravemj.model.chains import adjacent_pairs, dofs_moving
 from ravemj.model.scene import KinBody
 
 

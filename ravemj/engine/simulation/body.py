@@ -12,8 +12,8 @@ from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.bounds import BodyBounds
 from ravemj.model.inertia import Inertias
+from ravemj.model.joints import rezeroed
 from ravemj.model.scene import Axis, Geometry, KinBody
-from ravemj.model.zero import rezeroed
 
 if TYPE_CHECKING:
     from ravemj.engine.batch import Batch

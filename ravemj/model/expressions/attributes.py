@@ -8,25 +8,17 @@ from ravemj.model.expressions.errors import ExpressionError
 
 
 def joint_variables(names: Sequence[str]) -> dict[str, str]:
-    """Return the variable that stands for each joint: ``joint0``, ``joint1``, and so on.
-
-    Args:
-        names: The joints with DOFs in their order, then the passive ones.
-    """
+    """Return the variable that stands for each joint: ``joint0``, ``joint1``, ...; passive joints come last."""
     return {name: f"joint{index}" for index, name in reversed(list(enumerate(names)))}
 
 
 def substitute(text: str, names: Mapping[str, str]) -> str:
-    """Replace joint names in an equation by variables, as blindly as OpenRAVE does it.
+    """Replace joint names in an equation by their variables, as blindly as OpenRAVE does it.
 
     From left to right, wherever the text goes on with a name, the longest such name is replaced; what was put in is
     not looked at again. Neither words nor functions are respected: a joint called ``s`` turns ``sin(x)`` into
     ``joint0in(x)``, and the equation is lost. Names may have any characters (``/arm/j01``). What is no name stays,
     so equations may also say ``joint0``, and the second axis of joint ``u`` is ``u_1``.
-
-    Args:
-        text: The equation.
-        names: The variable for each joint name, as ``joint_variables`` makes it.
     """
     return _of_names(names).sub(lambda match: names[match[0]], text)
 
@@ -53,16 +45,10 @@ def _of_names(names: Mapping[str, str]) -> re.Pattern[str]:
 
 
 def partials(text: str) -> dict[str, str]:
-    """Take ``mimic_vel`` or ``mimic_accel`` apart: ``|name expression |name expression``.
+    """Return the expressions in ``mimic_vel`` or ``mimic_accel``, ``|name expression |name expression``, by name.
 
     Every ``|`` starts a partial derivative, so they cannot use the logical operator. What stands before the first
-    one are inline variables for all of them.
-
-    Args:
-        text: The attribute; may be empty.
-
-    Returns:
-        For each name the text of the expression. Of a name given twice the last counts.
+    one are inline variables for all of them. Of a name given twice the last counts.
 
     Raises:
         ExpressionError: If a name or an expression is missing.

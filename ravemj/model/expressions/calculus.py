@@ -78,12 +78,7 @@ def is_number(node: Node, value: float) -> bool:
 
 
 def derivative(nodes: list[Node], variable: str) -> Node:
-    """Return the derivative of the last of ``nodes`` with respect to a variable.
-
-    Args:
-        nodes: An expression, each node after its arguments.
-        variable: Name of the variable.
-    """
+    """Return the derivative by a variable of the last of ``nodes``, in which each node comes after its arguments."""
     algebra = Algebra(Graph(nodes))
     slopes: dict[Node, Node] = {}
     for node in nodes:
@@ -174,15 +169,7 @@ def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 def _law_of_cosines(algebra: Algebra, a: Node, b: Node, gamma: Node, slopes: Sequence[Node]) -> tuple[Node, Node]:
     """Differentiate c^2 = a^2 + b^2 - 2 a b cos(gamma), and return half of both sides.
 
-    Args:
-        algebra: Makes the nodes.
-        a: A side.
-        b: Another side.
-        gamma: The angle between them.
-        slopes: The derivatives of a and b.
-
-    Returns:
-        c c' less the part of gamma', and the factor of gamma'.
+    They are c c' less the part of gamma', and the factor of gamma'; ``slopes`` are the derivatives of a and b.
     """
     da, db = slopes
     lengths = algebra.add(algebra.mul(a, da), algebra.mul(b, db))

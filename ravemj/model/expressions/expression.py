@@ -3,20 +3,23 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.model.expressions.calculus import derivative
-from ravemj.model.expressions.functions import FUNCTIONS, NAN
-from ravemj.model.expressions.limits import first_within
-from ravemj.model.expressions.nodes import Call, Node, Number, Variable, ordered, steps
+from ravemj.model.expressions.calculus import Algebra, derivative
+from ravemj.model.expressions.functions import FUNCTIONS, nth
+from ravemj.model.expressions.nodes import Call, Graph, Node, Number, Variable, ordered, steps
 from ravemj.model.expressions.parser import parse_nodes
 from ravemj.model.expressions.polynomials import Affine, affine, coefficients
 from ravemj.model.expressions.writer import text_of
 
 Compiled = Callable[[Sequence[float]], float]
 MOST_NESTED = 40
+
+_MOST_NODES = 20_000
+"""Of an equation with all its values: more than any robot needs, and few enough for hostile text."""
 
 
 def parse(text: str, variables: Collection[str]) -> "Expression":
@@ -25,9 +28,6 @@ def parse(text: str, variables: Collection[str]) -> "Expression":
     Args:
         text: The equation; joint names were replaced before (see ``substitute``).
         variables: The names that have a value. Any other name that is not a function is an error.
-
-    Returns:
-        The expression, which can be evaluated.
 
     Raises:
         ExpressionError: If the text is not an equation of these variables, or too long or too deeply nested.
@@ -39,9 +39,8 @@ def parse(text: str, variables: Collection[str]) -> "Expression":
 class Expression:
     """A function of named variables that never raises: where it has no value, it gives nan.
 
-    Some functions have several values, as ``polyroots2`` has two. ``candidates`` gives the value of the equation for
-    each choice among them, ``within`` the expression that has the first one within limits, and everything else takes
-    the first.
+    Some functions have several values, as ``polyroots2`` has two. ``within`` gives the expression that has the first
+    one within limits; everything else takes the first.
 
     Attributes:
         root: The last of the nodes.
@@ -60,11 +59,6 @@ class Expression:
         return tuple(sorted(node.name for node in self.nodes if isinstance(node, Variable)))
 
     @cached_property
-    def is_multivalued(self) -> bool:
-        """Whether there can be more than one candidate."""
-        return any(isinstance(node, Call) and FUNCTIONS[node.function].most_roots > 1 for node in self.nodes)
-
-    @cached_property
     def _evaluate(self) -> Compiled:
         return self.compiled()
 
@@ -81,25 +75,16 @@ class Expression:
         return f"Expression({text if len(text) <= 80 else text[:77] + '...'!r})"
 
     def evaluate(self, values: Mapping[str, float] | Sequence[float]) -> float:
-        """Return the value; of several candidates the first.
-
-        Args:
-            values: The variables by name, or in the order of ``variables``.
-        """
+        """Return the value, of several the first; variables are given by name, or in the order of ``variables``."""
         if isinstance(values, Mapping):
             values = [values[name] for name in self.variables]
         return self._evaluate(values)
 
     def compiled(self, order: Sequence[str] | None = None) -> Compiled:
-        """Return a fast form of ``evaluate``.
+        """Return a fast form of ``evaluate``: a function of a list, tuple or one-dimensional array.
 
-        Args:
-            order: The variables in the order in which the function shall take them, which may be more than
-                occur; by default that of ``variables``.
-
-        Returns:
-            A function of a list, tuple or one-dimensional array. It is made of nested closures: nothing is looked
-            up at evaluation but the values.
+        It is made of nested closures: nothing is looked up at evaluation but the values. They come in the given order,
+        which may have more variables than occur; by default in that of ``variables``.
         """
         names = self.variables if order is None else tuple(order)
         places: dict[Node, int] = {node: names.index(node.name) for node in self.nodes if isinstance(node, Variable)}
@@ -120,13 +105,9 @@ class Expression:
         return evaluate
 
     def evaluate_many(self, values: Mapping[str, Floats]) -> Floats:
-        """Return the values for many configurations at once.
+        """Return the values for many configurations at once, an array of the common shape.
 
-        Args:
-            values: Arrays by variable name, of shapes that broadcast, most often all of shape (N,).
-
-        Returns:
-            An array of the common shape.
+        The arrays, by the names of variables, have shapes that broadcast, most often all (N,).
         """
         shape = np.broadcast_shapes(*(np.shape(array) for array in values.values()))
         found: dict[Node, Floats] = {}
@@ -140,42 +121,6 @@ class Expression:
                     case Call(function, arguments):
                         found[node] = FUNCTIONS[function].array(*(found[argument] for argument in arguments))
         return np.array(np.broadcast_to(found[self.root], shape), dtype=np.float64)
-
-    def candidates(self, values: Mapping[str, float]) -> tuple[float, ...]:
-        """Return all values of the equation, those for the first of each function's values first.
-
-        Without multi-valued functions there is one candidate, or none where the equation has no value.
-        """
-        found: list[float] = []
-        choice: list[int] | None = []
-        while choice is not None:
-            value, taken, available = self._choose(values, choice)
-            found += [value] if value == value else []  # noqa: PLR0124 - leaves nan out
-            choice = _next_choice(taken, available)
-        return tuple(dict.fromkeys(found))
-
-    def _choose(self, values: Mapping[str, float], choice: Sequence[int]) -> tuple[float, list[int], list[int]]:
-        """Evaluate with given choices; return also the choices that were made and among how many values each."""
-        found: dict[Node, float] = {}
-        taken: list[int] = []
-        available: list[int] = []
-        for node in self.nodes:
-            match node:
-                case Number(value):
-                    found[node] = value
-                case Variable(name):
-                    found[node] = float(values[name])
-                case Call(function, arguments):
-                    definition = FUNCTIONS[function]
-                    numbers = [found[argument] for argument in arguments]
-                    if definition.roots is None:
-                        found[node] = definition.scalar(*numbers)
-                        continue
-                    roots = definition.roots(*numbers)
-                    taken.append(choice[len(taken)] if len(taken) < len(choice) else 0)
-                    available.append(len(roots))
-                    found[node] = roots[taken[-1]] if roots else NAN
-        return found[self.root], taken, available
 
     def derivative(self, variable: str) -> "Expression":
         """Return the partial derivative with respect to a variable.
@@ -199,26 +144,17 @@ class Expression:
         return Expression(replaced[self.root])
 
     def within(self, lower: float, upper: float) -> "Expression":
-        """Return the expression that has the first candidate within limits, else the first, for the caller to clamp.
+        """Return the expression that has the first value within limits, else the first, for the caller to clamp.
 
-        Of an equation that is enormous with all its candidates only the first one counts.
-
-        Args:
-            lower: The least value.
-            upper: The greatest value.
+        Of an equation that is enormous with all its values only the first one counts.
         """
-        found = first_within(self.nodes, lower, upper) if self.is_multivalued else self.root
+        found = _first_within(self.nodes, lower, upper)
         return self if found is self.root else Expression(found)
 
     def polynomial(self, variable: str, max_degree: int = 4) -> tuple[float, ...] | None:
-        """Return the coefficients, in ascending order, if this is a polynomial in one variable, else None.
+        """Return the coefficients, in ascending order, if this is a polynomial in one variable alone, else None.
 
-        Args:
-            variable: The only variable that may occur.
-            max_degree: The highest power that may occur.
-
-        Returns:
-            One coefficient more than the degree; the last is not 0 unless it is the only one.
+        There is one more than the degree, which is ``max_degree`` at most; the last is not 0 unless it is the only one.
         """
         return coefficients(self.nodes, variable, max_degree)
 
@@ -243,9 +179,31 @@ def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
     return lambda values: function(*[part(values) for part in parts])
 
 
-def _next_choice(taken: Sequence[int], available: Sequence[int]) -> list[int] | None:
-    """Count the choices up by one, as digits of which the last runs fastest; None after the last."""
-    for index in reversed(range(len(taken))):
-        if taken[index] + 1 < available[index]:
-            return [*taken[:index], taken[index] + 1]
-    return None
+def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
+    """Return a node for the first value of an equation within limits, else for its first value, as ``within`` says.
+
+    A root that the equation uses twice is the same root in both places.
+    """
+    several = [node for node in nodes if isinstance(node, Call) and FUNCTIONS[node.function].most_roots > 1]
+    choices = list(product(*(range(FUNCTIONS[node.function].most_roots) for node in several)))
+    if not several or len(choices) * len(nodes) > _MOST_NODES:
+        return nodes[-1]
+    algebra = Algebra(Graph(nodes))
+    values = [_chosen(nodes, dict(zip(several, choice, strict=True)), algebra) for choice in choices]
+    limits = algebra.number(lower), algebra.number(upper)
+    result = values[0]
+    for value in reversed(values):
+        is_within = algebra.call("and", algebra.call("le", limits[0], value), algebra.call("le", value, limits[1]))
+        result = algebra.choose(is_within, value, result)
+    return result
+
+
+def _chosen(nodes: list[Node], choice: dict[Node, int], algebra: Algebra) -> Node:
+    """Return the equation with one value of each function that has several."""
+    found: dict[Node, Node] = {}
+    for node in nodes:
+        found[node] = node
+        if isinstance(node, Call):
+            function = nth(node.function, choice[node]) if node in choice else node.function
+            found[node] = algebra.call(function, *(found[argument] for argument in node.arguments))
+    return found[nodes[-1]]

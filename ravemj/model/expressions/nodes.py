@@ -100,17 +100,10 @@ def ordered(root: Node) -> list[Node]:
 
 
 def steps(nodes: list[Node], most_nested: int) -> list[Node]:
-    """Choose the calls to evaluate one after the other, so that no node is evaluated twice.
+    """Choose the calls to evaluate one after the other, so that no node is evaluated twice; the last is the root.
 
-    The steps are the calls with several users, and every so often one within deep nesting. What lies between
-    two steps is a tree of at most ``most_nested`` levels, so that recursion is safe there.
-
-    Args:
-        nodes: The result of ``ordered``.
-        most_nested: Levels from which a call becomes a step.
-
-    Returns:
-        The steps in order; the last is the root.
+    The steps are the calls with several users, and every so often one within deep nesting. What lies between two steps
+    is a tree of at most ``most_nested`` levels, so that recursion is safe. ``nodes`` is the result of ``ordered``.
     """
     users = dict.fromkeys(nodes, 0)
     for node in nodes:

@@ -55,18 +55,7 @@ class Token(NamedTuple):
 
 
 def parse_nodes(text: str, variables: Collection[str]) -> Node:
-    """Read an equation.
-
-    Args:
-        text: The equation, with names that ``variables`` knows.
-        variables: The names that have a value.
-
-    Returns:
-        The root of its nodes.
-
-    Raises:
-        ExpressionError: If the text is not of the grammar, uses another name, or passes one of the bounds.
-    """
+    """Read an equation of some variables; return the root of its nodes. Errors are those of ``expression.parse``."""
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"the equation has {len(text)} characters, more than {MAX_LENGTH}", text, MAX_LENGTH)
     try:

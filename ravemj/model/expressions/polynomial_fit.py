@@ -13,17 +13,10 @@ FIT_POINTS, CHECK_POINTS = 200, 2001
 def fit_polynomial(
     expression: Expression, variable: str, lower: float, upper: float, degree: int = 4
 ) -> tuple[Coefficients, float]:
-    """Approximate an expression in one variable by a polynomial.
+    """Approximate an expression in one variable by a polynomial, from ``lower`` to ``upper``.
 
     The fit is by least squares at Chebyshev points, which lie closer together towards the limits; that keeps the
     largest error near the smallest possible.
-
-    Args:
-        expression: Of no other variable.
-        variable: Its variable.
-        lower: Where the range begins.
-        upper: Where it ends.
-        degree: Of the polynomial.
 
     Returns:
         ``degree + 1`` coefficients in ascending order, and the largest error at evenly spaced points of the range;

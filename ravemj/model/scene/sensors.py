@@ -1,5 +1,7 @@
 """Sensors: what is fixed about each kind, and whether it can measure with that."""
 
+# ruff: noqa: D102 - ``problem`` always returns why a sensor cannot measure, or None
+
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -33,7 +35,6 @@ class Intrinsics(Record):
     height: int = 0
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         return _nonsense_pinhole(self) or (
             None
             if max(self.width, self.height) <= _WIDEST
@@ -72,7 +73,6 @@ class Laser(Record):
     spin_speed: float = 0.0
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         angles = self.min_angle, self.max_angle, self.resolution
         if not _are_finite(angles):
             return f"its angles are {angles}, and should be finite"
@@ -118,7 +118,6 @@ class FlashLidar(Record):
     scan_time: float = 0.0
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         return (
             _nonsense_pinhole(self)
             or _too_many(float(self.width) * self.height)
@@ -140,7 +139,6 @@ class ForceTorque(Record):
     correction: tuple[float, ...] = ()
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         if self.polarity not in {1, -1}:
             return f"its polarity is {self.polarity}, and should be 1 or -1"
         if len(self.correction) not in {0, 36} or not _are_finite(self.correction):
@@ -165,7 +163,6 @@ class Imu(Record):
     linear_acceleration_covariance: tuple[float, ...] = NO_COVARIANCE
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         return _nonsense_time(self.scan_time)
 
 
@@ -182,7 +179,6 @@ class Odometry(Record):
     target: str = ""
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         return _nonsense_time(self.scan_time)
 
 
@@ -197,7 +193,6 @@ class JointEncoder(Record):
     resolution: tuple[float, ...] = ()
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         if not _are_finite(self.resolution) or min(self.resolution, default=0.0) < 0:
             return f"its resolution is {self.resolution}, and should be numbers from 0"
         return None
@@ -214,7 +209,6 @@ class Tactile(Record):
     thickness: float = 0.0
 
     def problem(self) -> str | None:
-        """Return why it cannot measure, or None."""
         is_sane = math.isfinite(self.thickness) and self.thickness >= 0
         return None if is_sane else f"its thickness is {self.thickness}, and should be a length from 0"
 

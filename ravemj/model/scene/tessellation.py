@@ -5,6 +5,7 @@ import functools
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
+from ravemj.geometry_functions.solids import refined
 from ravemj.model.scene.mesh import Mesh
 
 SUBDIVISIONS = 3
@@ -75,18 +76,5 @@ def _unit_sphere() -> tuple[Floats, Ints]:
     corners /= np.linalg.norm(corners[0])
     triangles = np.array(_FACES)
     for _ in range(SUBDIVISIONS):
-        corners, triangles = _refined(corners, triangles)
+        corners, triangles = refined(corners, triangles)
     return corners, triangles
-
-
-def _refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """Return four triangles for each, with the new corners on the unit sphere, in the order in which edges come."""
-    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    unique, first, places = np.unique(edges, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    middles = corners[unique[order]].sum(axis=1)
-    middles /= np.linalg.norm(middles, axis=1, keepdims=True)
-    ab, bc, ca = (np.argsort(order)[places].reshape(-1, 3) + len(corners)).T
-    a, b, c = triangles.T
-    four = [(a, ab, ca), (ab, b, bc), (ca, ab, bc), (ca, bc, c)]
-    return np.concatenate([corners, middles]), np.stack([np.column_stack(three) for three in four], 1).reshape(-1, 3)

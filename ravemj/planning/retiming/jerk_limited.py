@@ -33,9 +33,6 @@ class JerkLimited:
 
     def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows | None:
         """Return the rows of a segment: one for each change of jerk, and its end."""
-        if duration <= 0:
-            rest = np.zeros_like(segment.step)[None]
-            return Rows(np.zeros(1), (rest, rest, rest))
         joints = _joints(segment.step, limits)
         changes = [_changes(_double_s(*one), duration) for one in joints]
         inner = np.unique(np.concatenate([np.zeros(1), *changes]))

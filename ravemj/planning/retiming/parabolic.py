@@ -41,9 +41,6 @@ class Parabolic:
 
     def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows | None:
         """Return the rows of a segment: one for each change of acceleration, and its end."""
-        if duration <= 0:
-            rest = np.zeros_like(segment.step)[None]
-            return Rows(np.zeros(1), (rest, rest))
         bounds = duration, limits.velocity, limits.acceleration
         if segment.is_from_rest_to_rest:
             ramps = fit_from_rest(segment.step, *bounds)

@@ -6,28 +6,22 @@ from typing import Any
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.retiming.segments import Limits, Rows, Segment
+from ravemj.planning.retiming.segments import LONGER, MOST_ATTEMPTS, Limits, Rows, Segment
 
-_LONGER = 1.05
-_MOST_ATTEMPTS = 500
 _SLACK = 1e-12
 """Relative: rounding."""
 
 
 class Polynomial:
-    """Drives each segment by the polynomial through values and derivatives at its ends; accelerations there are 0.
-
-    Attributes:
-        degree: 3 or 5.
-    """
+    """Drives each segment by the polynomial through values and derivatives at its ends."""
 
     interpolation: str
     order: int
     merges: bool
 
     def _first_time(self, way: Floats, limits: Limits) -> float:
-        """Return the first time to try [s], for joints that all move."""
-        raise NotImplementedError
+        """Return the first time to try [s], for joints that all move: the least from rest to rest."""
+        return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: Limits) -> float:
         """Return the least time from rest to rest [s]."""
@@ -48,12 +42,12 @@ class Polynomial:
         if segment.is_from_rest_to_rest:
             needed = self._from_rest_to_rest(np.abs(segment.step), limits) * (1 - _SLACK)
             while duration < needed:
-                duration *= _LONGER
+                duration *= LONGER
             return duration
-        for _ in range(_MOST_ATTEMPTS):
+        for _ in range(MOST_ATTEMPTS):
             if self._keeps_limits(segment, duration, limits):
                 return duration
-            duration *= _LONGER
+            duration *= LONGER
         return np.inf
 
     def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows:
@@ -102,9 +96,6 @@ class Quintic(Polynomial):
     interpolation = "quintic"
     order = 2
     merges = True
-
-    def _first_time(self, way: Floats, limits: Limits) -> float:
-        return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: Limits) -> float:
         by_speed = 15 / 8 * way / limits.velocity

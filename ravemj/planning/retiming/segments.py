@@ -8,15 +8,15 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.space import ON_LIMIT, Coordinates
+from ravemj.planning.space import Coordinates
 
 ENOUGH = 1e-9
 """How much shorter [s] than needed a given time may be: rounding."""
 
-_LONGER = 1.05
+LONGER = 1.05
 """Times that no formula gives are multiplied by this until the limits hold, as in OpenRAVE."""
 
-_MOST_ATTEMPTS = 500
+MOST_ATTEMPTS = 500
 
 
 class RetimingError(Exception):
@@ -53,10 +53,7 @@ class Limits:
         Raises:
             OutsideLimitsError: one is not.
         """
-        slack = ON_LIMIT * np.maximum(1.0, np.abs(points))
-        wrong = (points < self.lower - slack) | (points > self.upper + slack) | ~np.isfinite(points)
-        wrong[:, self.coordinates.circular] &= ~np.isfinite(points[:, self.coordinates.circular])
-        for row, column in np.argwhere(wrong):
+        for row, column in np.argwhere(self.coordinates.outside(points, self.lower, self.upper)):
             value, lower, upper = points[row, column], self.lower[column], self.upper[column]
             message = f"value {column} of waypoint {row} is {value:.15g}, outside its limits [{lower:g}, {upper:g}]"
             raise OutsideLimitsError(message)
@@ -99,12 +96,7 @@ class Rows(NamedTuple):
 
 
 class Interpolated(Protocol):
-    """How results move between their rows.
-
-    Attributes:
-        interpolation: Of the joint values.
-        order: How many derivatives the result has.
-    """
+    """How results move between their rows: the interpolation of the values, and how many derivatives they have."""
 
     interpolation: str
     order: int
@@ -113,8 +105,7 @@ class Interpolated(Protocol):
 class Profile(Interpolated, Protocol):
     """A kind of retimer that goes from waypoint to waypoint.
 
-    Attributes:
-        merges: Whether equal neighbours become one waypoint, and time does not start before the first one.
+    If it merges, equal neighbours become one waypoint, and time does not start before the first one.
     """
 
     merges: bool
@@ -191,25 +182,21 @@ def _driven(profile: Profile, segment: Segment, limits: Limits, given: float | N
         needed = max(needed, profile.shortest(segment.from_rest, limits))
     if not math.isfinite(needed):
         raise RetimingError("a joint moves whose velocity or acceleration limit is 0")
+    if given is not None and not given >= needed - ENOUGH:
+        raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
     if given is not None:
-        return _kept(profile, segment, limits, given, needed)
-    duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
-    for _ in range(_MOST_ATTEMPTS):
+        duration = max(given, needed)
+    else:
+        duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
+    if duration <= 0 and profile.merges:
+        return Rows(np.zeros(1), ())
+    for _ in range(MOST_ATTEMPTS if given is None else 1):
         rows = profile.drive(segment, duration, limits)
         if rows is not None:
             return rows
-        duration *= _LONGER
-    raise RetimingError(f"no motion of {duration:.6g} s keeps the limits with the velocities at the waypoints")
-
-
-def _kept(profile: Profile, segment: Segment, limits: Limits, given: float, needed: float) -> Rows:
-    """Return the motion of a segment in a given time."""
-    if not given >= needed - ENOUGH:
-        raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
-    rows = profile.drive(segment, max(given, needed), limits)
-    if rows is None:
-        raise RetimingError(f"no motion of {given:.6g} s keeps the limits with the velocities at the waypoints")
-    return rows
+        duration *= LONGER
+    tried = duration if given is None else given
+    raise RetimingError(f"no motion of {tried:.6g} s keeps the limits with the velocities at the waypoints")
 
 
 class _Path:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.planning.retiming.segments import ENOUGH, Limits, RetimingError, Timed
-from ravemj.planning.space import ON_LIMIT
 
 _LEAST_ROWS = 400
 _ROWS_OF_SEGMENT = 20
@@ -41,12 +40,7 @@ class ToppRa:
     order = 1
 
     def timed(self, points: Floats, limits: Limits, time_step: float = 0.0) -> Timed:
-        """Give a path times.
-
-        Args:
-            points: The waypoints, shape (m, n).
-            limits: What the motion may do.
-            time_step: The whole time is a multiple of it [s]; 0: any.
+        """Give a path, shape (m, n), times; the whole is a multiple of ``time_step`` [s], if that is not 0.
 
         Raises:
             OutsideLimitsError: a waypoint is outside the limits.
@@ -100,26 +94,16 @@ def _fastest(corners: Floats, moving: Ints, limits: Limits) -> "_Rows":
 
 def _check_values(values: Floats, cubics: "_Cubics", limits: Limits) -> None:
     """Check that the values between the rows are within the limits."""
-    free = limits.coordinates.circular
     for extreme in cubics.extremes():
         beyond = values[:-1] + extreme
-        slack = ON_LIMIT * np.maximum(1.0, np.abs(beyond))
-        wrong = ((beyond < limits.lower - slack) | (beyond > limits.upper + slack)) & ~free
-        for row, column in np.argwhere(wrong):
+        for row, column in np.argwhere(limits.coordinates.outside(beyond, limits.lower, limits.upper)):
             bounds = f"[{limits.lower[column]:g}, {limits.upper[column]:g}]"
             found = f"value {column} swings to {beyond[row, column]:.6g}, outside its limits {bounds}"
             raise RetimingError(f"{found}; more waypoints keep the smooth path nearer to straight lines")
 
 
 class _Rows(NamedTuple):
-    """A motion at the rows of a grid.
-
-    Attributes:
-        values: Shape (m, n).
-        velocities: Shape (m, n).
-        deltas: Times between the rows [s], shape (m - 1,).
-        is_point: Which rows are waypoints, shape (m,).
-    """
+    """A motion at the m rows of a grid; deltas are the times between them [s]."""
 
     values: Floats
     velocities: Floats

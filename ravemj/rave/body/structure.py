@@ -9,7 +9,7 @@ from ravemj.core.arguments import checked_index
 from ravemj.core.arrays import checked_indices
 from ravemj.errors import ArgumentError
 from ravemj.model import chains, hashes
-from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.chains import adjacent_pairs
 from ravemj.model.mimic import Equations
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.body.limits import Limits

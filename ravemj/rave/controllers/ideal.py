@@ -13,7 +13,7 @@ from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.trajectory import Trajectory
-from ravemj.trajectories.grabs import GrabChange, grab_changes
+from ravemj.trajectories.body_motion import GrabChange, grab_changes
 from ravemj.trajectories.groups import joint_indices
 
 _LOG = logging.getLogger("ravemj")

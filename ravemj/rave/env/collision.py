@@ -11,8 +11,8 @@ from ravemj.core.handles import Handle, registered
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
+from ravemj.model.bounds import links_triangles
 from ravemj.model.scene import Mesh
-from ravemj.model.triangles import links_triangles
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
 from ravemj.rave.enums import TriangulateOptions
 from ravemj.rave.env.contents import Contents

@@ -8,7 +8,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.planning.jitter import nearby
+from ravemj.planning.edges import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint

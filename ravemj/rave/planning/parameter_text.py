@@ -9,7 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.trajectories.groups import Group
-from ravemj.trajectories.text import groups_of, layout_text
+from ravemj.trajectories.serialization import groups_of, layout_text
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.tree import Element
