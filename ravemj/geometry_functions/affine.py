@@ -66,7 +66,11 @@ def RaveGetAffineDOF(affinedofs: int) -> int:
 
 
 def RaveGetAffineDOFFromIndex(affinedofs: int, index: int) -> DOFAffine:
-    """Return which part of a pose a value belongs to, by its ``index`` among the values of ``affinedofs``.
+    """Return which part a value belongs to.
+
+    Args:
+        affinedofs: ``DOFAffine`` combined with ``|``.
+        index: A place among the affine values.
 
     Raises:
         ArgumentError: there are not so many values.
@@ -78,10 +82,14 @@ def RaveGetAffineDOFFromIndex(affinedofs: int, index: int) -> DOFAffine:
 
 
 def RaveGetIndexFromAffineDOF(affinedofs: int, dof: int) -> int:
-    """Return where the first value of the part ``dof`` is among those of ``affinedofs``.
+    """Return where the first value of a part is.
+
+    Args:
+        affinedofs: ``DOFAffine`` combined with ``|``.
+        dof: One of the ``DOFAffine``.
 
     Raises:
-        ArgumentError: the part is not among them.
+        ArgumentError: the part is not among ``affinedofs``.
     """
     index = 0
     for part in _parts(affinedofs):
@@ -94,12 +102,15 @@ def RaveGetIndexFromAffineDOF(affinedofs: int, dof: int) -> int:
 def RaveGetAffineDOFValuesFromTransform(
     transform: ArrayLike, affinedofs: int, rotationaxis: ArrayLike | None = None
 ) -> Floats:
-    """Return the values of parts of a pose: X, Y, Z [m], then the rotation, as far as wanted; shape (n,).
+    """Return the values of parts of a pose.
 
     Args:
         transform: A matrix of 4x4 or a pose of 7 numbers.
         affinedofs: ``DOFAffine`` values, combined.
         rotationaxis: The axis of ``RotationAxis``; None: z.
+
+    Returns:
+        X, Y, Z [m], then the rotation, as far as they are among ``affinedofs``; shape (n,).
     """
     return affine_values(arguments.pose(transform, "transform"), affinedofs, _axis(rotationaxis))
 
@@ -107,13 +118,16 @@ def RaveGetAffineDOFValuesFromTransform(
 def RaveGetTransformFromAffineDOFValues(
     values: ArrayLike, affinedofs: int, rotationaxis: ArrayLike | None = None, transform: ArrayLike | None = None
 ) -> Floats:
-    """Return a transform with parts replaced, shape (4, 4).
+    """Return a transform with parts replaced.
 
     Args:
         values: One for each DOF, in the order of ``RaveGetAffineDOFValuesFromTransform``.
         affinedofs: ``DOFAffine`` values, combined.
         rotationaxis: The axis of ``RotationAxis``; None: z.
         transform: What to start from, a matrix of 4x4 or a pose of 7 numbers; None: the identity.
+
+    Returns:
+        Shape (4, 4).
     """
     start = Pose() if transform is None else arguments.pose(transform, "transform")
     given = arguments.numbers(values, RaveGetAffineDOF(affinedofs), "values")

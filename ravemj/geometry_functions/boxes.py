@@ -114,7 +114,12 @@ def _listed(numbers: Iterable[float], separator: str = ",") -> str:
 
 
 def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
-    """Return the box ``aabb`` moved by ``transform``, a matrix of 4x4 or 3x4 or a pose of 7 numbers."""
+    """Return a box moved by a transform, a matrix of 4x4 or a pose of 7 numbers.
+
+    Args:
+        aabb: The box.
+        transform: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
+    """
     x, y, z = aabb.pos().tolist()
     moved = arguments.pose(transform, "transform") @ Pose((x, y, z))
     return OrientedBox(moved.numbers(), aabb.extents())
@@ -127,12 +132,22 @@ def AABBFromOrientedBox(obb: OrientedBox) -> AABB:
 
 
 def CheckAABBCollision(aabb1: AABB, aabb2: AABB) -> bool:
-    """Return whether two axis-aligned boxes, ``aabb1`` and ``aabb2``, overlap or touch."""
+    """Return whether two axis-aligned boxes overlap or touch.
+
+    Args:
+        aabb1: A box.
+        aabb2: The other.
+    """
     return bool(np.all(np.abs(aabb1.pos() - aabb2.pos()) <= aabb1.extents() + aabb2.extents()))
 
 
 def CheckOBBCollision(obb1: OrientedBox, obb2: OrientedBox) -> bool:
-    """Return whether the boxes ``obb1`` and ``obb2`` touch: no plane along their faces or edges separates them."""
+    """Return whether two boxes overlap or touch: no plane along their faces or edges separates them.
+
+    Args:
+        obb1: A turned box.
+        obb2: The other.
+    """
     first, second = obb1.transform(), obb2.transform()
     edges1, edges2 = first[:3, :3].T, second[:3, :3].T
     crossed = np.cross(edges1[:, None], edges2[None]).reshape(-1, 3)
@@ -143,10 +158,20 @@ def CheckOBBCollision(obb1: OrientedBox, obb2: OrientedBox) -> bool:
 
 
 def CheckAABBAndOBBCollision(aabb: AABB, obb: OrientedBox) -> bool:
-    """Return whether the axis-aligned box ``aabb`` and the oriented box ``obb`` overlap or touch."""
+    """Return whether an axis-aligned box and an oriented box overlap or touch.
+
+    Args:
+        aabb: The box.
+        obb: The turned box.
+    """
     return CheckOBBCollision(OrientedBoxFromAABB(aabb, np.eye(4)), obb)
 
 
 def CheckBoxAtOriginAndOBBCollision(extents: ArrayLike, obb: OrientedBox) -> bool:
-    """Return whether a box at the origin, with half edge lengths ``extents`` [m], and the box ``obb`` touch."""
+    """Return whether a box in the origin, given by half its edge lengths, and another box overlap or touch.
+
+    Args:
+        extents: Half the edge lengths of the first box [m], shape (3,).
+        obb: The turned box.
+    """
     return CheckAABBAndOBBCollision(AABB(ZERO, extents), obb)

@@ -126,7 +126,12 @@ TransformLookat = transformLookat
 def ComputePoseDistSqr(pose0: ArrayLike, pose1: ArrayLike, quatweight: float = 1.0) -> float:
     """Return the squared distance of two poses: of the positions, plus ``quatweight`` times that of the quaternions.
 
-    The sign of a quaternion does not count. The poses ``pose0`` and ``pose1`` have shape (7,).
+    The sign of a quaternion does not count.
+
+    Args:
+        pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
+        pose1: The other, shape (7,).
+        quatweight: Weight of the rotations against the positions.
     """
     return float(ComputePoseArrayDistSqr(pose0, [arguments.numbers(pose1, 7, "pose1")], quatweight)[0])
 

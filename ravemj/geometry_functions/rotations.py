@@ -153,7 +153,11 @@ def quatRotate(q: ArrayLike, trans: ArrayLike) -> Floats:
 
 
 def ExtractAxisFromQuat(quat: ArrayLike, iaxis: int) -> Floats:
-    """Return where the unit quaternion ``quat`` turns the x, y or z axis (``iaxis`` 0, 1, 2), shape (3,).
+    """Return where a unit quaternion turns the x, y or z axis (``iaxis`` 0, 1, 2), shape (3,).
+
+    Args:
+        quat: A quaternion [w, x, y, z], shape (4,).
+        iaxis: 0, 1 or 2 for x, y or z.
 
     Raises:
         ArgumentError: there is no such axis.
@@ -199,13 +203,16 @@ def normalizeAxisRotation(axis: ArrayLike, quat: ArrayLike) -> tuple[float, Floa
 
 
 def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshortarc: bool = True) -> Floats:
-    """Return the rotation on the way from one to another at constant angular velocity, a unit quaternion, shape (4,).
+    """Return the rotation on the way from one to another, at constant angular velocity.
 
     Args:
         quat0: Unit quaternion at t = 0.
         quat1: Unit quaternion at t = 1.
         t: From 0 to 1.
         forceshortarc: Whether to take the shorter way; else the way between the quaternions as they are.
+
+    Returns:
+        Unit quaternion, shape (4,). Of quaternions of other lengths, which mean nothing here, it has another one.
     """
     start, end = np.array(arguments.wxyz(quat0, "quat0")), np.array(arguments.wxyz(quat1, "quat1"))
     cosine = float(start @ end)
@@ -228,7 +235,7 @@ quatSlerp = InterpolateQuatSlerp
 def InterpolateQuatSquad(
     quat0: ArrayLike, quat1: ArrayLike, quat2: ArrayLike, quat3: ArrayLike, t: float, forceshortarc: bool = True
 ) -> Floats:
-    """Return the rotation on a smooth way between two, drawn towards two others: a unit quaternion, shape (4,).
+    """Return the rotation on a smooth way from ``quat0`` to ``quat3``, drawn towards two others.
 
     Args:
         quat0: Unit quaternion at t = 0.
@@ -237,6 +244,9 @@ def InterpolateQuatSquad(
         quat3: Unit quaternion at t = 1.
         t: From 0 to 1.
         forceshortarc: As for ``quatSlerp``.
+
+    Returns:
+        Unit quaternion, shape (4,).
     """
     outer = InterpolateQuatSlerp(quat0, quat3, t, forceshortarc)
     inner = InterpolateQuatSlerp(quat1, quat2, t, forceshortarc)

@@ -93,11 +93,14 @@ def refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
 
 
 def TSP(solutions: ArrayLike, distfn: Callable[[Floats, Floats], float]) -> Floats:
-    """Return points in an order in which each is followed by the nearest of the rest, shape (n, k).
+    """Return points in an order in which each is followed by the nearest of the rest.
 
     Args:
         solutions: The points, shape (n, k); the first one stays first.
         distfn: Distance of two points.
+
+    Returns:
+        The same points, shape (n, k).
     """
     ordered = checked_numbers(solutions, "solutions")
     for place in range(1, len(ordered) - 1):

@@ -61,7 +61,12 @@ class CollisionChecker(CheckerExtras):
         self.groups = GeometryGroups(env.simulation)
 
     def Clone(self, ref: "CollisionChecker", cloningoptions: int = 0) -> None:
-        """Copy the options, the description and the user data of ``ref``. ``cloningoptions`` are not used."""
+        """Take over the options, the description and the data of users from another checker.
+
+        Args:
+            ref: The other checker.
+            cloningoptions: Not used.
+        """
         super().Clone(ref, cloningoptions)
         self._tolerance = ref.GetTolerance()
         self.SetCollisionOptions(ref.GetCollisionOptions())
@@ -125,9 +130,11 @@ class CollisionChecker(CheckerExtras):
             return self.answer(world, self._pairs(world, arguments), report)
 
     def CheckSelfCollision(self, linkbody: "BodyCollision | Link", report: CollisionReport | None = None) -> bool:
-        """Return whether ``linkbody``, a body or a link of it, collides with the rest; see ``body.CheckSelfCollision``.
+        """Return whether a body collides with itself; see ``body.CheckSelfCollision``.
 
-        ``report`` receives the collisions.
+        Args:
+            linkbody: The body, or one link that is tested against the others.
+            report: Filled with what is found.
         """
         if report is not None:
             checked_kind(report, CollisionReport, "CheckSelfCollision: report")

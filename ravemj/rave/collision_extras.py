@@ -108,8 +108,11 @@ class CheckerExtras(Interface):
     ) -> tuple[NDArray[np.bool_], Floats]:
         """Return which rays hit something, shape (n,), and where, shape (n, 6); see ``env.CheckCollisionRays``.
 
-        That takes ``rays``, ``body`` and ``front_facing_only``, too. ``checkPreemptFn`` is not used, since all rays are
-        cast at once.
+        Args:
+            rays: As there.
+            body: As there.
+            front_facing_only: As there.
+            checkPreemptFn: Not used: the rays are cast at once.
         """
         del checkPreemptFn
         return self._env.CheckCollisionRays(rays, body, front_facing_only)
@@ -138,10 +141,14 @@ class CheckerExtras(Interface):
         return self.groups.default
 
     def SetBodyGeometryGroup(self, body: "KinBody", groupname: str) -> bool:
-        """Use the group ``groupname`` for ``body``, until ``SetGeometryGroup`` sets it for all bodies.
+        """Take a group of geometries for one body; see ``SetGeometryGroup``, which sets it for all of them again.
 
-        With an empty name, use the geometries that its links have. Return whether a link of the body has such a group;
-        if not, nothing changes.
+        Args:
+            body: The body.
+            groupname: The group; empty: the geometries that links have.
+
+        Returns:
+            Whether a link of the body has such a group. If not, nothing changes.
         """
         state = body.simulation_state
         found = has_group(state.scene, checked_kind(groupname, str, "SetBodyGeometryGroup: groupname", "a text"))

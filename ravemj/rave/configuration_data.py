@@ -119,9 +119,11 @@ class ConfigurationData(ApiObject):
         return None if column is None else float(self._checked(data)[column])
 
     def InsertDeltaTime(self, data: MutableSequence[float] | Floats, deltatime: float) -> bool:
-        """Write ``deltatime``, the time since the last waypoint [s], into ``data``, shape (dof,).
+        """Write the time since the last waypoint [s] into a configuration; return whether it has a place for it.
 
-        Return whether the layout has a place for it.
+        Args:
+            data: The configuration; it is changed. Shape (dof,).
+            deltatime: Seconds since the configuration before.
         """
         column = extraction.time_column(self._groups)
         if column is None:

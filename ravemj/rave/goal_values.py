@@ -152,7 +152,12 @@ class GoalValues(ApiObject):
         return self._of(_Type.TranslationXYOrientation3D)
 
     def SetTranslationLocalGlobal6D(self, localpos: ArrayLike, pos: ArrayLike) -> None:
-        """Set the goal that the point ``localpos`` in the tool frame is at ``pos`` [m], shape (3,) each."""
+        """Set the goal to a point of the tool and where it shall be.
+
+        Args:
+            localpos: The point in the frame of the tool [m], shape (3,).
+            pos: Where it shall be [m], shape (3,).
+        """
         self._set(_Type.TranslationLocalGlobal6D, [localpos, pos])
 
     def GetTranslationLocalGlobal6D(self) -> tuple[Floats, Floats]:

@@ -87,7 +87,12 @@ class IkParameterizationData(GoalValues):
         return self._values.copy()
 
     def SetValues(self, values: ArrayLike, type: int) -> None:
-        """Set the ``type`` of the goal and its ``values``, as many as the type has."""
+        """Set the numbers of the goal.
+
+        Args:
+            values: As many as the type has.
+            type: The type.
+        """
         kind = _Type(type)
         self._values = checked_vector(values, self.GetNumberOfValuesFromType(kind), "values")
         self._type = kind
@@ -155,7 +160,12 @@ class IkParameterizationData(GoalValues):
         self._custom[name] = checked_numbers(values, "values")
 
     def SetCustomValue(self, name: str, value: float) -> None:
-        """Attach the number ``value`` under ``name``; see ``SetCustomValues``."""
+        """Attach one number under a name; see ``SetCustomValues``.
+
+        Args:
+            name: The name.
+            value: The number.
+        """
         self.SetCustomValues(name, [value])
 
     def GetCustomValues(self, name: str) -> Floats | None:

@@ -59,7 +59,12 @@ class IkReturn(ApiObject):
         return {key: numbers.copy() for key, numbers in self._map.items()}
 
     def SetMapKeyValue(self, key: str, value: ArrayLike) -> None:
-        """Attach the numbers ``value``, shape (k,), under the name ``key``."""
+        """Attach numbers under a name.
+
+        Args:
+            key: The name.
+            value: The numbers, shape (k,).
+        """
         self._map[key] = checked_numbers(value, "SetMapKeyValue: value")
 
     def GetUserData(self) -> Any:  # noqa: ANN401 - any object of the user's

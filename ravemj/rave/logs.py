@@ -42,7 +42,12 @@ def RaveGetDebugLevel() -> int:
 
 
 def RaveLog(log: str, level: int = DebugLevel.Info) -> None:  # OpenRAVE's name of the argument
-    """Log the line ``log`` at a ``level``, a ``DebugLevel`` or its number."""
+    """Log a line.
+
+    Args:
+        log: The message.
+        level: A ``DebugLevel``, or its number.
+    """
     logging.getLogger("openravepy").log(_python_level(int(level)), "%s", str(log).rstrip("\n"))
 
 

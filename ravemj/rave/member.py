@@ -67,7 +67,12 @@ class Member(ApiObject):
         return _chosen({key: np.array(values) for key, values in self._scene.parameters.floats}, name, index)
 
     def SetFloatParameters(self, key: str, parameters: ArrayLike) -> None:
-        """Attach the numbers ``parameters`` under the name ``key``; [] removes them."""
+        """Attach numbers under a name.
+
+        Args:
+            key: The name.
+            parameters: The numbers; [] removes them.
+        """
         self._set_parameter("floats", key, tuple(checked_numbers(parameters, "SetFloatParameters").ravel().tolist()))
 
     def GetIntParameters(self, name: str | None = None, index: int = -1) -> dict[str, Ints] | Ints | int | None:
@@ -81,7 +86,12 @@ class Member(ApiObject):
         return _chosen(arrays, name, index)
 
     def SetIntParameters(self, key: str, parameters: ArrayLike) -> None:
-        """Attach the integers ``parameters`` under the name ``key``; [] removes them."""
+        """Attach integers under a name.
+
+        Args:
+            key: The name.
+            parameters: The integers; [] removes them.
+        """
         numbers = checked_numbers(parameters, "SetIntParameters").ravel().astype(np.int_)
         self._set_parameter("integers", key, tuple(numbers.tolist()))
 
@@ -91,7 +101,12 @@ class Member(ApiObject):
         return found if name is None else found.get(name)
 
     def SetStringParameters(self, key: str, value: str) -> None:
-        """Attach the text ``value`` under the name ``key``; an empty one removes it."""
+        """Attach a text under a name.
+
+        Args:
+            key: The name.
+            value: The text; an empty one removes it.
+        """
         self._set_parameter("texts", key, checked_kind(value, str, "SetStringParameters: value", "a text"))
 
     def _set_parameter(self, field: str, key: str, value: Hashable) -> None:

@@ -57,7 +57,12 @@ class PhysicsEngine(Interface):
             self.dynamics = Physics(env.simulation)
 
     def Clone(self, ref: "PhysicsEngine", cloningoptions: int = 0) -> None:
-        """Copy gravity, the description and the user data of ``ref``. ``cloningoptions`` are not used."""
+        """Copy gravity, the description and the user data of another engine.
+
+        Args:
+            ref: The other engine.
+            cloningoptions: Not used.
+        """
         super().Clone(ref, cloningoptions)
         self.SetGravity(ref.GetGravity())
 
@@ -133,9 +138,15 @@ class PhysicsEngine(Interface):
         return velocity[:3], velocity[3:]
 
     def SetLinkVelocity(self, link: "Link", linearvel: ArrayLike, angularvel: ArrayLike) -> bool:
-        """Set the velocity of ``link`` in world axes, and return True; see ``link.SetVelocity``.
+        """Set the velocity of one link; see ``link.SetVelocity``.
 
-        ``linearvel`` is that of its origin [m/s], ``angularvel`` its angular velocity [rad/s], shape (3,) each.
+        Args:
+            link: The link.
+            linearvel: The velocity of the link's origin in world axes [m/s], shape (3,).
+            angularvel: The angular velocity in world axes [rad/s], shape (3,).
+
+        Returns:
+            True.
         """
         link.SetVelocity(linearvel, angularvel)
         return True
@@ -145,7 +156,15 @@ class PhysicsEngine(Interface):
         return body.GetLinkVelocities()
 
     def SetLinkVelocities(self, body: "KinBody", velocities: ArrayLike) -> bool:
-        """Set the ``velocities`` of all links of ``body``, shape (links, 6), and return True."""
+        """Set the velocities of all links of a body; see ``body.SetLinkVelocities``.
+
+        Args:
+            body: The body.
+            velocities: Shape (links, 6).
+
+        Returns:
+            True.
+        """
         body.SetLinkVelocities(velocities)
         return True
 

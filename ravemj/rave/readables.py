@@ -24,12 +24,22 @@ class Readable(ApiObject):
         return f"<{self._id}>{escape(str(self._data))}</{self._id}>"
 
     def SerializeJSON(self, unitScale: float = 1.0, options: int = 0) -> Any:  # noqa: ANN401 - what JSON can hold
-        """Return the value; ``unitScale`` and ``options`` have no effect."""
+        """Return the value.
+
+        Args:
+            unitScale: Not used.
+            options: Not used.
+        """
         del unitScale, options
         return self._data
 
     def DeserializeJSON(self, obj: Any, unitScale: float = 1.0) -> None:  # noqa: ANN401 - what JSON can hold
-        """Set the value to ``obj``; ``unitScale`` has no effect."""
+        """Set the value.
+
+        Args:
+            obj: The value.
+            unitScale: Not used.
+        """
         del unitScale
         self._data = obj
 
@@ -51,7 +61,12 @@ class ReadableInterface(ApiObject):
         return dict(self._readables or {})
 
     def SetReadableInterface(self, id: str, readable: Readable | None) -> None:
-        """Attach the value ``readable`` under ``id``; None removes the one that is there."""
+        """Attach a value.
+
+        Args:
+            id: The id.
+            readable: The value; None removes the value of that id.
+        """
         kept = {key: one for key, one in (self._readables or {}).items() if key != id}
         self._readables = kept if readable is None else kept | {id: readable}
 
@@ -61,7 +76,12 @@ class stringreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringReadable(id: str, data: str) -> Readable:
-        """Return the text ``data`` under ``id``."""
+        """Return a text under an id.
+
+        Args:
+            id: The id.
+            data: The text.
+        """
         return Readable(id, str(data))
 
 
@@ -70,7 +90,12 @@ class xmlreaders:  # noqa: N801 - OpenRAVE's name
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
-        """Return the text ``data`` under ``xmlid``."""
+        """Return a text under an id.
+
+        Args:
+            xmlid: The id.
+            data: The text.
+        """
         return Readable(xmlid, str(data))
 
 

@@ -122,7 +122,12 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
 
 
 def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's names of the arguments
-    """Return whether ``RaveCreateInterface`` knows a kind ``type`` and ``name``, in any letter case."""
+    """Return whether ``RaveCreateInterface`` makes something of a kind and name.
+
+    Args:
+        type: The kind.
+        name: The name; letter case does not matter.
+    """
     known = RaveGetLoadedInterfaces()[InterfaceType(type)]
     return checked_kind(name, str, "RaveHasInterface: name", "a text").lower() in {one.lower() for one in known}
 

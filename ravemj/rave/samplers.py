@@ -85,7 +85,14 @@ class SpaceSampler(Interface):
     def SampleSequence(
         self, type: SampleDataType, num: int, interval: int = Interval.Closed
     ) -> "Floats | NDArray[np.uint32]":
-        """Return the next points in one row, shape (num * dof,); ``type``, ``interval``: see ``SampleSequence2D``."""
+        """Return the next points of the sequence in one row, shape (num * dof,).
+
+        Args:
+            type: The kind of numbers, a ``SampleDataType``.
+            num: The number of points.
+            interval: Which of the limits belong to the space, an ``Interval``; not used, since samples hardly ever hit
+                a limit.
+        """
         return self.SampleSequence2D(type, num, interval).ravel()
 
     def SampleSequence2D(
@@ -128,9 +135,12 @@ class SpaceSampler(Interface):
         return self.SampleSequence(type, 1, interval)[0]
 
     def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
-        """Raise an error: no sampler of OpenRAVE returns ``num`` points, shape (num, dof), that cover its space.
+        """Raise an error: no sampler of OpenRAVE returns points, shape (num, dof), that cover its space completely.
 
-        ``type`` and ``interval`` are as for ``SampleSequence2D``.
+        Args:
+            type: The kind of numbers, a ``SampleDataType``.
+            num: The number of points.
+            interval: As of ``SampleSequence``.
 
         Raises:
             openrave_exception: always (``NotImplemented``).

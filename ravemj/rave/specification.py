@@ -88,23 +88,28 @@ class ConfigurationSpecification(ConfigurationData):
     def FindCompatibleGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
         """Return a copy of the group with values of the same kind and body, or None.
 
-        ``name`` is the name of a group or the beginning of one, such as ``joint_values arm``; with ``exactmatch`` the
-        names have to be equal.
+        Args:
+            name: The name of a group or the beginning of one, for instance ``joint_values arm``.
+            exactmatch: Whether the names have to be equal.
         """
         found = layout.find_compatible(self._groups, name if isinstance(name, str) else name.name, exactmatch)
         return None if found is None else layout.copied([found])[0]
 
     def FindTimeDerivativeGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return a copy of the group with the time derivative of ``name``, a group or its name, or None.
+        """Return a copy of the group with the time derivative of another, or None. See ``FindCompatibleGroup``.
 
-        With ``exactmatch``, the rest of the name has to be the same, too.
+        Args:
+            name: A group, or its name.
+            exactmatch: Whether the rest of the name has to be the same, too.
         """
         return self._shifted(name, 1, exactmatch)
 
     def FindTimeIntegralGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return a copy of the group whose time derivative ``name`` is, a group or its name, or None.
+        """Return a copy of the group whose time derivative another group is, or None. See ``FindCompatibleGroup``.
 
-        With ``exactmatch``, the rest of the name has to be the same, too.
+        Args:
+            name: A group, or its name.
+            exactmatch: Whether the rest of the name has to be the same, too.
         """
         return self._shifted(name, -1, exactmatch)
 
@@ -142,9 +147,11 @@ class ConfigurationSpecification(ConfigurationData):
         return self.AddGroup(DELTATIME, 1)
 
     def AddDerivativeGroups(self, deriv: int, adddeltatime: bool = False) -> None:
-        """Append the time derivatives of order ``deriv`` of all positions, with interpolations that fit.
+        """Append time derivatives of all positions, with the interpolations that fit those of the positions.
 
-        With ``adddeltatime``, append the time since the last waypoint, too.
+        Args:
+            deriv: 1 for velocities, 2 for accelerations and so on.
+            adddeltatime: Whether to append the time since the last waypoint as well.
         """
         self._groups = layout.with_derivatives(self._groups, checked_order(deriv, "deriv"), adddeltatime)
 
@@ -153,9 +160,14 @@ class ConfigurationSpecification(ConfigurationData):
         self.AddDerivativeGroups(1, adddeltatime)
 
     def RemoveGroups(self, groupname: str, exactmatch: bool = True) -> int:
-        """Remove the group ``groupname``, close the gap, and return how many groups were removed.
+        """Remove groups, and close the gaps.
 
-        Without ``exactmatch``, groups whose names begin with it are removed, too.
+        Args:
+            groupname: The name of a group.
+            exactmatch: False also removes groups whose names begin with it.
+
+        Returns:
+            The number of removed groups.
         """
         before = len(self._groups)
         self._groups = layout.without(self._groups, groupname, exactmatch)

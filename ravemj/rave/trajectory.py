@@ -145,9 +145,12 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def GetWaypoints(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
-        """Return the waypoints from ``startindex`` to before ``endindex`` in one row, shape (n * dof,).
+        """Return the waypoints from ``startindex`` to before ``endindex``, one after the other, shape (n * dof,).
 
-        ``spec`` is the layout of the result, by default that of the trajectory.
+        Args:
+            startindex: The first waypoint.
+            endindex: The index after the last waypoint.
+            spec: The layout of the result; by default that of the trajectory.
         """
         return self.GetWaypoints2D(startindex, endindex, spec).ravel()
 
@@ -155,7 +158,10 @@ class Trajectory(Interface):
     def GetWaypoints2D(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
         """Return a copy of the waypoints from ``startindex`` to before ``endindex``, shape (n, dof).
 
-        ``spec`` is the layout of the result, by default that of the trajectory.
+        Args:
+            startindex: The first waypoint.
+            endindex: The index after the last waypoint.
+            spec: The layout of the result; by default that of the trajectory.
         """
         return self._as(self.waypoints.rows(startindex, endindex), spec)
 
@@ -206,9 +212,12 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
-        """Return the configuration at a ``time`` [s], shape (dof,); see ``Sample``.
+        """Return the configuration at a time, with ``data`` for values that the trajectory lacks. See ``Sample``.
 
-        ``data`` has the values that the trajectory lacks; ``spec`` is its layout and that of the result.
+        Args:
+            data: A configuration, shape (dof,).
+            time: The time since the start [s].
+            spec: The layout of the data and of the result.
         """
         source = self.waypoints.sample(time, restamped=False, find_body=self._env.simulation.body)
         target = ConfigurationSpecification(spec)
@@ -216,16 +225,27 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SamplePoints2D(self, times: ArrayLike, spec: Spec | None = None) -> Floats:
-        """Return the configurations at ``times`` [s], shape (n, dof); ``spec`` is as for ``Sample``."""
+        """Return the configurations at several times, shape (n, dof). See ``Sample``.
+
+        Args:
+            times: The times since the start [s], shape (n,).
+            spec: The layout of the result; by default that of the trajectory.
+        """
         rows = [self.Sample(float(time), spec) for time in checked_numbers(times, "times").ravel()]
         dof = (self.GetConfigurationSpecification() if spec is None else ConfigurationSpecification(spec)).GetDOF()
         return np.array(rows).reshape(len(rows), dof)
 
     @also_named(group="spec")
     def SamplePointsSameDeltaTime2D(self, deltatime: float, ensurelastpoint: bool, spec: Spec | None = None) -> Floats:
-        """Return configurations every ``deltatime`` [s], shape (n, dof).
+        """Return configurations at regular times.
 
-        With ``ensurelastpoint``, the end of the trajectory is appended. ``spec`` is as for ``Sample``.
+        Args:
+            deltatime: The time between two configurations [s].
+            ensurelastpoint: Whether to append the end of the trajectory.
+            spec: As for ``Sample``.
+
+        Returns:
+            Shape (n, dof).
         """
         return self.SampleRangeSameDeltaTime2D(deltatime, 0.0, self.GetDuration(), ensurelastpoint, spec)
 
@@ -254,7 +274,12 @@ class Trajectory(Interface):
         return self.SamplePoints2D(times, spec)
 
     def Clone(self, ref: "Trajectory", cloningoptions: int = 0) -> None:
-        """Copy layout, waypoints, description and user data of ``ref``. ``cloningoptions`` are not used."""
+        """Copy the layout, the waypoints, the description and the user data of another trajectory.
+
+        Args:
+            ref: The other trajectory.
+            cloningoptions: Not used.
+        """
         super().Clone(ref, cloningoptions)
         known = ref._waypoints
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
@@ -279,7 +304,11 @@ class Trajectory(Interface):
         return self
 
     def SaveToFile(self, filename: AnyPath, options: int | None = 0) -> None:
-        """Write the trajectory to the file ``filename``: binary, or XML if ``options`` are 0x8000.
+        """Write the trajectory to a file, in the format of ``serialize``.
+
+        Args:
+            filename: The file.
+            options: 0x8000 for XML; otherwise the file is binary.
 
         Raises:
             OutputError: the file cannot be written.

@@ -181,7 +181,11 @@ def GetTimeDurationUnitStandardValue(unit: TimeDurationUnit | str) -> float:
 
 
 def GetLengthUnitConversionScale(source: LengthUnit | str, target: LengthUnit | str) -> float:
-    """Return the factor from a length in the unit ``source`` to the same length in ``target``.
+    """Return the factor from a length in one unit to the same length in another.
+
+    Args:
+        source: The one unit.
+        target: The other.
 
     Example:
         >>> GetLengthUnitConversionScale(LengthUnit.m, LengthUnit.mm)
@@ -191,17 +195,32 @@ def GetLengthUnitConversionScale(source: LengthUnit | str, target: LengthUnit | 
 
 
 def GetMassUnitConversionScale(source: MassUnit | str, target: MassUnit | str) -> float:
-    """Return the factor from a mass in the unit ``source`` to the same mass in ``target``."""
+    """Return the factor from a mass in one unit to the same mass in another.
+
+    Args:
+        source: The one unit.
+        target: The other.
+    """
     return _per_standard(MassUnit, target) / _per_standard(MassUnit, source)
 
 
 def GetAngleUnitConversionScale(source: AngleUnit | str, target: AngleUnit | str) -> float:
-    """Return the factor from an angle in the unit ``source`` to the same angle in ``target``."""
+    """Return the factor from an angle in one unit to the same angle in another.
+
+    Args:
+        source: The one unit.
+        target: The other.
+    """
     return _per_standard(AngleUnit, target) / _per_standard(AngleUnit, source)
 
 
 def GetTimeDurationUnitConversionScale(source: TimeDurationUnit | str, target: TimeDurationUnit | str) -> float:
-    """Return the factor from a duration in the unit ``source`` to the same duration in ``target``."""
+    """Return the factor from a duration in one unit to the same duration in another.
+
+    Args:
+        source: The one unit.
+        target: The other.
+    """
     return _per_standard(TimeDurationUnit, target) / _per_standard(TimeDurationUnit, source)
 
 

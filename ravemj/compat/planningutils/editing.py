@@ -118,7 +118,13 @@ def GetTrajectorySegment(trajectory: Trajectory, starttime: float, endtime: floa
 
 
 def SegmentTrajectory(trajectory: Trajectory, starttime: float, endtime: float) -> None:
-    """Cut a trajectory down to a part of it, in place; ``GetTrajectorySegment`` explains the arguments."""
+    """Cut a trajectory down to a part of it; see ``GetTrajectorySegment``.
+
+    Args:
+        trajectory: Changed in place.
+        starttime: When the part starts [s].
+        endtime: When it ends [s].
+    """
     trajectory.Swap(GetTrajectorySegment(trajectory, starttime, endtime))
 
 

@@ -85,9 +85,17 @@ def ExtendActiveDOFWaypoint(
 def ExtendWaypoint(
     index: int, dofvalues: ArrayLike, dofvelocities: ArrayLike, trajectory: Trajectory, planner: Planner
 ) -> int:
-    """Let a trajectory with times start or end elsewhere, with the retimer ``planner``, whose name counts.
+    """Let a trajectory with times start or end elsewhere; see ``ExtendActiveDOFWaypoint``.
 
-    ``ExtendActiveDOFWaypoint`` explains the other arguments and what is returned.
+    Args:
+        index: 0: the start; the number of waypoints, or one less: the end.
+        dofvalues: Values of the new end.
+        dofvelocities: Its velocities.
+        trajectory: Changed in place.
+        planner: The retimer, whose name counts.
+
+    Returns:
+        Index behind the last waypoint that was put in.
     """
     name = checked_kind(planner, Planner, "ExtendWaypoint: planner").GetXMLId()
     new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities, index, 1)

@@ -67,9 +67,15 @@ def RetimeTrajectory(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> PlannerStatus:
-    """Give a trajectory of any bodies times that respect their limits.
+    """Give a trajectory of any bodies times that respect their limits; see ``RetimeActiveDOFTrajectory``.
 
-    ``RetimeActiveDOFTrajectory`` explains the arguments and what is returned.
+    Args:
+        trajectory: Changed in place.
+        hastimestamps: Whether to keep the times that there are, if the limits allow.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+        plannername: The retimer; empty: ``LinearTrajectoryRetimer``.
+        plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "RetimeTrajectory: trajectory")
     params = of_bodies(trajectory, stamped(hastimestamps, plannerparameters), maxvelmult, maxaccelmult)
@@ -138,9 +144,14 @@ def SmoothTrajectory(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> PlannerStatus:
-    """Shorten and time a trajectory of any bodies.
+    """Shorten and time a trajectory of any bodies; see ``SmoothActiveDOFTrajectory``.
 
-    ``SmoothActiveDOFTrajectory`` explains the arguments and what is returned.
+    Args:
+        trajectory: Changed in place.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+        plannername: The smoother; empty: ``ParabolicSmoother``.
+        plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "SmoothTrajectory: trajectory")
     return run_planner(
@@ -155,9 +166,14 @@ def SmoothAffineTrajectory(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> PlannerStatus:
-    """Shorten and time a trajectory of poses, with ``LinearSmoother``, the only smoother for poses.
+    """Shorten and time a trajectory of poses.
 
-    ``RetimeAffineTrajectory`` explains the arguments.
+    Args:
+        trajectory: Changed in place.
+        maxvelocities: A velocity limit for each value.
+        maxaccelerations: An acceleration limit for each value.
+        plannername: The smoother; empty: ``LinearSmoother``, the only one for poses.
+        plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "SmoothAffineTrajectory: trajectory")
     params = _affine(trajectory, maxvelocities, maxaccelerations, plannerparameters)

@@ -135,7 +135,15 @@ class Building(Structure):
         return self.Init(linkinfos, [], uri)
 
     def InitFromLinkInfos(self, linkInfos: Sequence[LinkInfo], uri: str = "") -> bool:
-        """Call ``InitFromLinks(linkInfos, uri)``, whose other name this is, and return True."""
+        """Replace the body by links without joints; another name of ``InitFromLinks``.
+
+        Args:
+            linkInfos: The descriptions of the links.
+            uri: The result of later calls of ``GetURI``.
+
+        Returns:
+            True.
+        """
         return self.InitFromLinks(linkInfos, uri)
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:

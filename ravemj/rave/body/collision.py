@@ -157,7 +157,11 @@ class BodyCollision(Structure, Interface):
         return pairs
 
     def SetAdjacentLinks(self, linkindex0: int, linkindex1: int) -> None:
-        """Exclude the pair of the links ``linkindex0`` and ``linkindex1`` from ``CheckSelfCollision``.
+        """Exclude a pair of links from ``CheckSelfCollision``.
+
+        Args:
+            linkindex0: Index of a link.
+            linkindex1: Index of the other.
 
         Raises:
             openrave_exception: there is no such link, or both are the same.

@@ -167,12 +167,22 @@ class Structure(Limits):
         return self.GetJointFromDOFIndex(dofindex).IsPrismatic()
 
     def IsDOFInChain(self, linkindex1: int, linkindex2: int, dofindex: int) -> bool:
-        """Return whether the DOF ``dofindex`` moves the links ``linkindex1`` and ``linkindex2`` against each other."""
+        """Return whether a DOF moves two links relative to each other.
+
+        Args:
+            linkindex1: Index of a link.
+            linkindex2: Index of the other link.
+            dofindex: Index of the DOF.
+        """
         first, second = self.DoesDOFAffectLink(dofindex, linkindex1), self.DoesDOFAffectLink(dofindex, linkindex2)
         return first != second
 
     def DoesAffect(self, jointindex: int, linkindex: int) -> int:
-        """Return 1 if the joint ``jointindex`` moves the link ``linkindex``, directly or through mimic joints, else 0.
+        """Return 1 if a joint moves a link, directly or through mimic joints, else 0.
+
+        Args:
+            jointindex: Index of the joint, not of a DOF.
+            linkindex: Index of the link.
 
         Raises:
             ArgumentError: there is no such joint or link.
@@ -182,7 +192,11 @@ class Structure(Limits):
         return self.DoesDOFAffectLink(joints[jointindex].GetDOFIndex(), linkindex)
 
     def DoesDOFAffectLink(self, dofindex: int, linkindex: int) -> int:
-        """Return 1 if the DOF ``dofindex`` moves the link ``linkindex``, directly or through mimic joints, else 0.
+        """Return 1 if a DOF moves a link, directly or through mimic joints, else 0.
+
+        Args:
+            dofindex: Index of the DOF.
+            linkindex: Index of the link.
 
         Raises:
             ArgumentError: there is no such DOF or link.

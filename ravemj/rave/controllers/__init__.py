@@ -50,9 +50,14 @@ def RaveCreateController(env: "Environment", name: str) -> Controller | None:
 
 
 def RaveCreateMultiController(env: "Environment", name: str = "") -> MultiController | None:
-    """Make a controller that distributes the DOFs of a robot in ``env`` among other controllers.
+    """Make a controller that distributes the DOFs of a robot among other controllers.
 
-    The ``name`` is ``GenericMultiController`` or empty; for other names, return None.
+    Args:
+        env: The environment of the robot.
+        name: ``GenericMultiController``, or empty.
+
+    Returns:
+        The controller; None for an unknown name.
     """
     word = asked_for(env, name, "RaveCreateMultiController")[0] or "GenericMultiController"
     return MultiController(env, word) if _KINDS.get(word.lower()) is MultiController else None

@@ -113,7 +113,12 @@ class Contents(EnvironmentPart):
 
     @also_named(anonymous="addMode", robot="body")
     def AddKinBody(self, body: KinBody, addMode: Any = None) -> None:  # noqa: ANN401 - a number or an enumeration
-        """Add ``body`` to the environment; ``addMode`` is as for ``Add``."""
+        """Add a body to the environment; see ``Add``.
+
+        Args:
+            body: The body.
+            addMode: As for ``Add``.
+        """
         self._check_alive()
         self._check_ours(body, "Add")
         state, renames = body.simulation_state, _renames(addMode)
@@ -138,7 +143,12 @@ class Contents(EnvironmentPart):
     AddRobot = AddKinBody
 
     def AddViewer(self, sensor: "Viewer", anonymous: bool = False) -> None:  # the argument's name is OpenRAVE's
-        """Do nothing for the viewer ``sensor``, which is attached from the start. ``anonymous`` has no effect."""
+        """Do nothing for a viewer of this environment, which is attached from the start; see ``RaveCreateViewer``.
+
+        Args:
+            sensor: The viewer.
+            anonymous: Not used.
+        """
         del anonymous
         self._add_other(sensor)
 

@@ -82,11 +82,21 @@ class Description(Simulating):
         return 0
 
     def GetUInt64Parameter(self, parameterName: str, defaultValue: int) -> int:
-        """Return the integer that was set under ``parameterName``, or ``defaultValue`` without one."""
+        """Return an integer that ``SetUInt64Parameter`` set.
+
+        Args:
+            parameterName: The name.
+            defaultValue: The result if there is no integer of that name.
+        """
         return self._numbers.get(parameterName, int(defaultValue))
 
     def SetUInt64Parameter(self, parameterName: str, value: int) -> None:
-        """Set the integer ``value`` under ``parameterName``."""
+        """Set an integer under a name.
+
+        Args:
+            parameterName: The name.
+            value: The number.
+        """
         self._numbers[str(parameterName)] = int(value)
 
     def RemoveUInt64Parameter(self, parameterName: str) -> bool:

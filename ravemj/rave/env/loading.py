@@ -338,9 +338,12 @@ class Loading(Description):
     ReadTrimeshFile = ReadTrimeshURI
 
     def ReadTrimeshData(self, data: str | bytes, formathint: str, atts: Attributes | None = None) -> TriMesh | None:
-        """Return the triangles of a mesh that is given as ``data``, the content of a file; see ``ReadTrimeshURI``.
+        """Return the triangles of a mesh that is given as the content of a file; see ``ReadTrimeshURI``.
 
-        ``formathint`` is the suffix of its format, for instance ``stl``; ``atts`` are as there.
+        Args:
+            data: The content.
+            formathint: The suffix of the format, for instance ``stl``.
+            atts: As for ``ReadTrimeshURI``.
         """
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, f"mesh.{formathint.lstrip('.')}")

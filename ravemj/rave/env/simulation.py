@@ -151,21 +151,30 @@ class Simulating(Contents):
         return [dict(state) for state in self._published]
 
     def GetPublishedBody(self, name: str, timeout: float = 0.0) -> State | None:
-        """Return the state of the body ``name`` in ``GetPublishedBodies``, or None. ``timeout`` is not used."""
+        """Return the published state of one body, as in ``GetPublishedBodies``, or None.
+
+        Args:
+            name: The name of the body.
+            timeout: Not used.
+        """
         return next((state for state in self.GetPublishedBodies(timeout) if state["name"] == name), None)
 
     def GetPublishedBodyJointValues(self, name: str, timeout: float = 0.0) -> Any:  # noqa: ANN401 - an array or None
-        """Return the published joint values of the body ``name`` [rad or m], shape (dof,), or None.
+        """Return the published joint values of one body [rad or m], shape (dof,), or None.
 
-        ``timeout`` is not used.
+        Args:
+            name: The name of the body.
+            timeout: Not used.
         """
         state = self.GetPublishedBody(name, timeout)
         return None if state is None else state["jointvalues"]
 
     def GetPublishedBodyTransformsMatchingPrefix(self, prefix: str, timeout: float = 0.0) -> dict[str, Any]:
-        """Return by name ``T_world_body`` of all published bodies whose names begin with ``prefix``.
+        """Return the published ``T_world_body`` of all bodies whose names begin with a prefix, by name.
 
-        ``timeout`` is not used.
+        Args:
+            prefix: The beginning of the names.
+            timeout: Not used.
         """
         states = (state for state in self.GetPublishedBodies(timeout) if state["name"].startswith(prefix))
         return {state["name"]: state["linktransforms"][0] for state in states if state["linktransforms"]}

@@ -169,10 +169,12 @@ class PlannerParameters(ApiObject):
         self.given.numbers["_nrandomgeneratorseed"] = _whole(seed, "seed")
 
     def SetPostProcessing(self, plannername: str, plannerparameters: str) -> None:
-        """Choose the planner ``plannername`` that processes the path.
+        """Choose the planner that processes the path.
 
-        Its parameters are the XML text ``plannerparameters``. With an empty name, the path stays as it is found,
-        without times.
+        Args:
+            plannername: The name of a smoother or retimer. If it is empty, the path stays as it is found, without
+                times.
+            plannerparameters: Its parameters as XML text.
         """
         checked_kind(plannername, str, "SetPostProcessing: plannername", "a text")
         checked_kind(plannerparameters, str, "SetPostProcessing: plannerparameters", "a text")
@@ -209,9 +211,14 @@ class PlannerParameters(ApiObject):
         return self.given.bodies
 
     def SetStateValues(self, values: ArrayLike, options: int = 0) -> int:
-        """Move the bodies to the configuration ``values``, shape (GetDOF(),), and return 0.
+        """Move the bodies to a configuration. Values outside the limits are set to the limits.
 
-        Values outside the limits are set to the limits; ``options`` are not used.
+        Args:
+            values: The configuration, shape (GetDOF(),).
+            options: Not used.
+
+        Returns:
+            0.
         """
         del options
         bodies = self._bodies()
@@ -249,16 +256,20 @@ class PlannerParameters(ApiObject):
         return {"configuration": moved, "returncode": 1}
 
     def DistMetricFn(self, values0: ArrayLike, values1: ArrayLike) -> float:
-        """Return the distance of two configurations.
+        """Return the distance of two configurations: the square root of the sum of (weight * difference)^2.
 
-        It is the root of the sum of (weight * (``values0`` - ``values1``))^2; both have shape (GetDOF(),).
+        Args:
+            values0: One configuration, shape (GetDOF(),).
+            values1: The other configuration, shape (GetDOF(),).
         """
         return self.given.space().distance(self._checked(values0), self._checked(values1))
 
     def DiffStateFn(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
-        """Return ``values0 - values1``, shape (GetDOF(),).
+        """Return ``values0 - values1``. The difference of circular joints is the one within [-pi, pi].
 
-        The difference of circular joints is the one within [-pi, pi].
+        Args:
+            values0: A configuration, shape (GetDOF(),).
+            values1: The configuration to subtract, shape (GetDOF(),).
         """
         return self.given.space().difference(self._checked(values0), self._checked(values1))
 
