@@ -13,7 +13,7 @@ from waiting import time_limit
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
 from ravemj.formats.meshes.files import FileContent
-from ravemj.formats.meshes.reading import _read, reader_of
+from ravemj.formats.meshes.reading import read_content, reader_of
 
 pytestmark = pytest.mark.usefixtures("no_cache")
 
@@ -53,7 +53,7 @@ def survives(name, data):
     with warnings.catch_warnings():
         if suffix in TRIMESH:
             warnings.simplefilter("ignore")
-        parts = outcome(lambda: _read(FileContent(str(FILES / name), data), reader_of(suffix))[0])
+        parts = outcome(lambda: read_content(FileContent(str(FILES / name), data), reader_of(suffix))[0])
     for part in parts:
         assert len(part.mesh.triangles)
         assert part.mesh.triangles.min() >= 0

@@ -131,7 +131,7 @@ OURS = """
     files link_transforms mjcf model plot3 qpos_indices render spec collisionInfos contacts minDistance
     nKeepPrevious numCols numWithinTol options pgeom1 pgeom2 plink1 plink2 vLinkColliding deserialize serialize
     extents pos dir main quitmainloop interaction body columns dof interpolation kind name names offset toDict
-    play playback ik ik_solver
+    play playback ik ik_solver is_open wait
 """
 
 

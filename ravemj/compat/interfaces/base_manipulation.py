@@ -334,8 +334,7 @@ class BaseManipulation(Helper):
         Raises:
             PlanningError: there is no such configuration.
         """
-        options = whole_numbers(maxiter=maxiter) | numbers(jitter=jitter)
-        found = self._base.jitter_active(**options)
+        found = self._base.jitter_active(**whole_numbers(maxiter=maxiter), **numbers(jitter=jitter))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
     def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:

@@ -23,13 +23,10 @@ from ravemj.gui.viewers.recorder import Recorder
 from ravemj.model.scene import View
 
 _SIZE = 640, 480
-_LARGEST = 16384
-"""Most pixels along a side: what graphics cards can draw."""
-
+_LARGEST = 16384  # pixels along a side that graphics cards can draw
 _FIGURES = "SetFiguresInCamera"
 
-_LARGEST_TEXT = 200
-"""Most points that letters are high: larger ones would fill the window."""
+_LARGEST_TEXT = 200  # points that letters are high; larger ones would fill the window
 
 LOCKED, PATIENCE = "Locked by the script", 1.0
 """What a window or a page says while a script has had the environment for so long [s]."""
