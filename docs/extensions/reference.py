@@ -90,9 +90,11 @@ def written_signature(
     del app, name, options
     if inspect.isclass(member) and not _is_called(member):
         return "", None
-    function = member.__init__ if inspect.isclass(member) else getattr(member, "__func__", member)
+    function = inspect.unwrap(member.__init__ if inspect.isclass(member) else getattr(member, "__func__", member))
+    if hasattr(function, "__signature__"):  # what ravemj lacks: the source of all is one function
+        return signature, answer
     try:
-        (definition,) = ast.parse(textwrap.dedent(inspect.getsource(inspect.unwrap(function)))).body
+        (definition,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
     except (OSError, TypeError):  # made by a dataclass, or not in Python
         return signature, answer
     if not isinstance(definition, ast.FunctionDef):
