@@ -16,7 +16,7 @@ import inspect
 import pkgutil
 import textwrap
 from collections.abc import Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
@@ -90,7 +90,8 @@ def written_signature(
     del app, name, options
     if inspect.isclass(member) and not _is_called(member):
         return "", None
-    function = inspect.unwrap(member.__init__ if inspect.isclass(member) else getattr(member, "__func__", member))
+    made_of: Any = member.__init__ if inspect.isclass(member) else getattr(member, "__func__", member)
+    function = inspect.unwrap(made_of)
     if hasattr(function, "__signature__"):  # what ravemj lacks: the source of all is one function
         return signature, answer
     try:
