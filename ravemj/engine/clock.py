@@ -1,5 +1,6 @@
 """Simulation time, and the thread that lets it pass."""
 
+import atexit
 import logging
 import math
 import threading
@@ -8,6 +9,7 @@ import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from threading import Event, Lock, RLock, Thread
+from weakref import WeakKeyDictionary
 
 _LOG = logging.getLogger("ravemj")
 
@@ -19,6 +21,9 @@ PAUSE = 1e-4
 
 BEHIND = 0.1
 """How much real time [s] the thread catches up with after it was held up; what is beyond is lost."""
+
+LAST_STEP = 1.0
+"""How long [s] the end of Python waits for a step that has begun; a script's controller may hang in it."""
 
 POLL = 0.05
 """How often [s] the thread looks whether it should end while others have the lock."""
@@ -55,6 +60,7 @@ class Clock:
                 arguments = (weakref.ref(self), self._rhythm)
                 self._thread = Thread(target=_run, args=arguments, name="simulation time", daemon=True)
                 self._thread.start()
+                _threads[self._thread] = self._rhythm.ending
 
     def start(self, timestep: float, *, realtime: bool) -> None:
         """Let time pass by itself from now on, in steps of so many seconds, in real time or as fast as it can."""
@@ -103,6 +109,17 @@ class Clock:
 
     def __del__(self) -> None:
         self._rhythm.ending.set()
+
+
+_threads: WeakKeyDictionary[Thread, Event] = WeakKeyDictionary()
+
+
+@atexit.register
+def _end_threads() -> None:
+    """End the threads while Python is still there: one that comes back from MuJoCo later crashes the process."""
+    for thread, ending in tuple(_threads.items()):
+        ending.set()
+        thread.join(LAST_STEP)
 
 
 @dataclass

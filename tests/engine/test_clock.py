@@ -225,3 +225,17 @@ print("done")
 """
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert (run.returncode, run.stdout, run.stderr) == (0, "done\n", "")
+
+
+def test_python_ends_after_the_thread(tmp_path):
+    """A thread that came back from MuJoCo later crashed the process, in one run of six."""
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import atexit, threading\n"
+        "atexit.register(lambda: print([one.name for one in threading.enumerate()]))  # runs last: the first one\n"
+        "import ravemj\n"
+        "env = ravemj.load(ravemj.model_path('pendulum'))\n"
+        "env.StartSimulation(0.001, realtime=False)\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "['MainThread']", "")
