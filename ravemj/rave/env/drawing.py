@@ -22,9 +22,8 @@ class Drawing(EnvironmentPart):
     """Drawings beside the bodies: points, lines, arrows, boxes, planes, triangles and labels.
 
     Colours are red, green and blue from 0 to 1, with alpha as an optional fourth number; the default is OpenRAVE's pink
-    (1, 0.5, 0.5). All methods return the handle that keeps the drawing, and whose ``SetTransform`` moves it; without a
-    viewer they return None, as in OpenRAVE. They raise ``ArgumentError`` where there are no points, or a shape or a
-    number is wrong. To have drawings in ``env.render()`` and in videos, ``env.SetViewer('offscreen')`` is enough.
+    (1, 0.5, 0.5). Without a viewer, all methods check their arguments and return None, as in OpenRAVE. To have drawings
+    in ``env.render()`` and in videos, ``env.SetViewer('offscreen')`` is enough.
     """
 
     def _draw(self, primitives: Primitives, text: str = "") -> GraphHandle | None:
@@ -33,13 +32,19 @@ class Drawing(EnvironmentPart):
     def plot3(
         self, points: ArrayLike, pointsize: float, colors: ArrayLike | None = None, drawstyle: int = 0
     ) -> GraphHandle | None:
-        """Draw points; return the handle.
+        """Draw points.
 
         Args:
             points: One point (3,), or (N, 3), or a flat list of 3 N numbers, in the world [m].
             pointsize: The width on the screen [pixels]; with ``drawstyle=1`` the radius [m].
             colors: One colour for all, or one for each point: (3,), (4,), (N, 3) or (N, 4).
             drawstyle: 0 for points of constant size on the screen, 1 for spheres.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, or a shape or a number is wrong.
 
         Example:
             >>> handle = env.plot3([[0, 0, 1], [0, 0.1, 1]], 6, [[1, 0, 0], [0, 0, 1]])
@@ -55,13 +60,19 @@ class Drawing(EnvironmentPart):
     def drawlinestrip(
         self, points: ArrayLike, linewidth: float, colors: ArrayLike | None = None, drawstyle: int = 0
     ) -> GraphHandle | None:
-        """Draw a line from each point to the next; return the handle.
+        """Draw a line from each point to the next.
 
         Args:
             points: (N, 3) or a flat list, in the world [m].
             linewidth: The width on the screen [pixels].
             colors: One colour, or one for each point, with a gradient between them.
             drawstyle: Not used, as in OpenRAVE.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, or a shape or a number is wrong.
         """
         del drawstyle
         return self._draw(drawing.line_strip(*_checked_lines(points, linewidth, colors)))
@@ -69,13 +80,19 @@ class Drawing(EnvironmentPart):
     def drawlinelist(
         self, points: ArrayLike, linewidth: float, colors: ArrayLike | None = None, drawstyle: int = 0
     ) -> GraphHandle | None:
-        """Draw a line between the first two points, another between the next two, and so on; return the handle.
+        """Draw one line between the first two points, another between the next two, and so on.
 
         Args:
             points: (N, 3) or a flat list, in the world [m]. If N is odd, the last point is ignored.
             linewidth: The width on the screen [pixels].
             colors: One colour, or one for each point, with a gradient between them.
             drawstyle: Not used, as in OpenRAVE.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, or a shape or a number is wrong.
         """
         del drawstyle
         return self._draw(drawing.line_list(*_checked_lines(points, linewidth, colors)))
@@ -83,13 +100,19 @@ class Drawing(EnvironmentPart):
     def drawarrow(
         self, p1: ArrayLike, p2: ArrayLike, linewidth: float = 0.002, color: ArrayLike | None = None
     ) -> GraphHandle | None:
-        """Draw an arrow; return the handle.
+        """Draw an arrow.
 
         Args:
             p1: The start, in the world [m], (3,).
             p2: The tip, in the world [m], (3,).
             linewidth: The radius of the shaft [m].
             color: One colour.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: a shape or a number is wrong.
 
         Example:
             >>> force = env.drawarrow([0, 0, 0], [0, 0, 0.5], linewidth=0.01, color=[1, 0, 0])
@@ -99,23 +122,32 @@ class Drawing(EnvironmentPart):
         return self._draw(drawing.arrow(start, end, _checked_size(linewidth, "linewidth"), rgba))
 
     def drawbox(self, pos: ArrayLike, extents: ArrayLike, color: ArrayLike | None = None) -> GraphHandle | None:
-        """Draw a box along the axes of the world; return the handle.
+        """Draw a box along the axes of the world.
 
         Args:
             pos: The centre, in the world [m], (3,).
             extents: The half extents [m], (3,).
             color: One colour.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer. ``SetTransform`` turns it.
+
+        Raises:
+            ArgumentError: a shape or a number is wrong.
         """
         center, half = checked_vector(pos, 3, "pos"), checked_vector(extents, 3, "extents")
         return self._draw(drawing.box(center, half, _checked_colors(color, 1)[0]))
 
     def drawboxarray(self, pos: ArrayLike, extents: ArrayLike, color: ArrayLike | None = None) -> GraphHandle | None:
-        """Draw boxes of equal size along the axes of the world; return the handle.
+        """Draw boxes of equal size along the axes of the world.
 
         Args:
             pos: The centres, in the world [m], (N, 3).
             extents: The half extents of each box [m], (3,).
             color: One colour.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
         """
         half, rgba = checked_vector(extents, 3, "extents"), _checked_colors(color, 1)[0]
         return self._draw(drawing.merge(drawing.box(center, half, rgba) for center in _checked_points(pos)))
@@ -123,13 +155,16 @@ class Drawing(EnvironmentPart):
     def drawaabb(
         self, aabb: AABB, transform: ArrayLike, color: ArrayLike | None = None, transparency: float = 0.0
     ) -> GraphHandle | None:
-        """Draw a box that is axis-aligned in a given frame; return the handle.
+        """Draw a box that is axis-aligned in a given frame.
 
         Args:
             aabb: The box, along the axes of the frame.
             transform: ``T_world_frame``: 4x4, 3x4 or a pose.
             color: One colour.
             transparency: 0 is opaque, 1 invisible.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
         """
         rgba = _checked_colors(color, 1)[0]
         rgba[3] *= 1 - transparency
@@ -140,19 +175,22 @@ class Drawing(EnvironmentPart):
     def drawobb(
         self, obb: OrientedBox, color: ArrayLike | None = None, transparency: float = 0.0
     ) -> GraphHandle | None:
-        """Draw an oriented box; return the handle.
+        """Draw an oriented box.
 
         Args:
             obb: The box.
             color: One colour.
             transparency: 0 is opaque, 1 invisible.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
         """
         return self.drawaabb(AABB((0, 0, 0), obb.extents()), obb.transform(), color, transparency)
 
     def drawlabel(
         self, label: str, worldPosition: ArrayLike, color: ArrayLike | None = None, height: float = 0.05
     ) -> GraphHandle | None:
-        """Draw a point with a text beside it; return the handle.
+        """Draw a point with a text beside it.
 
         Windows and pages show the text, in a font of fixed size; pictures and videos show the point only.
 
@@ -161,6 +199,9 @@ class Drawing(EnvironmentPart):
             worldPosition: The point [m], (3,).
             color: One colour, for the point.
             height: Not used.
+
+        Returns:
+            The handle that keeps the text; None without a viewer.
 
         Example:
             >>> handle = env.drawlabel("goal", [0.5, 0, 1])
@@ -171,7 +212,7 @@ class Drawing(EnvironmentPart):
         return self._draw(drawing.points(position, _LABEL_POINT, _checked_colors(color, 1)), text)
 
     def drawplane(self, transform: ArrayLike, extents: ArrayLike, texture: ArrayLike) -> GraphHandle | None:
-        """Draw an image on a rectangle, reduced to at most 64 x 64 cells; return the handle.
+        """Draw an image on a rectangle, reduced to at most 64 x 64 cells.
 
         Args:
             transform: ``T_world_rectangle``: 4x4, 3x4 or a pose. The rectangle is centred at the origin of this frame,
@@ -179,6 +220,12 @@ class Drawing(EnvironmentPart):
             extents: The half extents along x and y [m], (2,); a third number is ignored.
             texture: An image (H, W), (H, W, 1), (H, W, 3) or (H, W, 4): integers up to 255, or floats from 0 to 1.
                 Columns run along x and rows along y.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: a shape or a number is wrong.
         """
         frame = checked_transform(transform, "transform")
         sides = checked_numbers(extents, "extents")
@@ -188,13 +235,19 @@ class Drawing(EnvironmentPart):
     def drawtrimesh(
         self, points: ArrayLike, indices: ArrayLike | None = None, colors: ArrayLike | None = None
     ) -> GraphHandle | None:
-        """Draw triangles, which are visible from both sides; return the handle.
+        """Draw triangles, which are visible from both sides.
 
         Args:
             points: The vertices, (N, 3) or a flat list, in the world [m].
             indices: Three vertices for each triangle, (M, 3) or a flat list of integers. By default vertices 0, 1, 2
                 make a triangle, then 3, 4, 5, and so on.
             colors: One colour, or one for each vertex: (3,), (4,), (N, 3) or (N, 4).
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, a shape or a number is wrong, or an index is out of range.
         """
         corners = _checked_points(points)
         rgba = _checked_colors(colors, len(corners))
