@@ -1,10 +1,10 @@
 """Mistakes that scripts make: each error says what was found, and what was expected."""
 
-import inspect
 import math
 
 import numpy as np
 import pytest
+from wrong_calls import KINDS, calls_with_one_argument
 
 import ravemj
 
@@ -124,22 +124,6 @@ def test_an_axis_that_a_joint_does_not_have_is_an_index_error(scene):
             joint.GetMaxVel(index)
 
 
-KINDS = {
-    "robot": lambda env, robot: robot,
-    "link": lambda env, robot: robot.GetLinks()[1],
-    "joint": lambda env, robot: robot.GetJoints()[0],
-    "geometry": lambda env, robot: robot.GetLinks()[1].GetGeometries()[0],
-    "manipulator": lambda env, robot: robot.GetManipulators()[0],
-    "checker": lambda env, robot: env.GetCollisionChecker(),
-    "engine": lambda env, robot: ravemj.RaveCreatePhysicsEngine(env, "ode"),
-    "controller": lambda env, robot: ravemj.RaveCreateController(env, "IdealController"),
-    "sensor": lambda env, robot: ravemj.RaveCreateSensor(env, "BaseLaser2D"),
-    "trajectory": lambda env, robot: ravemj.RaveCreateTrajectory(env, ""),
-    "module": lambda env, robot: ravemj.RaveCreateModule(env, "BaseManipulation"),
-}
-"""What scripts hold and call, in an environment with a robot."""
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_pythons_own_errors_name_the_argument(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # some write files
@@ -157,15 +141,3 @@ def test_pythons_own_errors_name_the_argument(name, tmp_path, monkeypatch):
                 assert argument in str(error), (method, argument, wrong, error)  # noqa: PT017 - of many calls
     assert calls > 20
     env.Destroy()
-
-
-def calls_with_one_argument(thing):
-    """Return each method that takes one argument alone, and the name of that argument."""
-    for method in dir(thing):
-        found = inspect.getattr_static(type(thing), method, None)
-        if method[0] == "_" or not inspect.isfunction(found):
-            continue
-        arguments = list(inspect.signature(found).parameters.values())[1:]
-        required = [one.name for one in arguments if one.default is one.empty and one.kind is one.POSITIONAL_OR_KEYWORD]
-        named = [one.name for one in arguments if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
-        yield from ((method, argument) for argument in named if set(required) <= {argument})
