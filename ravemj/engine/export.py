@@ -1,9 +1,7 @@
 """Models as MJCF files that need nothing else: the text, with its meshes in the folder ``assets`` beside it."""
 
-import contextlib
 import glob
 import os
-import re
 from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
@@ -25,7 +23,6 @@ START = "loaded"
 
 _MARK = "<!-- made by ravemj"
 _MESHES = "mesh-*.obj"
-_MESH = re.compile(r'file="(mesh-[0-9a-f]{16}\.obj)"')
 
 
 def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options) -> Mjcf:
@@ -97,7 +94,7 @@ def write_folder(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str
 def write_file(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str]) -> Path:
     """Write an MJCF file, and its meshes into ``assets`` beside it, whole or not at all; return its path.
 
-    Meshes that only an older translation in its place had are removed. Arguments as for ``write_folder``.
+    Arguments as for ``write_folder``.
 
     Raises:
         OutputError: it cannot be written, or it is a file that was read.
@@ -105,32 +102,12 @@ def write_file(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str])
     assets = Path(path).parent / ASSETS
     targets = [Path(path), *(assets / file for file in mjcf.assets)]
     _check_untouched(path, [file for file in read if any(_is_same(file, target) for target in targets)])
-    left_over = _left_over(Path(path), mjcf, read)
     with new_file(path) as file:
         file.write_text(marked(mjcf.text, model), encoding="utf-8")
         if mjcf.assets:
             with added_files(assets) as folder:
                 _write_meshes(folder, mjcf)
-    for file in left_over:
-        with contextlib.suppress(OSError):
-            file.unlink()
     return Path(path)
-
-
-def _left_over(path: Path, mjcf: Mjcf, read: Collection[str]) -> list[Path]:
-    """Return the meshes of an older translation that neither the new one needs nor a model beside it mentions."""
-    try:
-        if not _is_ours(path):
-            return []
-        unused = set(_MESH.findall(path.read_text(encoding="utf-8", errors="replace"))) - mjcf.assets.keys()
-        for other in path.parent.iterdir() if unused else ():
-            if other.name != path.name and other.suffix in {".xml", ".mjcf", path.suffix}:
-                text = other.read_text(encoding="utf-8", errors="replace")
-                unused = {name for name in unused if name not in text}
-    except OSError:  # it cannot be told
-        return []
-    files = [path.parent / ASSETS / name for name in unused]
-    return [file for file in files if not any(_is_same(source, file) for source in read)]
 
 
 def _write_meshes(folder: Path, mjcf: Mjcf) -> None:
