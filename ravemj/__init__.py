@@ -70,7 +70,7 @@ __all__ = [
     "write_motion",
 ]
 __all__ += geometry_functions.__all__
-__all__ += rave.__all__
+__all__ += rave.__all__  # pyright: ignore[reportUnsupportedDunderAll] - it takes all that is imported above
 
 _LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
     "Motion": "ravemj.trajectories.motion",

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 import ravemj
-from ravemj.rave.lazy_imports import MODULE_OF
 
 PACKAGE = Path(ravemj.__file__).parent
 
@@ -211,11 +210,11 @@ def test_mujoco_is_imported_behind_what_prepares_it():
         assert "ravemj.engine.mujoco_import" in imports(PACKAGE / name / "__init__.py")
 
 
-def test_lazy_imports_are_those_that_type_checkers_see():
-    (typed,) = (node for node in tree(PACKAGE / "rave" / "__init__.py").body if isinstance(node, ast.If))
-    homes = {alias.name: node.module for node in typed.body if isinstance(node, ast.ImportFrom) for alias in node.names}
-    assert homes == MODULE_OF
-    assert MODULE_OF.keys() <= set(ravemj.rave.__all__)
+def test_public_names_of_the_api_are_those_of_its_stub():
+    stub = tree(PACKAGE / "rave" / "__init__.pyi").body
+    listed = {name.asname for node in stub if isinstance(node, ast.ImportFrom) for name in node.names if name.asname}
+    listed |= {target.id for node in stub if isinstance(node, ast.Assign) for target in node.targets}
+    assert set(ravemj.rave.__all__) == listed
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
