@@ -50,8 +50,10 @@ _T = TypeVar("_T")
 
 def cached_file(
     path: str, kind: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]], access: FileAccess
-) -> Parts:
-    """Return the parts that ``read`` makes of a file, from the cache where possible.
+) -> tuple[Parts, dict[str, str]]:
+    """Return the parts that ``read`` makes of a file, and the digests of the files to which it refers.
+
+    Both come from the cache where possible.
 
     Args:
         path: The file.
@@ -64,7 +66,8 @@ def cached_file(
     """
     folder = cache_folder()
     if folder is None:
-        return read(read_bytes(path))[0]
+        parts, references = read(read_bytes(path))
+        return parts, references.digests
     began, stamp = time.time_ns(), stamp_of(path)
     place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
     shortcut = f"{folder}/{_name(readers_stamp(), kind.encode(), os.fsencode(place))}.path"
@@ -73,13 +76,13 @@ def cached_file(
     home = os.path.dirname(os.path.abspath(path))
     permits = functools.partial(access.permits_part, folder=home)
     if found and all(map(permits, found[1])):
-        return found[0]
+        return found
     parts, entry, references = _by_content(folder, read_bytes(path), kind, home, read, permits)
     stamps = {**references.stamps, place: stamp}
     settled = (stamp_of(name) == known and changed_at(known) + CLOCK_TICK < began for name, known in stamps.items())
     if stamp and references.refused is None and all(settled):
         _store(Path(shortcut), pack_shortcut(entry, stamps))
-    return parts
+    return parts, references.digests
 
 
 def cached(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:

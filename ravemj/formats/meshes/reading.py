@@ -56,7 +56,10 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED, access: FileAccess | None = Non
         parts, references = read_content(FileContent(path, unpacked(raw, path), access=access), reader_of(suffix))
         return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
 
-    return cache.cached_file(path, kind, read, access)
+    parts, digests = cache.cached_file(path, kind, read, access)
+    for name in (name for name, digest in digests.items() if digest):
+        access.files.setdefault(name, Source(path, 0, access.files.get(path)))
+    return parts
 
 
 def read_content(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:

@@ -234,7 +234,8 @@ class Context:
         except SourceError as error:
             parts, problem = (), f"{error.source}: {error.message}"
         if problem and len(self.diagnostics) == findings:  # otherwise a refused file says why
-            self.diagnostics.warn("broken-mesh", problem, source)
+            report = self.diagnostics.error if self.access.is_dropped else self.diagnostics.warn
+            report("broken-mesh", problem, source)
         return parts
 
 
