@@ -65,6 +65,7 @@ class Loading(Description):
             filename: An OpenRAVE XML file with an environment, a robot, a kinbody or a sensor; a COLLADA file
                 (``.dae``, ``.zae``); OpenRAVE's JSON (``.json``, see ``LoadJSON``); or a mesh file. Relative paths are
                 searched in the working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
+                Which files it may name itself: see "Which files a model may read".
             atts: Attributes as those of a ``<Robot>``: ``name`` replaces the name of the body, ``prefix`` is put before
                 the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
                 multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
