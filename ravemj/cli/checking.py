@@ -2,10 +2,11 @@
 
 import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
+from ravemj.formats.file_access import is_inside
 from ravemj.model.builder import DEFAULT_INERTIAL
 from ravemj.model.scene import KinBody
 from ravemj.rave import load
@@ -34,7 +35,7 @@ def check(path: str | os.PathLike[str]) -> list[Diagnostic]:
     except RavemjError as error:
         return [Diagnostic("error", "fatal", error.message, Source(os.fspath(path)))]
     notes = [note for body in env.simulation.bodies for note in _default_masses(body.scene)]
-    return [*map(_finding, env.diagnostics), *notes]
+    return [*map(_finding, env.diagnostics), *_outside_files(path, env.named_files), *notes]
 
 
 def _finding(found: Diagnostic) -> Diagnostic:
@@ -45,6 +46,17 @@ def _fatal(error: SourceError) -> Diagnostic:
     cause = error.cause
     hint = error.hint if cause is None else f"that comes of the {cause.code} above"
     return Diagnostic("error", "fatal", error.message, error.source, hint)
+
+
+def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) -> Iterator[Diagnostic]:
+    """Yield a note for each file outside of the folder of a model, which would be missing elsewhere."""
+    folder = os.path.dirname(os.path.abspath(path))
+    for file, source in named.items():
+        if not is_inside(os.path.abspath(file), folder):
+            message = f"the model reads {os.path.normpath(file)}, outside of its folder"
+            yield Diagnostic(
+                "note", "outside-file", message, source, "copy it into that folder if the model is to move"
+            )
 
 
 def _default_masses(body: KinBody) -> Iterator[Diagnostic]:

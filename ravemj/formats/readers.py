@@ -1,6 +1,7 @@
 """The choice of a reader by the kind of a file."""
 
 import difflib
+import functools
 import os
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,6 +10,7 @@ from urllib.parse import unquote
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.data_folders import find
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.openrave_xml import Reading, read
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, give, given_scale
@@ -19,10 +21,13 @@ from ravemj.model.builder import BodyBuilder
 from ravemj.model.scene import AttachedSensor, KinBody, Scene
 
 _COLLADA, _HEAD = b"<COLLADA", 1000  # the root element, and the bytes that it is looked for in
+_TEXT = "data"  # what a text is called in messages, as if it lay in the working folder
 _LIKENESS = 0.7  # from here on a missing file is taken for the misspelt name of a model
 
 
-def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: float = 1.0) -> Reading:
+def read_file(
+    path: str | os.PathLike[str], given: Attributes = NOTHING, metre: float = 1.0, access: FileAccess | None = None
+) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
@@ -31,6 +36,7 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: 
         given: Attributes that act on the bodies of the file; see ``openrave_xml.given``.
         metre: Length of a metre in the unit of the scene. COLLADA says its unit, and its lengths are converted;
             gravity and the numbers of other files stay as they are, as in OpenRAVE.
+        access: The files that may be read; by default those of a model that its user opens.
 
     Returns:
         What was read; its ``failure`` says what ended the reading.
@@ -46,28 +52,24 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: 
         kind = "folder" if os.path.isdir(found) else "device or pipe"
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
     elif is_mesh(found):
-        return read_mesh_file(found, given)
+        return _read_mesh_file(found, given, access or FileAccess.opened(found))
     else:
-        return _read_model(found, wanted, given, metre)
+        return _read_model(found, wanted, given, metre, access or FileAccess.opened(found))
     return Reading(Scene(), Diagnostics(), failure)
 
 
-def _read_model(path: str, wanted: str, given: Attributes, metre: float) -> Reading:
+def _read_model(path: str, wanted: str, given: Attributes, metre: float, access: FileAccess) -> Reading:
     """Read XML, or COLLADA, which may have any name: ``Environment.Save`` writes it under the one it is given."""
     if not path.lower().endswith(collada.SUFFIXES):
         try:
             content = content_of(path)
         except SourceError as error:
-            return Reading(Scene(), Diagnostics(), error, (path,))
+            return Reading(Scene(), Diagnostics(), error, {path: None})
         if _COLLADA not in content[:_HEAD]:
-            return read(path, given, content)
+            return read(path, given, content, access)
     uri = f"{path}#{wanted}" if wanted else path
-    return _read_collada(
-        path,
-        given,
-        metre,
-        lambda context, scale: collada.read_file(uri, context.diagnostics, context.files, scale=scale),
-    )
+    read_content = functools.partial(collada.read_file, uri, access)
+    return _read_collada(path, given, metre, access, lambda scale: read_content(scale=scale))
 
 
 def missing(path: str) -> SourceError:
@@ -85,29 +87,24 @@ def read_data(data: str | bytes, given: Attributes = NOTHING, metre: float = 1.0
 
     Files that it names are looked for in the working folder.
     """
-    content = data if isinstance(data, bytes) else data.encode()
+    content, access = data if isinstance(data, bytes) else data.encode(), FileAccess.opened(_TEXT)
     if _COLLADA not in content[:_HEAD]:
-        reading = read("data", given, content)
-        return replace(reading, files=reading.files[1:])
-    return _read_collada(
-        "data",
-        given,
-        metre,
-        lambda context, scale: collada.read_text(content, "data", context.diagnostics, context.files, scale),
-    )
+        reading = read(_TEXT, given, content, access)
+        return replace(reading, named_files=access.files)
+    return _read_collada(_TEXT, given, metre, access, lambda scale: collada.read_text(content, _TEXT, access, scale))
 
 
 def _read_collada(
-    path: str, given: Attributes, metre: float, read_content: "Callable[[Context, float], collada.Content]"
+    path: str, given: Attributes, metre: float, access: FileAccess, read_content: "Callable[[float], collada.Content]"
 ) -> Reading:
-    context, source = Context(), Source(path)
+    context, source = Context(access), Source(path)
     check_given(given, source, context)
     bodies: list[KinBody] = []
     sensors: list[AttachedSensor] = []
     gravity = failure = None
     description = ""
     try:
-        content = read_content(context, metre * uniform(given_scale(given), source, context))
+        content = read_content(metre * uniform(given_scale(given), source, context))
         gravity, description = content.gravity, content.description
         if not content.bodies and not content.others and not content.sensors:
             raise SourceError("there is no body in it", source)
@@ -127,7 +124,7 @@ def _read_collada(
     except ArithmeticError:
         failure = SourceError("a number in the file is too large to compute with", source)
     scene = Scene(tuple(bodies), None, gravity, tuple(sensors), description)
-    return Reading(scene, context.diagnostics, failure, tuple(context.files), renames=True)
+    return Reading(scene, context.diagnostics, failure, access.files, renames=True)
 
 
 def _unused(name: str, taken: set[str]) -> str:
@@ -145,13 +142,13 @@ def _without_scheme(uri: str) -> str:
     return unquote(path)
 
 
-def read_mesh_file(path: str, given: Attributes = NOTHING) -> Reading:
+def _read_mesh_file(path: str, given: Attributes, access: FileAccess) -> Reading:
     """Read a mesh file as a static body with the file's name."""
-    context = Context()
+    context = Context(access)
     source = Source(path)
     check_given(given, source, context)
     body = BodyBuilder(is_robot=False, source=source)
     add_mesh(body, path, given_scale(given), source, context)
     give(given, [body])
     scene = Scene((body.freeze(context.diagnostics),))
-    return Reading(scene, context.diagnostics, None, tuple(context.files), renames=True)
+    return Reading(scene, context.diagnostics, None, access.files, renames=True)

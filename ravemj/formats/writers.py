@@ -14,6 +14,7 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.collada import read_text
 from ravemj.formats.collada import writer as collada
 from ravemj.formats.collada.external import ExternalBody, find_external
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.openrave_xml import writer as openrave_xml
 from ravemj.formats.openrave_xml.geom_writer import FOLDER, MeshFormat
 from ravemj.model.comparison import compare
@@ -130,7 +131,7 @@ def _referred(path: AnyPath, body: KinBody, reference: ExternalBody) -> KinBody:
         SourceError: It makes nothing of it.
     """
     document = collada.write(Scene((body,)), Diagnostics(), {body.name: reference})
-    found = read_text(document.encode(), os.fspath(path), Diagnostics(), []).bodies
+    found = read_text(document.encode(), os.fspath(path), FileAccess.opened(os.fspath(path))).bodies
     if not found:
         raise SourceError("the reference leads nowhere", body.source)
     return found[0].freeze(Diagnostics())

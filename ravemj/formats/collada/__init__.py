@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Source, SourceError
+from ravemj.formats.file_access import FileAccess
 
 if TYPE_CHECKING:
     from ravemj.formats.collada.library import Library
@@ -21,19 +22,12 @@ SUFFIXES = (".dae", ".zae")
 """Ends of the names of the files, in lower case."""
 
 
-def read_file(
-    uri: str,
-    diagnostics: Diagnostics,
-    files: list[str],
-    included_from: Source | None = None,
-    scale: float = 1.0,
-) -> "Content":
+def read_file(uri: str, access: FileAccess, included_from: Source | None = None, scale: float = 1.0) -> "Content":
     """Read a ``.dae`` or ``.zae`` file.
 
     Args:
         uri: Where it lies; behind ``#``, the id of the only articulated system or model that is wanted.
-        diagnostics: Takes every finding.
-        files: Takes the paths of the files that are read.
+        access: The files that may be read; takes every finding.
         included_from: The element that names the file, or None.
         scale: What all lengths are multiplied by.
 
@@ -43,7 +37,7 @@ def read_file(
     from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
 
     path, wanted = split_uri(uri)
-    library = Library(diagnostics, files, included_from, scale)
+    library = Library(access, included_from, scale)
     return _read(library, path, lambda: library.open_file(path), wanted)
 
 
@@ -58,19 +52,18 @@ def split_uri(uri: str) -> tuple[str, str]:
     return (path, name) if path.lower().endswith(SUFFIXES) else (uri, "")
 
 
-def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str], scale: float = 1.0) -> "Content":
+def read_text(data: bytes, name: str, access: FileAccess, scale: float = 1.0) -> "Content":
     """Read a document that is no file, as ``read_file`` reads a file.
 
     Args:
         data: The document; files that it names are looked for in the working folder.
         name: What to call it in messages.
-        diagnostics: Takes every finding.
-        files: Takes the paths of the files that are read.
+        access: As for ``read_file``.
         scale: What all lengths are multiplied by.
     """
     from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
 
-    library = Library(diagnostics, files, None, scale)
+    library = Library(access, None, scale)
     return _read(library, name, lambda: library.open_text(data, name))
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from urllib.parse import quote
 
 from ravemj.core.transforms import Pose
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Source, SourceError
 from ravemj.formats import settled
 from ravemj.formats.collada.axis import AxisReader
 from ravemj.formats.collada.bindings import AxisBinding, Bindings, ModelBinding, read_bindings
@@ -17,6 +17,7 @@ from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.system_writer import bind_axis, write_grabs
 from ravemj.formats.collada.visual import Node, expand
 from ravemj.formats.data_folders import find, name_in_data_folders
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
 from ravemj.model.scene import KinBody
 
@@ -100,7 +101,7 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
         raise SourceError("the file that it comes from is gone", body.source)
     if os.path.realpath(path) == os.path.realpath(target):
         raise SourceError("it comes from the file that is going to be replaced", body.source)
-    library = Library(Diagnostics(), [], None)
+    library = Library(FileAccess.opened(path))
     document = library.open_file(path)
     if document.path != file:
         raise SourceError("it comes from a file inside of an archive", body.source)

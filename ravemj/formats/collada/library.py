@@ -9,9 +9,9 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Source, SourceError
 from ravemj.formats.collada.archive import Archive
-from ravemj.formats.data_folders import find
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.meshes.collada.document import (
     ColladaDocument,
     Element,
@@ -56,16 +56,13 @@ class Library:
 
     Attributes:
         diagnostics: Takes every finding.
-        files: Paths of the files that were read, in their order.
     """
 
-    def __init__(
-        self, diagnostics: Diagnostics, files: list[str], included_from: Source | None, scale: float = 1.0
-    ) -> None:
-        self.diagnostics = diagnostics
+    def __init__(self, access: FileAccess, included_from: Source | None = None, scale: float = 1.0) -> None:
+        self.diagnostics = access.diagnostics
+        self._access = access
         self._scale = scale
         self._included_from = included_from
-        self.files = files
         self._archives: dict[str, Archive] = {}
         self._documents: dict[str, ColladaDocument] = {}
         self._places: dict[str, tuple[Archive | None, str]] = {}
@@ -74,17 +71,17 @@ class Library:
         self._reported: set[tuple[Element, str]] = set()
         self._scopes: dict[Element, dict[str, Found]] = {}
 
-    def open_file(self, path: str) -> ColladaDocument:
+    def open_file(self, path: str, named_by: Source | None = None) -> ColladaDocument:
         """Return the document of a ``.dae`` file, or the first one of a ``.zae`` archive.
 
         Raises:
             SourceError: It cannot be read, or is no COLLADA.
         """
+        self._access.files.setdefault(path, named_by or self._included_from)
         if not path.lower().endswith(ARCHIVE_SUFFIX):
             return self._opened(path, None, path)
         archive = self._archives.get(path)
         if archive is None:
-            self.files.append(path)
             archive = self._archives[path] = Archive(path)
         return self._member(archive, archive.root())
 
@@ -147,10 +144,15 @@ class Library:
                 if member is not None:
                     return self._member(archive, member)
             folder = os.path.dirname(name if archive is None else archive.path)
-            path = find(plain, *([] if uri.startswith("openrave:") else [folder]))
+            paths = self._access.candidates(plain, *([] if uri.startswith("openrave:") else [folder]))
+            path = next(filter(os.path.exists, paths), None)
             if path is not None:
-                return self.open_file(path)
-            self.warn("missing-file", f"there is no file {uri}", element, "put it there, or set OPENRAVE_DATA")
+                return self.open_file(path, self.source(element))
+            if self._access.is_dropped:
+                report = self._access.report_missing if paths else self._access.refuse
+                report(uri, self.source(element))
+            else:
+                self.warn("missing-file", f"there is no file {uri}", element, "put it there, or set OPENRAVE_DATA")
         except SourceError as error:
             self.warn("broken-file", f"{error.source}: {error.message}", element)
         return None
@@ -162,8 +164,6 @@ class Library:
         if path not in self._documents:
             if len(self._documents) >= _MOST_DOCUMENTS:
                 raise SourceError(f"the model has more than {_MOST_DOCUMENTS} files", Source(path))
-            if archive is None:
-                self.files.append(path)
             return self._parsed(read_bytes(path) if archive is None else archive.read(name), path, archive, name)
         return self._documents[path]
 

@@ -27,6 +27,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from ravemj.core.signals import signals_delayed
+from ravemj.formats import file_access
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.meshes.entries import Parts, follow_shortcut, pack_entry, pack_shortcut, unpack_entry
 from ravemj.formats.meshes.files import ReferencedFiles, changed_at, digest_of, read_bytes, stamp_of
 from ravemj.model.scene import mesh
@@ -46,34 +48,41 @@ _written = 0
 _T = TypeVar("_T")
 
 
-def cached_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]]) -> Parts:
-    """Return the parts that ``read`` makes of a file, from the cache where possible.
+def cached_file(
+    path: str, kind: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]], access: FileAccess
+) -> tuple[Parts, dict[str, str]]:
+    """Return the parts that ``read`` makes of a file, and the digests of the files to which it refers.
+
+    Both come from the cache where possible.
 
     Args:
         path: The file.
         kind: What else the result depends on, such as the end of the file's name.
         read: Gets the file's content; returns the parts, and the other files that were read.
+        access: The files that may be read; the parts of others are not taken from the cache.
 
     Raises:
         SourceError: The file cannot be read.
     """
     folder = cache_folder()
     if folder is None:
-        return read(read_bytes(path))[0]
+        parts, references = read(read_bytes(path))
+        return parts, references.digests
     began, stamp = time.time_ns(), stamp_of(path)
     place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
     shortcut = f"{folder}/{_name(readers_stamp(), kind.encode(), os.fsencode(place))}.path"
     entry = _loaded(shortcut, follow_shortcut) if stamp else None
     found = _loaded(f"{folder}/{entry}", unpack_entry) if entry else None
-    if found:
-        return found[0]
-    content, home = read_bytes(path), os.path.dirname(os.path.abspath(place))
-    parts, entry, references = _by_content(folder, content, kind, home, read)
+    home = os.path.dirname(os.path.abspath(path))
+    permits = functools.partial(access.permits_part, folder=home)
+    if found and all(map(permits, found[1])):
+        return found
+    parts, entry, references = _by_content(folder, read_bytes(path), kind, home, read, permits)
     stamps = {**references.stamps, place: stamp}
     settled = (stamp_of(name) == known and changed_at(known) + CLOCK_TICK < began for name, known in stamps.items())
-    if stamp and all(settled):
+    if stamp and references.refused is None and all(settled):
         _store(Path(shortcut), pack_shortcut(entry, stamps))
-    return parts
+    return parts, references.digests
 
 
 def cached(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
@@ -81,7 +90,7 @@ def cached(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
     folder = cache_folder()
     if folder is None:
         return read()
-    return _by_content(folder, content, kind, "", lambda _: (read(), ReferencedFiles()))[0]
+    return _by_content(folder, content, kind, "", lambda _: (read(), ReferencedFiles()), lambda _: True)[0]
 
 
 def cache_folder() -> Path | None:
@@ -101,11 +110,17 @@ def cache_folder() -> Path | None:
 
 
 def _by_content(
-    folder: Path, content: bytes, kind: str, home: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]]
+    folder: Path,
+    content: bytes,
+    kind: str,
+    home: str,
+    read: Callable[[bytes], tuple[Parts, ReferencedFiles]],
+    permits: Callable[[str], bool],
 ) -> tuple[Parts, str, ReferencedFiles]:
     """Return the parts, the name of their entry, and the files that they come from besides this one.
 
-    Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files.
+    Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files. All
+    of them have to be permitted.
     """
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
@@ -114,11 +129,12 @@ def _by_content(
         if found:
             parts, digests = found
             references = ReferencedFiles(digests, {path: stamp_of(path) for path in digests})
-            if all(digest_of(path) == digest for path, digest in digests.items()):
+            if all(permits(path) and digest_of(path) == digest for path, digest in digests.items()):
                 return parts, entry, references
     parts, references = read(content)
     entry = at_home if references.digests else alone
-    _store(folder / entry, pack_entry(parts, references.digests))
+    if references.refused is None:
+        _store(folder / entry, pack_entry(parts, references.digests))
     return parts, entry, references
 
 
@@ -151,10 +167,10 @@ def readers_stamp() -> bytes:
 
 
 def reader_sources() -> list[str]:
-    """Return the paths of the modules beside this one, and of that with class ``Mesh``."""
+    """Return the paths of the modules beside this one, of that with class ``Mesh``, and of the policy on files."""
     folders = sorted(os.walk(os.path.dirname(__file__)))
     names = (os.path.join(folder, name) for folder, _, files in folders for name in sorted(files))
-    return [*(name for name in names if name.endswith(".py")), mesh.__file__]
+    return [*(name for name in names if name.endswith(".py")), mesh.__file__, file_access.__file__]
 
 
 def _loaded(file: str, unpack: Callable[[bytes], _T]) -> _T | None:

@@ -2,11 +2,13 @@
 
 import hashlib
 import os
+import re
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
 from ravemj.errors import Source, SourceError
+from ravemj.formats.file_access import FileAccess
 
 MAX_BYTES = 256 << 20
 """Larger files are refused, and so are compressed ones that unpack to more."""
@@ -21,10 +23,12 @@ class ReferencedFiles:
     Attributes:
         digests: SHA-256 of each as it lies on the disk, by path; empty for those that cannot be read.
         stamps: What ``stamp_of`` said of each before it was read.
+        refused: Why one of them must not be read; None if all of them may.
     """
 
     digests: dict[str, str] = field(default_factory=dict[str, str])
     stamps: dict[str, str] = field(default_factory=dict[str, str])
+    refused: SourceError | None = None
     _contents: dict[str, bytes] = field(default_factory=dict[str, bytes])
     _bytes_left: int = MAX_BYTES
 
@@ -54,32 +58,48 @@ class FileContent:
         data: Its bytes, unpacked if it was compressed with gzip.
         references: The files that it names; shared by all of them.
         parents: Absolute paths of the files that led here.
+        access: The files that may be read; by default those in the folder of the mesh.
     """
 
     path: str
     data: bytes
     references: ReferencedFiles = field(default_factory=ReferencedFiles)
     parents: tuple[str, ...] = ()
+    access: FileAccess = field(default_factory=lambda: FileAccess((), is_dropped=False))
 
     @property
     def source(self) -> Source:
         """The file as a whole, for messages."""
         return Source(self.path)
 
-    def refer(self, name: str) -> "FileContent | None":
+    def refer(self, name: str, *, is_raw: bool = False) -> "FileContent | None":
         """Read a file that this one names.
 
         Args:
             name: Path relative to this file's folder, or a URL of that kind.
+            is_raw: Whether the bytes of the file become numbers, whatever they are.
 
         Returns:
-            The file, or None if it cannot be read, is on the network, or is one of those that led here.
+            The file, or None if it cannot be read, is on the network, is one of those that led here, or must not be
+            read, which is reported.
         """
         here = os.path.abspath(self.path)
-        path = os.path.normpath(os.path.join(os.path.dirname(here), unquote(name.partition("#")[0])))
+        plain = unquote(re.sub("^file:(//)?", "", name.partition("#")[0], flags=re.IGNORECASE))
+        path = os.path.normpath(os.path.join(os.path.dirname(here), plain))
         parents = (*self.parents, here)
-        data = None if "://" in name or path in parents else self.references.read(path)
-        return None if data is None else FileContent(path, data, self.references, parents)
+        if "://" in plain or path in parents:
+            return None
+        if not self.access.permits_part(path, os.path.dirname(parents[0]), is_raw=is_raw):
+            self.references.refused = self.access.refuse(name, self._place(name), is_raw=is_raw)
+            return None
+        data = self.references.read(path)
+        return None if data is None else replace(self, path=path, data=data, parents=parents)
+
+    def _place(self, name: str) -> Source:
+        """Return where this file names another one: the first line with the name, if it is a text."""
+        at = -1 if b"\0" in self.data else self.data.find(name.encode(errors="replace"))
+        line = self.data.count(b"\n", 0, at) + 1 if at >= 0 else 0
+        return Source(self.path, line, self.access.files.get(self.path))
 
 
 def digest_of(path: str) -> str:

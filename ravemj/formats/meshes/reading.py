@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ravemj.core.transforms import UNSCALED, Vec3
-from ravemj.errors import Source, SourceError
+from ravemj.errors import Source, SourceError, send_warnings
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.meshes import cache
 from ravemj.formats.meshes.files import FileContent, ReferencedFiles, unpacked
 from ravemj.formats.meshes.parts import MESH_SUFFIXES, READERS, MeshPart
@@ -22,7 +23,7 @@ def reader_of(suffix: str) -> _Reader:
     return getattr(importlib.import_module(f"ravemj.formats.meshes.{module}"), name)
 
 
-def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
+def read_mesh(path: str, scale: Vec3 = UNSCALED, access: FileAccess | None = None) -> tuple[MeshPart, ...]:
     """Read a mesh file as OpenRAVE does it for the ``<data>`` of a trimesh.
 
     Vertices are in metres, in the frame of the file; a COLLADA file is scaled by its unit and turned to y up.
@@ -31,6 +32,8 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
     Args:
         path: The file; the end of its name decides how it is read, in upper or lower case.
         scale: Factors along x, y and z.
+        access: The files that may be read, which takes findings; by default those of a mesh that its user opens, and
+            findings are sent as warnings.
 
     Returns:
         Its parts, none of them without triangles.
@@ -42,13 +45,21 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
     if suffix is None:
         known = " ".join(MESH_SUFFIXES)
         raise SourceError("no mesh format that ravemj knows", Source(path), hint=f"it reads {known}")
+    if access is None:
+        access = FileAccess.opened(path)
+        parts = read_mesh(path, scale, access)
+        send_warnings(access.diagnostics)
+        return parts
     kind = suffix if scale == UNSCALED else f"{suffix} {scale}"
 
     def read(raw: bytes) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
-        parts, references = read_content(FileContent(path, unpacked(raw, path)), reader_of(suffix))
+        parts, references = read_content(FileContent(path, unpacked(raw, path), access=access), reader_of(suffix))
         return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
 
-    return cache.cached_file(path, kind, read)
+    parts, digests = cache.cached_file(path, kind, read, access)
+    for name in (name for name, digest in digests.items() if digest):
+        access.files.setdefault(name, Source(path, 0, access.files.get(path)))
+    return parts
 
 
 def read_content(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:

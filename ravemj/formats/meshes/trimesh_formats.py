@@ -41,14 +41,17 @@ def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
     )
 
 
+_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".ktx2", ".dds", ".bmp", ".gif", ".tif", ".tiff", ".tga")
+
+
 class _References(Mapping[str, bytes]):
-    """Gives trimesh the files that a file names."""
+    """Gives trimesh the files that a file names: buffers, which are raw data, and no pictures, which nothing shows."""
 
     def __init__(self, file: FileContent) -> None:
         self._file = file
 
     def __getitem__(self, name: str) -> bytes:
-        found = self._file.refer(name)
+        found = None if name.lower().endswith(_PICTURES) else self._file.refer(name, is_raw=True)
         if found is None:
             raise KeyError(name)
         return found.data
@@ -66,14 +69,21 @@ def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | Non
     if kind == "ply":  # trimesh takes headers for UTF-8, and comments of older programs are Latin-1
         header, end, rest = data.partition(b"end_header")
         data = header.decode("ascii", "replace").encode("ascii", "replace") + end + rest
+    options = {
+        "resolver": _References(file),
+        "process": False,
+        "skip_materials": kind == "ply",
+    }  # which has pictures alone
     trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
     try:
-        scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=_References(file), process=False)
+        scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind, **options)
         order = {name: number for number, name in enumerate(scene.geometry)}
         nodes: list[Any] = sorted(map(scene.graph.get, scene.graph.nodes_geometry), key=lambda node: order[node[1]])
         placed = [(scene.geometry[name], matrix) for matrix, name in nodes]
         return [_placed(geometry, matrix) for geometry, matrix in placed if hasattr(geometry, "faces")]
     except Exception as error:  # trimesh raises all kinds at malformed files
+        if file.references.refused is not None:
+            raise file.references.refused from error
         raise SourceError(f"trimesh cannot read it: {type(error).__name__}: {error}", file.source) from error
 
 

@@ -6,9 +6,10 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from ravemj.core.transforms import UNSCALED, Vec3
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Source, SourceError
 from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
 from ravemj.formats.data_folders import data_folders
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.tags import Tag, Target_contra
 from ravemj.formats.openrave_xml.tree import Document, Element, parse_file
@@ -36,13 +37,14 @@ class Context:
     """The context of reading one file and the files that it includes.
 
     Attributes:
+        access: The files that may be read, and those that were.
         diagnostics: Takes every finding.
-        files: The files that were read, with their paths, in the order of reading.
     """
 
-    def __init__(self) -> None:
-        self.diagnostics = Diagnostics()
-        self.files: list[str] = []
+    def __init__(self, access: FileAccess) -> None:
+        self.access = access
+        self.diagnostics = access.diagnostics
+        self._inclusions = 0
         self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
         self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
@@ -136,9 +138,10 @@ class Context:
         return self._included(path, element.source)
 
     def _included(self, path: str, source: Source) -> Element | None:
-        if len(self.files) >= MOST_FILES:
+        self._inclusions += 1
+        if self._inclusions > MOST_FILES:
             raise SourceError(f"the model has more than {MOST_FILES} files", source)
-        self.files.append(path)
+        self.access.files.setdefault(path, source)
         try:
             document = parse_file(path, source)
         except SourceError as error:
@@ -167,25 +170,34 @@ class Context:
             folders: Where to look first.
 
         Returns:
-            Its path, or None, with a warning, where it is in none of them.
+            Its path, or None, with a finding, where it is in none of them or must not be read.
         """
         question = (name, source.file, folders)
         found = self._found.get(question)
         if found is not None:
             return found
-        places = [os.path.join(folder, name) for folder in (*folders, os.path.dirname(source.file), *data_folders())]
+        places = self.access.candidates(name, *folders, os.path.dirname(source.file))
+        if not places and self.access.is_dropped:
+            self.access.refuse(name, source)
+            return None
         found = next(filter(os.path.isfile, places), None)
         if found is None:
-            found = _found_above(name, os.path.dirname(source.file))
+            found = _found_above(name, os.path.dirname(source.file), self.access)
             if found is None:
-                hint = "" if data_folders() else "put it there, or set OPENRAVE_DATA to the folder that it is in"
-                message = f"there is no file '{name}'; looked at {', '.join(dict.fromkeys(places))}"
-                self.diagnostics.warn("missing-file", message, source, hint)
+                self._report_missing(name, source, places)
                 return None
             message = f"{name} is in none of the places where OpenRAVE looks, so {found} is taken"
             self.diagnostics.warn("found-above", message, source, "OpenRAVE needs its folder in OPENRAVE_DATA")
         self._found[question] = found
         return found
+
+    def _report_missing(self, name: str, source: Source, places: list[str]) -> None:
+        if self.access.is_dropped:
+            self.access.report_missing(name, source)
+            return
+        hint = "" if data_folders() else "put it there, or set OPENRAVE_DATA to the folder that it is in"
+        message = f"there is no file '{name}'; looked at {', '.join(dict.fromkeys(places))}"
+        self.diagnostics.warn("missing-file", message, source, hint)
 
     def with_parameter(self, before: Parameters, element: Element) -> Parameters:
         """Return some parameters and that of a ``<parameter>``; a broken one is left out, with a warning."""
@@ -212,18 +224,19 @@ class Context:
         return parts
 
     def _read_mesh(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
-        if path not in self.files:
-            self.files.append(path)
+        self.access.files.setdefault(path, source if source.line else None)
+        findings = len(self.diagnostics)
         from ravemj.formats.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
 
         try:
-            parts = read_mesh(path, scale)
-            if not parts:
-                self.diagnostics.warn("broken-mesh", f"{path}: there are no triangles in it", source)
-            return parts
+            parts = read_mesh(path, scale, self.access)
+            problem = "" if parts else f"{path}: there are no triangles in it"
         except SourceError as error:
-            self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
-            return ()
+            parts, problem = (), f"{error.source}: {error.message}"
+        if problem and len(self.diagnostics) == findings:  # otherwise a refused file says why
+            report = self.diagnostics.error if self.access.is_dropped else self.diagnostics.warn
+            report("broken-mesh", problem, source)
+        return parts
 
 
 @dataclass
@@ -250,7 +263,7 @@ PLACEMENT_TAGS: dict[str, Tag[Placed]] = {
 }
 
 
-def _found_above(name: str, folder: str) -> str | None:
+def _found_above(name: str, folder: str, access: FileAccess) -> str | None:
     """Return the path of a file in the one of the folders above another that has it; None if several have.
 
     The search ends at the root of a repository, and after some folders.
@@ -262,7 +275,8 @@ def _found_above(name: str, folder: str) -> str | None:
         if os.path.exists(os.path.join(folder, ".git")):
             break
         folder = os.path.normpath(os.path.join(folder, os.pardir))
-        found.update(filter(os.path.isfile, [os.path.join(folder, name)]))
+        path = os.path.join(folder, name)
+        found.update([path] if access.permits(path) and os.path.isfile(path) else [])
     return found.pop() if len(found) == 1 else None
 
 

@@ -2,10 +2,11 @@
 
 import math
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
 from ravemj.errors import Diagnostics, Source, SourceError, UnnamedError
+from ravemj.formats.file_access import FileAccess
 from ravemj.formats.openrave_xml.context import Context, uncomputable
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
 from ravemj.formats.openrave_xml.kinbody import read_body
@@ -52,27 +53,39 @@ class Reading:
         scene: What was read; with a failure, what was read before it.
         diagnostics: Every finding.
         failure: What ended the reading, or None.
-        files: The files that were read, meshes included.
+        named_files: The files that were read, meshes included, each with the element that names it; see
+            ``FileAccess``.
         renames: Whether a body whose name is taken in the environment gets another one.
     """
 
     scene: Scene
     diagnostics: Diagnostics
     failure: SourceError | None
-    files: tuple[str, ...] = ()
+    named_files: dict[str, Source | None] = field(default_factory=dict[str, Source | None])
     renames: bool = False
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The paths of the files that were read."""
+        return tuple(self.named_files)
 
-def read(path: str | os.PathLike[str], given: Attributes = NOTHING, content: bytes | None = None) -> Reading:
+
+def read(
+    path: str | os.PathLike[str],
+    given: Attributes = NOTHING,
+    content: bytes | None = None,
+    access: FileAccess | None = None,
+) -> Reading:
     """Read an OpenRAVE XML file whose root is an environment, a robot or a kinbody.
 
     Args:
         path: The file.
         given: Attributes that act on the root.
         content: What it holds, if somebody has read it.
+        access: The files that may be read; by default those of a model that its user opens.
     """
     path = os.fspath(path)
-    context = Context()
+    context = Context(access or FileAccess.opened(path))
     document = _Document(context)
     failure = None
     try:
@@ -85,7 +98,7 @@ def read(path: str | os.PathLike[str], given: Attributes = NOTHING, content: byt
     except RecursionError:
         failure = SourceError("the elements are nested too deeply", Source(path))
     scene = Scene(tuple(document.bodies), document.view, document.gravity, tuple(document.sensors))
-    return Reading(scene, context.diagnostics, failure, (path, *context.files))
+    return Reading(scene, context.diagnostics, failure, {path: None} | context.access.files)
 
 
 class _Document:

@@ -33,7 +33,7 @@ def add_collada(
         return
     path = f"{found_path}#{wanted}" if wanted else found_path
     try:
-        content = collada.read_file(path, context.diagnostics, context.files, source, uniform(scale, source, context))
+        content = collada.read_file(path, context.access, source, uniform(scale, source, context))
         found = next(iter((*content.bodies, *content.others)), None)
         if found is None:
             raise SourceError("there is no body in it", Source(found_path, included_from=source))

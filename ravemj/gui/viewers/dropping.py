@@ -46,10 +46,10 @@ def _add(env: Any, paths: Sequence[str], notices: Notices) -> None:  # noqa: ANN
     models = [path for path in paths if Path(path).suffix.lower() in _MODELS]
     for path in models or paths:
         try:
-            trouble = env.add_file(path)
+            trouble = env.add_file(path, paths)
         except Exception as error:
             _LOG.exception("a file that was dropped cannot be added")
-            trouble = f"{path}: {error}"
+            trouble = f"{os.path.basename(path)}: {error}"
         if trouble:
             notices.say(trouble, _SHOWN)
         else:

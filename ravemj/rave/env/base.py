@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from ravemj.core.api_object import ApiObject
 from ravemj.engine.simulation import Simulation
-from ravemj.errors import Diagnostic, ErrorCode, RavemjError
+from ravemj.errors import Diagnostic, ErrorCode, RavemjError, Source
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ class EnvironmentPart(ApiObject):
         self._renderer = SimulationRenderer(self._simulation)
         self._viewers: list[Viewer] = []
         self._found: dict[Diagnostic, None] = {}  # ordered sets: loading a file again adds nothing
-        self._files: dict[str, None] = {}
+        self._files: dict[str, Source | None] = {}
         self._is_destroyed = False
 
     def _check_alive(self) -> None:

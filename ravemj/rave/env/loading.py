@@ -27,6 +27,7 @@ from ravemj.errors import (
     send_warnings,
 )
 from ravemj.formats.data_folders import existing
+from ravemj.formats.file_access import FileAccess
 from ravemj.model.scene import Grab, Mesh, Scene
 from ravemj.rave.env.description import Description
 from ravemj.rave.env.json_files import is_json, placed_errors, read_json
@@ -55,7 +56,7 @@ _NAME_CONFLICTS = {ErrorCode.BodyNameConflict.name, ErrorCode.SensorNameConflict
 class Loading(Description):
     """The methods that load models."""
 
-    _internal = ("add_file",)
+    _internal = ("add_file", "named_files")
 
     def Load(self, filename: Text, atts: Attributes | None = None) -> bool:
         """Add the content of a model file to the environment.
@@ -64,6 +65,7 @@ class Loading(Description):
             filename: An OpenRAVE XML file with an environment, a robot, a kinbody or a sensor; a COLLADA file
                 (``.dae``, ``.zae``); OpenRAVE's JSON (``.json``, see ``LoadJSON``); or a mesh file. Relative paths are
                 searched in the working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
+                Which files it may name itself: see "Which files a model may read".
             atts: Attributes as those of a ``<Robot>``: ``name`` replaces the name of the body, ``prefix`` is put before
                 the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
                 multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
@@ -98,26 +100,33 @@ class Loading(Description):
 
     LoadURI = Load
 
-    def add_file(self, path: str) -> str:
-        """Add the file ``path`` that a person has chosen, all of it or nothing.
+    def add_file(self, path: str, dropped: Sequence[str] = ()) -> str:
+        """Add the file ``path`` that a person has dropped on a viewer, all of it or nothing.
 
-        Bodies whose names are taken get other names. Return the error with file and line; empty if the file was added.
+        It may refer to the files in its folder and to those that were dropped with it, ``dropped``. Bodies whose names
+        are taken get other names. Return the error with file and line; empty if the file was added.
         """
+        path = os.path.abspath(path)
+        access = FileAccess.dropped(path, dropped)
         try:
             if is_json(path):
                 self._try_elsewhere(path)
                 self._load_json(path)
                 return ""
-            reading = self._read_file(path, {})
-            broken = [finding for finding in reading.diagnostics if finding.severity == "error"]
-            if reading.failure is not None or broken:
-                return str(reading.failure or broken[0])
-            if not reading.scene.bodies and not reading.scene.sensors:
-                return f"{path}: the file has no body and no sensor"
-            Compiled(reading.scene, Diagnostics())  # raises where MuJoCo refuses the bodies
-            self._add(replace(reading, renames=True))
+            trouble = self._add_dropped(path, access)
         except RavemjError as error:
-            return str(error)
+            trouble = str(error)
+        return access.named(trouble)
+
+    def _add_dropped(self, path: str, access: FileAccess) -> str:
+        reading = self._read_file(path, {}, access)
+        broken = [finding for finding in reading.diagnostics if finding.severity == "error"]
+        if reading.failure is not None or broken:
+            return str(broken[0] if broken else reading.failure)
+        if not reading.scene.bodies and not reading.scene.sensors:
+            return f"{path}: the file has no body and no sensor"
+        Compiled(reading.scene, Diagnostics())  # raises where MuJoCo refuses the bodies
+        self._add(replace(reading, renames=True, diagnostics=access.named_diagnostics()))
         return ""
 
     def _try_elsewhere(self, path: str) -> None:
@@ -170,10 +179,10 @@ class Loading(Description):
         checked_kind(data, (str, bytes), "LoadData: data", "a text")
         return self._take(self._read_data(data, checked_attributes(atts, "LoadData")))
 
-    def _read_file(self, path: Text, given: Attributes) -> "Reading":
+    def _read_file(self, path: Text, given: Attributes, access: FileAccess | None = None) -> "Reading":
         from ravemj.formats.readers import read_file  # noqa: PLC0415 - takes a while, and not every script reads a file
 
-        return read_file(os.fsdecode(path), given, self._metre)
+        return read_file(os.fsdecode(path), given, self._metre, access)
 
     def _read_data(self, data: str | bytes, given: Attributes) -> "Reading":
         from ravemj.formats.readers import read_data  # noqa: PLC0415
@@ -226,7 +235,7 @@ class Loading(Description):
 
     def _note(self, reading: "Reading") -> None:
         self._check_alive()
-        self._files.update(dict.fromkeys(reading.files))
+        self._files.update(reading.named_files)
         self._found.update(dict.fromkeys(reading.diagnostics))
 
     def ReadKinBodyURI(self, *arguments: Argument, **named: Argument) -> KinBody | None:
@@ -382,3 +391,8 @@ class Loading(Description):
     def files(self) -> tuple[str, ...]:
         """The paths of all files that were read: models, included files, and meshes."""
         return tuple(self._files)
+
+    @property
+    def named_files(self) -> dict[str, Source]:
+        """The files that other files name, and where these do so."""
+        return {path: source for path, source in self._files.items() if source is not None}

@@ -124,7 +124,7 @@ class Traversal:
         found = (self.file.refer(name) for name in names)
         file = next((candidate for candidate in found if candidate is not None), None)
         if file is None:
-            _log.warning("%s: %s: nothing to include", node.document.path, node.kind)
+            _log.warning("%s: %s: nothing to include", self.file.access.named(node.document.path), node.kind)
             return state
         before = self.file, self._handlers, self._materials_count, self._shapes_count, self._levels
         self.file, self._materials_count, self._levels = (
@@ -135,7 +135,7 @@ class Traversal:
         try:
             state = self._opener(self, file, state)
         except SourceError as error:
-            _log.warning("%s", error)
+            _log.warning("%s", file.access.named(str(error)))
         self.file, self._handlers, self._materials_count, self._shapes_count, self._levels = before
         return state
 
