@@ -288,6 +288,10 @@ def meshes() -> ravemj.Environment:
     return ravemj.load(MODELS / "panda.xml")
 
 
+def workshop() -> ravemj.Environment:
+    return ravemj.load(MODELS / "workshop.env.xml")
+
+
 def transparent() -> ravemj.Environment:
     env = ravemj.load(MODELS / "workshop.env.xml")
     for link in (link for body in env.GetBodies() for link in body.GetLinks()):
@@ -399,6 +403,31 @@ class TestWhatIsSeen:
             link.GetGeometries()[0].SetTransparency(0.5)
         desk.page.keyboard.press("i")  # ellipsoids of inertia, within the links
         await_that(lambda: desk.page.evaluate("drawing.renderer.groups.get('figures').figures.length"))
+        desk.await_picture()
+        del shown
+
+    @pytest.mark.parametrize("desk", [workshop], indirect=True)
+    @pytest.mark.parametrize(
+        ("eye", "focus"),
+        [
+            ((0.55, 2.5, 1.35), (0.2, 0, 0.3)),
+            ((1.6, 1.3, 0.2), (0.8, 0, 0.2)),  # low
+            ((0.9, 0.6, 0.5), (0.3, -0.3, 0.2)),  # over the floor, which reaches behind the camera
+            ((1.0, 6, 4), (0, 0, 0)),
+        ],
+    )
+    def test_lines_that_reach_behind_the_camera_are_hidden_by_bodies(self, desk, eye, focus):
+        T_world_camera = ravemj.transformLookat(lookat=focus, camerapos=eye, cameraup=[0, 0, -1])
+        desk.core.look_from(Camera(T_world_camera))
+        desk.viewer.SetCamera(T_world_camera)
+        shown = [
+            desk.env.drawlinestrip([[1.05, 3.5, 0.3], [1.05, -3, 0.3]], 3, [0, 1, 0]),
+            desk.env.drawlinestrip([np.array(eye) * [1, 1, 0] + [0, 0, 0.45], [*focus[:2], 0.45]], 2, [1, 0, 1]),
+            desk.env.plot3(0.05 * np.array(focus) + 0.95 * np.array(eye), 5, [1, 0, 0]),  # in front of all bodies
+        ]
+        desk.page.evaluate("() => { drawLabels = () => {}; }")
+        desk.page.keyboard.press("g")
+        await_that(lambda: np.allclose(desk.page.evaluate("drawing.serverView.position"), eye, atol=1e-5))
         desk.await_picture()
         del shown
 

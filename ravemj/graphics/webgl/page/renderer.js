@@ -2,6 +2,7 @@
 "use strict";
 
 const HERE = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], SOLID = [0, 0, 0, 1], CLEAR = [0, 0, 0, 0.5];
+const FOREGROUND = 0.01;  // part of the depth of the bodies at which drawings are seen still: less costs bodies digits
 const TYPES = { i8: Int8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array };
 
 /** Unpack compressed bytes: the document, and a function that returns the array of a name in it. */
@@ -74,22 +75,32 @@ void main() {
   pixel = vec4(min(color.rgb * light + gloss * shine, 1.0), color.a);
 }`;
 
-/* Lines of constant width, and points, which are lines without length. */
+/* Lines of constant width, and points, which are lines without length. They are clipped to twice the view: the depth of
+   ends that are far outside would be interpolated with too few digits. */
 const LINE_VERTEX = `#version 300 es
+const vec4 SIDES[4] = vec4[4](vec4(1, 0, 0, 2), vec4(-1, 0, 0, 2), vec4(0, 1, 0, 2), vec4(0, -1, 0, 2));
 uniform mat4 clip; uniform vec2 size; uniform float near, scale;
 in vec2 corner; in vec3 start, end; in float width; in vec4 rgba;
 out vec4 color;
+void cut(inout vec2 part, float from, float to) {
+  if (max(from, to) < 0.0) part = vec2(1.0, 0.0);
+  else if (from < 0.0) part.x = max(part.x, from / (from - to));
+  else if (to < 0.0) part.y = min(part.y, from / (from - to));
+}
 void main() {
-  vec4 a = clip * vec4(start, 1.0), b = clip * vec4(end, 1.0);
+  vec4 from = clip * vec4(start, 1.0), to = clip * vec4(end, 1.0);
   bool isPoint = start == end;
-  if (a.w < near && b.w > near) a = mix(a, b, (near - a.w) / (b.w - a.w));
-  if (b.w < near && a.w > near) b = mix(b, a, (near - b.w) / (a.w - b.w));
+  vec2 part = vec2(0.0, 1.0);
+  cut(part, from.w - near, to.w - near);
+  for (int i = 0; i < 4; i++) cut(part, dot(SIDES[i], from), dot(SIDES[i], to));
+  if (part.x > part.y) { gl_Position = vec4(0.0, 0.0, 2.0, 1.0); return; }  // nothing of it is in the view
+  vec4 a = mix(from, to, part.x), b = mix(from, to, part.y);
   vec2 along = (b.xy / b.w - a.xy / a.w) * size;
   along = isPoint || length(along) < 1e-6 ? vec2(1.0, 0.0) : normalize(along);
   vec2 aside = vec2(-along.y, along.x) * corner.y;
   vec4 p = corner.x < 0.0 ? a : b;
   vec2 beyond = isPoint ? along * corner.x : vec2(0.0);
-  float nearer = 2e-6 * max(width, 1.0);  // wide lines cover narrow ones in the same place
+  float nearer = 5e-7 * max(width, 1.0);  // steps of the depth: wide lines cover narrow ones
   gl_Position = p + vec4((aside + beyond) * max(scale * width, 1.0) / size * p.w, -nearer * p.w, 0.0);
   color = rgba;
 }`;
@@ -211,8 +222,9 @@ class Renderer {
       instances();
     });
     const low = axes.map((axis) => axis.low), step = axes.map((axis) => axis.step);
+    const half = axes.map((axis) => 0.5 * axis.step * axis.whole.reduce((most, number) => Math.max(most, number), 0));
     const type = indices instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT;
-    return { vertices, low, step, type, indices, faces, count: indices.length };
+    return { vertices, low, step, half, type, indices, faces, count: indices.length };
   }
 
   stroke({ corners, sizes, rgba }, array) {
@@ -383,31 +395,38 @@ class Renderer {
     return pixel[0] + 256 * pixel[1] - 1;
   }
 
-  /** Bring shapes to their bodies, and find between which depths they are. */
+  /** Bring shapes to their bodies, and find between which depths they and the drawings are. */
   prepare(view) {
     const forward = view.axis(2);
-    let near = Infinity, far = 0;
-    const seen = (x, y, z, radius) => {
-      const depth = (x - view.position[0]) * forward[0] + (y - view.position[1]) * forward[1]
-                    + (z - view.position[2]) * forward[2];
-      near = Math.min(near, depth - radius);
-      far = Math.max(far, depth + radius);
-    };
+    const depth = (x, y, z) => [x, y, z].reduce((sum, part, i) => sum + (part - view.position[i]) * forward[i], 0);
+    let near = Infinity, nearest = Infinity, far = 0;
     for (const shape of this.shapes) {
-      const a = this.poses[shape.body], b = shape.rows, to = shape.world;
+      const a = this.poses[shape.body], b = shape.rows, to = shape.world, { low, half } = shape.mesh;
       for (let row = 0; row < 12; row += 4) {
         for (let column = 0; column < 4; column++) {
           to[row + column] = a[row] * b[column] + a[row + 1] * b[4 + column] + a[row + 2] * b[8 + column];
         }
         to[row + 3] += a[row + 3];
       }
-      seen(to[3], to[7], to[11], shape.reach);
+      let middle = depth(to[3], to[7], to[11]), reach = 0;  // of the box that holds the mesh
+      for (let axis = 0; axis < 3; axis++) {
+        const slope = forward[0] * to[axis] + forward[1] * to[4 + axis] + forward[2] * to[8 + axis];
+        middle += slope * (low[axis] + half[axis]);
+        reach += Math.abs(slope) * half[axis];
+      }
+      near = Math.min(near, middle - reach);
+      far = Math.max(far, middle + reach);
     }
     for (const places of [...this.groups.values()].flatMap(({ marks }) => marks)) {
-      for (let i = 0; i < places.length; i += 3) seen(places[i], places[i + 1], places[i + 2], 0.1);
+      for (let i = 0; i < places.length; i += 3) {
+        const middle = depth(places[i], places[i + 1], places[i + 2]);
+        nearest = Math.min(nearest, middle - 0.1);
+        far = Math.max(far, middle + 0.1);
+      }
     }
     far = Math.max(1.01 * far, 1e-3);
-    this.depths = [Math.max(0.99 * near, 1e-4 * far), far];
+    near = Math.min(near, far);
+    this.depths = [Math.max(0.99 * Math.min(near, Math.max(nearest, FOREGROUND * near)), 1e-4 * far), far];
   }
 
   setUp(view, isLit, scale = 1) {
