@@ -38,7 +38,7 @@ class Tool(NamedTuple):
 class ArmPart(ApiObject):
     """Part of the API of a manipulator, about one topic; ``Manipulator`` joins the parts."""
 
-    _internal = ("moved_up",)
+    _internal = ("description", "moved_up")
 
     def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
         self._robot = robot
@@ -53,6 +53,11 @@ class ArmPart(ApiObject):
         except IndexError:
             message = f"'{self._robot.GetName()}' does not have this manipulator any more"
             raise RavemjError(message, ErrorCode.InvalidState) from None
+
+    @property
+    def description(self) -> scene.Manipulator:
+        """What the model says of the manipulator."""
+        return self._scene
 
     def moved_up(self, removed: int) -> None:
         """Take note that the manipulator at a place was removed, which may be this one."""

@@ -25,6 +25,7 @@ ROOMS = [
     "trajectories",
     "ik",
     "planning",
+    "manipulation",
     "graphics",
     "gui",
     "rave",
