@@ -51,7 +51,7 @@ class CollisionChecker(CheckerExtras):
     """
 
     _interface_type = InterfaceType.collisionchecker
-    _internal = ("answer", "collides", "find", "groups", "ray_targets", "report", "world")
+    _internal = ("answer", "collides", "find", "groups", "is_plain", "ray_targets", "report", "world")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         super().__init__(env, name)
@@ -194,6 +194,11 @@ class CollisionChecker(CheckerExtras):
         if not self._options & _ACTIVE_DOFS or not isinstance(argument, BodyCollision) or argument.moves_as_a_whole():
             return None
         return MovedBy(argument.active_dofs())
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the engine's own tests answer as this does: no function of a user, no other geometries."""
+        return type(self) is CollisionChecker and not self.groups.is_used and not self._env.collision_callbacks
 
     def world(self) -> AbstractContextManager[CollisionWorld]:
         """Return the world with the geometries that the checker looks at. The caller holds the lock."""

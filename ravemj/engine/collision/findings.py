@@ -65,6 +65,11 @@ class Checker(Protocol):
     The caller holds the lock.
     """
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether the engine's own tests answer as this does: no function of a user, no other geometries."""
+        ...
+
     def world(self) -> AbstractContextManager[CollisionWorld]:
         """Return the world with the geometries that the queries are about."""
         ...
