@@ -1,14 +1,13 @@
 """What the topics of an arm's API share."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from ravemj.core.api_object import ApiObject
-from ravemj.core.transforms import Floats, Ints
+from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ErrorCode, RavemjError
+from ravemj.manipulation.tool import Tool
 from ravemj.model import scene
 
 if TYPE_CHECKING:
@@ -19,26 +18,10 @@ _GONE = 1 << 30
 """The place of a manipulator that was removed; no robot has so many."""
 
 
-class Tool(NamedTuple):
-    """The parts of a manipulator that computations need.
-
-    Attributes:
-        arm: The description that it was made of.
-        T_effector_tool: Pose of the tool in the effector, shape (4, 4).
-        origin: Its last column.
-        dofs: DOF indices of the joints, shape (n,).
-    """
-
-    arm: scene.Manipulator
-    T_effector_tool: Floats
-    origin: Floats
-    dofs: Ints
-
-
 class ArmPart(ApiObject):
     """Part of the API of a manipulator, about one topic; ``Manipulator`` joins the parts."""
 
-    _internal = ("moved_up",)
+    _internal = ("description", "moved_up")
 
     def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
         self._robot = robot
@@ -53,6 +36,11 @@ class ArmPart(ApiObject):
         except IndexError:
             message = f"'{self._robot.GetName()}' does not have this manipulator any more"
             raise RavemjError(message, ErrorCode.InvalidState) from None
+
+    @property
+    def description(self) -> scene.Manipulator:
+        """What the model says of the manipulator."""
+        return self._scene
 
     def moved_up(self, removed: int) -> None:
         """Take note that the manipulator at a place was removed, which may be this one."""
@@ -72,25 +60,16 @@ class ArmPart(ApiObject):
         Raises:
             openrave_exception: the manipulator has no effector.
         """
-        effector = self._checked_effector()
         with self._state.simulation.lock:
-            return self._state.link_transform(effector).dot(self._tool().T_effector_tool)
+            return self._tool().pose(self._state)
 
     GetEndEffectorTransform = GetGraspTransform = GetTransform
-
-    def _checked_effector(self) -> int:
-        effector = self._scene.effector
-        if effector is None:
-            raise RavemjError(f"manipulator '{self.GetName()}' has no end effector")
-        return effector
 
     def _tool(self) -> Tool:
         """Return the tool and the joints as arrays, which are made anew when the description is another one."""
         arm = self._scene
         if self._known is None or self._known.arm is not arm:
-            T_effector_tool = arm.T_effector_tool.matrix()
-            dofs = np.array(arm.arm_dofs, dtype=np.int_)
-            self._known = Tool(arm, T_effector_tool, T_effector_tool[:, 3].copy(), dofs)
+            self._known = Tool.of(arm)
         return self._known
 
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator

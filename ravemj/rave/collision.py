@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager
 from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
 
@@ -11,7 +12,7 @@ from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.transforms import Ints
 from ravemj.engine.collision import queries
-from ravemj.engine.collision.findings import Collision, GeometryOf, Listed, Wanted, find
+from ravemj.engine.collision.findings import Collision, Findings, GeometryOf, Listed, Wanted, find
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import LinkOf, Links, MovedBy
 from ravemj.engine.collision.world import CollisionWorld
@@ -24,7 +25,7 @@ from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.geometry_groups import GeometryGroups
 from ravemj.rave.interface import asked_for
 from ravemj.rave.link import Link
-from ravemj.rave.report import CollisionPairInfo, CollisionReport, Part
+from ravemj.rave.report import FAR, CollisionPairInfo, CollisionReport, Part
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -50,7 +51,7 @@ class CollisionChecker(CheckerExtras):
     """
 
     _interface_type = InterfaceType.collisionchecker
-    _internal = ("answer", "groups", "ray_targets")
+    _internal = ("answer", "collides", "find", "groups", "is_plain", "ray_targets", "report", "world")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         super().__init__(env, name)
@@ -194,29 +195,53 @@ class CollisionChecker(CheckerExtras):
             return None
         return MovedBy(argument.active_dofs())
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether the engine's own tests answer as this does: no function of a user, no other geometries."""
+        return type(self) is CollisionChecker and not self.groups.is_used and not self._env.collision_callbacks
+
+    def world(self) -> AbstractContextManager[CollisionWorld]:
+        """Return the world with the geometries that the checker looks at. The caller holds the lock."""
+        return self.groups.world()
+
     def answer(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport | None) -> bool:
         """Test pairs of geoms as the options say, fill the report, and return whether there is a collision.
 
         The caller holds the lock.
         """
+        if report is None:
+            return self.collides(world, pairs)
+        checked_kind(report, CollisionReport, "report").Reset(self._options)
+        found = self.find(world, pairs, report.minDistance)
+        self._fill(report, found)
+        return bool(found.collisions)
+
+    def collides(self, world: CollisionWorld, pairs: Pairs) -> bool:
+        """Return whether any pairs of geoms collide. The caller holds the lock."""
+        return bool(self.find(world, pairs).collisions) if self._env.collision_callbacks else world.collide(pairs)
+
+    def find(self, world: CollisionWorld, pairs: Pairs, distance: float = FAR) -> Findings:
+        """Return what a report tells of pairs of geoms; distances above ``distance`` [m] are of no interest."""
         counts = self._counts if self._env.collision_callbacks and not self._options & _IGNORE_CALLBACKS else None
-        if report is None and counts is None:
-            return world.collide(pairs)
-        report = CollisionReport() if report is None else checked_kind(report, CollisionReport, "report")
+        return find(world, pairs, self._wanted, distance, counts)
+
+    def report(self, found: Findings) -> CollisionReport:
+        """Return a report of what was found."""
+        report = CollisionReport()
         report.Reset(self._options)
-        found = find(world, pairs, self._wanted, report.minDistance, counts)
+        self._fill(report, found)
+        return report
+
+    def _fill(self, report: CollisionReport, found: Findings) -> None:
         report.collisionInfos += map(self._info, found.collisions)
         report.minDistance = found.distance
         report.numWithinTol += found.within
         if found.nearest is not None and not report.numCols:
             report.collisionInfos = [self._info(found.nearest, collides=False)]
-        return bool(found.collisions)
 
     def _counts(self, collision: Collision) -> bool:
         """Ask the registered functions whether a collision counts."""
-        report = CollisionReport()
-        report.Reset(self._options)
-        report.collisionInfos.append(self._info(collision))
+        report = self.report(Findings([collision], FAR, None, 0))
         return all(callback(report, False) != CollisionAction.Ignore for callback in self._env.collision_callbacks)
 
     def _info(self, collision: Collision, *, collides: bool = True) -> CollisionPairInfo:
@@ -269,12 +294,15 @@ class NoCollisionChecker(CollisionChecker):
     def __init__(self, env: "Environment") -> None:
         super().__init__(env, "GenericCollisionChecker")
 
-    def answer(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport | None) -> bool:
+    def collides(self, world: CollisionWorld, pairs: Pairs) -> bool:
         """Return False."""
         del world, pairs
-        if report is not None:
-            report.Reset(self._options)
         return False
+
+    def find(self, world: CollisionWorld, pairs: Pairs, distance: float = FAR) -> Findings:
+        """Return that nothing is found."""
+        del world, pairs
+        return Findings([], distance, None, 0)
 
     def ray_targets(self, world: CollisionWorld, target: object = ...) -> Ints | None:
         """Return no geoms."""

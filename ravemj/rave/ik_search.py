@@ -1,6 +1,6 @@
 """The search for joint values of one arm, in which filters and tests of collision may have a say."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,8 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
-from ravemj.rave.ik_validation import CHECK_ENV, IGNORE_FILTERS, IGNORE_LIMITS, IGNORE_SELF, Filter, Query, Validator
+from ravemj.manipulation.arm_search import ArmSearch
+from ravemj.rave.ik_validation import Filter, FilteredSearch, Goal, checks_of
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
 from ravemj.rave.interface import Interface
 from ravemj.rave.specification import IkParameterization
@@ -70,6 +71,7 @@ class IkSearch(Interface):
         "find_row",
         "find_rows",
         "kind",
+        "search",
         "set_steps",
     )
 
@@ -150,22 +152,39 @@ class IkSearch(Interface):
     # Search
 
     def find_row(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> Floats | None:
-        """Return the joint values of ``find_one``, shape (n,), or None; fast where every solution is good."""
-        if not self._takes_all(options):
-            answer = self.find_one(goal, shares, options, explain=False)
-            return None if answer.GetAction() else answer.GetSolution()
-        solver = self.derived()
-        numbers, free = self._numbers(goal), self._free_values(solver, shares)
-        if options & IGNORE_LIMITS or free is not None:
-            return next(self._nearest_first(solver, numbers, free, options), None)
-        return solver.nearest(numbers, self._configuration(), weights=self._weights())
+        """Return the joint values of ``find_one``, shape (n,), or None."""
+        return self.search(goal, shares, options).nearest()
 
     def find_rows(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> Floats:
-        """Return the joint values of ``find_all``, shape (K, n), fast where every solution is good."""
-        if not self._takes_all(options):
-            rows = [answer.GetSolution() for answer in self.find_all(goal, shares, options)]
-            return np.array(rows)
-        return self._all_rows(self.derived(), goal, shares, options)
+        """Return the joint values of ``find_all``, shape (K, n)."""
+        return np.array(self.search(goal, shares, options).every())
+
+    def search(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> ArmSearch:
+        """Return a search for joint values.
+
+        Args:
+            goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
+            shares: Where the free joints are in their ranges, shape (k,); None: anywhere.
+            options: ``IkFilterOptions`` combined with ``|``.
+        """
+        if self._filters:
+            return self._filtered(goal, shares, options)
+        solver, checker = self.derived(), self._owner().GetEnv().GetCollisionChecker()
+        numbers, free = self._numbers(goal), self._free_values(solver, shares)
+        state, arm = self._owner().simulation_state, self._description()
+        return ArmSearch(state, arm, solver, numbers, checks_of(options), checker, free)
+
+    def _filtered(
+        self,
+        goal: IkParameterization | Floats,
+        shares: ArrayLike | None,
+        options: int,
+        failures: list[IkFailureInfo] | None = None,
+    ) -> FilteredSearch:
+        solver = self.derived()
+        free = self._free_values(solver, shares)
+        goals = Goal(goal, self._numbers(goal))
+        return FilteredSearch(self._arm, solver, goals, free, options, self._filters, failures)
 
     def find_one(
         self,
@@ -175,33 +194,27 @@ class IkSearch(Interface):
         *,
         seed: Floats | None = None,
         failures: list[IkFailureInfo] | None = None,
-        explain: bool = True,
     ) -> IkReturn:
-        """Return the good solution that is nearest to a configuration.
+        """Return the good solution that is nearest to a configuration, or why there is none; see ``search``.
 
         Args:
-            goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
-            shares: Where the free joints are in their ranges, shape (k,); None: anywhere.
-            options: ``IkFilterOptions`` combined with ``|``.
+            goal: As there.
+            shares: As there.
+            options: As there.
             seed: The configuration, shape (n,); None: the present one.
             failures: Gets what is rejected.
-            explain: Whether the answer says why there is no solution, or how far away it is.
         """
-        solver = self.derived()
-        numbers, free = self._numbers(goal), self._free_values(solver, shares)
-        start = self._configuration() if seed is None else seed
-        with self._validator(goal, options, failures) as validator:
-            answer = validator.first(self._nearest_first(solver, numbers, free, options, start))
-            if answer is None:
-                if explain and not validator.quit:
-                    validator.fall_short(*_shortfall(solver, numbers, free), limits=not options & IGNORE_LIMITS)
-                return validator.failure()
-        if not explain:
-            return answer
+        search = self._filtered(goal, shares, options, failures)
+        start = search.present() if seed is None else seed
+        row = search.nearest(start)
+        if row is None:
+            if not search.ended:
+                search.explain()
+            return search.failure()
         from ravemj.ik.limits import distances
 
-        away = distances(solver.chain, answer.GetSolution(), start, self._weights())
-        answer.SetMapKeyValue("__distancetosol__", away)
+        answer = search.answer(row)
+        answer.SetMapKeyValue("__distancetosol__", distances(search.solver.chain, row, start, search.weights))
         return answer
 
     def find_all(
@@ -212,33 +225,13 @@ class IkSearch(Interface):
         failures: list[IkFailureInfo] | None = None,
     ) -> list[IkReturn]:
         """Return all good solutions; none if a filter ends the search. The arguments are those of ``find_one``."""
-        solver = self.derived()
-        rows = self._all_rows(solver, goal, shares, options)
-        with self._validator(goal, options, failures) as validator:
-            answers = validator.all(rows)
-            if not answers and failures is not None and not validator.quit:
-                free = self._free_values(solver, shares)
-                validator.fall_short(*_shortfall(solver, self._numbers(goal), free), limits=not options & IGNORE_LIMITS)
-        return answers
-
-    def _all_rows(
-        self, solver: "IKSolver", goal: IkParameterization | Floats, shares: ArrayLike | None, options: int
-    ) -> Floats:
-        free = self._free_values(solver, shares)
-        samples = None if free is None else free[None]
-        return solver.solve_one(self._numbers(goal), free=samples, limits=not options & IGNORE_LIMITS)
-
-    def _nearest_first(
-        self, solver: "IKSolver", numbers: Floats, free: Floats | None, options: int, start: Floats | None = None
-    ) -> Iterator[Floats]:
-        seed, limits = self._configuration() if start is None else start, not options & IGNORE_LIMITS
-        from ravemj.ik.candidates import nearest_first
-
-        return nearest_first(solver, numbers, seed, weights=self._weights(), free=free, limits=limits)
-
-    def _weights(self) -> Floats:
-        axes = self._owner().simulation_state.scene.dof_axes
-        return np.array([axes[dof].weight for dof in self._description().arm_dofs])
+        search = self._filtered(goal, shares, options, failures)
+        rows = search.rows()
+        with search.moving():
+            answers = [search.answer(row) for row in search.good(rows)]
+        if not answers and failures is not None and not search.ended:
+            search.explain()
+        return [] if search.ended else answers
 
     def _numbers(self, goal: IkParameterization | Floats) -> Floats:
         """Return a goal as the solver takes it: a pose (4, 4), or the numbers of its type."""
@@ -255,21 +248,3 @@ class IkSearch(Interface):
             message = f"the goal is of type {kind.name}, and the solver of '{self._arm_name}' takes {self.kind.name}"
             raise ArgumentError(f"{message}; load an InverseKinematicsModel of that type first")
         return goal.GetValues()
-
-    def _takes_all(self, options: int) -> bool:
-        """Return whether every solution is good: nothing is tested."""
-        tests = options & CHECK_ENV or not options & IGNORE_SELF
-        return not tests and (bool(options & IGNORE_FILTERS) or not self._filters)
-
-    def _validator(
-        self, goal: IkParameterization | Floats, options: int, failures: list[IkFailureInfo] | None
-    ) -> Validator:
-        filters = [] if options & IGNORE_FILTERS else self._filters
-        query = Query(self._owner(), self._arm, self._description(), goal, options, filters, failures)
-        return Validator(query)
-
-
-def _shortfall(solver: "IKSolver", numbers: Floats, free: Floats | None) -> tuple[bool, bool]:
-    from ravemj.ik.candidates import shortfall
-
-    return shortfall(solver, numbers, free)

@@ -1,37 +1,44 @@
-"""Which solutions of inverse kinematics are good: filters of users, and collisions, with the robot at the solution."""
+"""Filters of users, and OpenRAVE's answers and failures, for the search for joint values of an arm."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.collision import arms
-from ravemj.engine.collision.world import CollisionWorld, Pairs
+from ravemj.engine.collision.findings import Findings
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.model import scene
+from ravemj.manipulation.arm_search import ArmSearch, Checks, Reason
 from ravemj.rave.body.active import ActiveChoice
 from ravemj.rave.enums import IkFilterOptions, IkReturnAction
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
-from ravemj.rave.report import CollisionReport
 from ravemj.rave.specification import IkParameterization
 
 if TYPE_CHECKING:
+    from ravemj.ik import IKSolver
     from ravemj.rave.manipulator import Manipulator
-    from ravemj.rave.robot import Robot
 
 # Plain numbers: operators of flags take longer than tests of collision.
-CHECK_ENV = int(IkFilterOptions.CheckEnvCollisions)
-IGNORE_SELF = int(IkFilterOptions.IgnoreSelfCollisions)
-IGNORE_LIMITS = int(IkFilterOptions.IgnoreJointLimits)
-IGNORE_FILTERS = int(IkFilterOptions.IgnoreCustomFilters)
+_CHECK_ENV = int(IkFilterOptions.CheckEnvCollisions)
+_IGNORE_SELF = int(IkFilterOptions.IgnoreSelfCollisions)
+_IGNORE_LIMITS = int(IkFilterOptions.IgnoreJointLimits)
+_IGNORE_FILTERS = int(IkFilterOptions.IgnoreCustomFilters)
 _IGNORE_END = int(IkFilterOptions.IgnoreEndEffectorEnvCollisions)
 _IGNORE_END_SELF = int(IkFilterOptions.IgnoreEndEffectorSelfCollisions)
 _POSE = IkParameterization.Type.Transform6D
-_REJECT, _QUIT = int(IkReturnAction.Reject), int(IkReturnAction.Quit)
+_REJECT, _QUIT, _BY_FILTER = 1, 2, int(IkReturnAction.RejectCustomFilter)
+
+_ACTIONS = {
+    Reason.OUT_OF_REACH: (IkReturnAction.RejectKinematics, "out of reach"),
+    Reason.LIMITS: (IkReturnAction.RejectJointLimits, "beyond the limits"),
+    Reason.SELF_COLLISION: (IkReturnAction.RejectSelfCollision, "collision"),
+    Reason.COLLISION: (IkReturnAction.RejectEnvCollision, "collision"),
+    Reason.END_COLLISION: (IkReturnAction(0x83), "collision"),
+}
+"""OpenRAVE's code for each reason, and the description of the failure."""
 
 FilterAnswer = IkReturnAction | IkReturn | None
 FilterFunction = Callable[[Floats, "Manipulator", IkParameterization], FilterAnswer]
@@ -48,115 +55,93 @@ class Filter:
     function: FilterFunction
 
 
-class Query(NamedTuple):
-    """What solutions are validated against.
+def checks_of(options: int) -> Checks:
+    """Return the tests that ``IkFilterOptions`` ask for."""
+    return Checks(
+        others=bool(options & _CHECK_ENV),
+        itself=not options & _IGNORE_SELF,
+        limits=not options & _IGNORE_LIMITS,
+        end_and_others=not options & _IGNORE_END,
+        end_and_rest=not options & _IGNORE_END_SELF,
+    )
 
-    Attributes:
-        robot: The robot.
-        arm: The manipulator.
-        description: Its description.
-        goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
+
+class Goal(NamedTuple):
+    """A goal in the frame of the arm's base: as it was given, where an array is a pose (4, 4); as a solver takes it."""
+
+    given: IkParameterization | Floats
+    numbers: Floats
+
+
+class FilteredSearch(ArmSearch):
+    """A search for joint values that asks the filters of users, and answers with objects of OpenRAVE's API.
+
+    Args:
+        manip: The manipulator.
+        solver: The solver of the arm.
+        goal: The goal.
+        free: The values of the free joints, shape (k,); None for samples.
         options: ``IkFilterOptions`` combined with ``|``.
         filters: The filters of users.
         failures: Gets what is rejected; None: nothing does.
     """
 
-    robot: "Robot"
-    arm: "Manipulator"
-    description: scene.Manipulator
-    goal: IkParameterization | Floats
-    options: int
-    filters: Sequence[Filter]
-    failures: list[IkFailureInfo] | None = None
-
-
-class Validator:
-    """Validates solutions inside its ``with``, after which the robot is as before.
-
-    Attributes:
-        filters: The filters, those of high priority first.
-        action: All that happened to the solutions that were rejected.
-        quit: Whether the search is over.
-    """
-
-    def __init__(self, query: Query) -> None:
-        self._query = query
-        self._state = query.robot.simulation_state
-        self.filters = sorted(query.filters, key=lambda one: -one.priority)
-        self._options = query.options
-        self._tests = bool(query.options & CHECK_ENV or not query.options & IGNORE_SELF)
-        self._end_is_free = False
-        self._started = 0 if query.failures is None else len(query.failures)
-        self.action = 0
-        self.quit = False
-
-    def __enter__(self) -> Self:
-        self._state.simulation.lock.acquire()
-        self._saved = self._state.configuration()
-        self._chosen = self._query.robot.active_choice
-        self._query.robot.active_choice = ActiveChoice(np.array(self._query.description.arm_dofs, dtype=int))
-        self._values = self._state.kinematics.values()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    def __init__(
+        self,
+        manip: "Manipulator",
+        solver: "IKSolver",
+        goal: Goal,
+        free: Floats | None,
+        options: int,
+        filters: Sequence[Filter],
+        failures: list[IkFailureInfo] | None,
     ) -> None:
-        """Bring the robot back to where it was."""
-        self._query.robot.active_choice = self._chosen
-        self._state.restore(self._saved)
-        self._state.simulation.lock.release()
+        robot = manip.GetRobot()
+        state, checks = robot.simulation_state, checks_of(options)
+        self._reports = robot.GetEnv().GetCollisionChecker()
+        super().__init__(state, manip.description, solver, goal.numbers, checks, self._reports, free)
+        self._robot, self._manip, self._given, self._failures = robot, manip, goal.given, failures
+        self._filters = [] if options & _IGNORE_FILTERS else sorted(filters, key=lambda one: -one.priority)
+        self.asks_users, self.explains = bool(self._filters), failures is not None
+        self._started = 0 if failures is None else len(failures)
+        self._action = 0
+        self._answer = IkReturn(IkReturnAction.Success)
 
     @cached_property
-    def _goal(self) -> IkParameterization:
+    def _goal_of_users(self) -> IkParameterization:
         """The goal as users see it; made when it is first asked for, since it checks a pose once more."""
-        goal = self._query.goal
-        return goal if isinstance(goal, IkParameterization) else IkParameterization(goal, _POSE)
+        return self._given if isinstance(self._given, IkParameterization) else IkParameterization(self._given, _POSE)
 
-    def first(self, rows: Iterable[Floats]) -> IkReturn | None:
-        """Return the answer for the first good one of solutions, or None."""
-        for row in rows:
-            answer = self.ask(row)
-            if answer is not None or self.quit:
-                return answer
-        return None
+    @contextmanager
+    def moving(self) -> Generator[None]:
+        """Hold the lock and let the joints of the arm be active; on leaving, restore both and the configuration."""
+        with super().moving():
+            chosen = self._robot.active_choice
+            self._robot.active_choice = ActiveChoice(np.array(self.arm.arm_dofs, dtype=int))
+            try:
+                yield
+            finally:
+                self._robot.active_choice = chosen
 
-    def all(self, rows: Iterable[Floats]) -> list[IkReturn]:
-        """Return the answers for all good ones of solutions; none if a filter ends the search."""
-        answers: list[IkReturn] = []
-        for row in rows:
-            answer = self.ask(row)
-            if self.quit:
-                return []
-            if answer is not None:
-                answers.append(answer)
-        return answers
+    def accepts(self, row: Floats, *, before_collisions: bool) -> bool:
+        """Ask the filters of priority above 0 before collisions are tested, and the others afterwards."""
+        if before_collisions:
+            self._answer = IkReturn(IkReturnAction.Success)
+        return self._pass([one for one in self._filters if (one.priority > 0) == before_collisions], row)
 
-    def ask(self, row: Floats) -> IkReturn | None:
-        """Return the answer for one solution, shape (n,), or None where it is rejected."""
-        answer = solution(row)
-        if not (self.filters or self._tests):
-            return answer
-        values = self._values.copy()
-        values[list(self._query.description.arm_dofs)] = row
-        self._state.set_values(values)
-        before = [one for one in self.filters if one.priority > 0]
-        if not self.passes(before, row, answer) or self._collides(row):
-            return None
-        return answer if self.passes(self.filters[len(before) :], row, answer) else None
-
-    def passes(self, filters: Iterable[Filter], row: Floats, answer: IkReturn) -> bool:
+    def _pass(self, filters: Iterable[Filter], row: Floats) -> bool:
         """Ask filters about a solution, and put what they attach into its answer."""
         for one in filters:
             said = self._asked(one, row)
             action = IkReturnAction.Reject if said is None else said.GetAction()
             if action:
-                self._reject(row, int(action) | int(IkReturnAction.RejectCustomFilter), f"filter of {one.priority}")
-                self.quit = bool(action & _QUIT)
+                self._reject(int(action) | _BY_FILTER, f"filter of {one.priority}", row)
+                self.ended = bool(action & _QUIT)
                 return False
             if said is not None:
-                answer.take(said)
+                self._answer.take(said)
                 if len(said.GetSolution()):
-                    answer.SetSolution(said.GetSolution())
+                    self._answer.SetSolution(said.GetSolution())
         return True
 
     def _asked(self, one: Filter, row: Floats) -> IkReturn | None:
@@ -165,9 +150,8 @@ class Validator:
         Raises:
             RavemjError: with the code ``Assert``, it raises something, or says something that means nothing.
         """
-        query = self._query
         try:
-            said: Any = one.function(row.copy(), query.arm, IkParameterization(self._goal))
+            said: Any = one.function(row.copy(), self._manip, IkParameterization(self._goal_of_users))
         except Exception as error:
             message = f"a filter of inverse kinematics raised {type(error).__name__}: {error}"
             raise RavemjError(message, ErrorCode.Assert) from error
@@ -180,63 +164,37 @@ class Validator:
             raise RavemjError(message, ErrorCode.Assert)
         return said
 
-    def _collides(self, row: Floats) -> bool:
-        """Return whether the robot, which is at the solution, collides."""
-        if not self._tests:
-            return False
-        with self._query.robot.GetEnv().GetCollisionChecker().groups.world() as world:
-            return self._collides_in(world, row)
+    def solution(self, row: Floats) -> Floats:
+        """Return the solution that a filter gave in place of joint values, or these."""
+        given = self._answer.GetSolution()
+        return given if len(given) else row
 
-    def _collides_in(self, world: CollisionWorld, row: Floats) -> bool:
-        options, state, arm = self._options, self._state, self._query.description
-        check_env, check_self = options & CHECK_ENV, not options & IGNORE_SELF
-        without_end = bool(options & _IGNORE_END)
-        if check_env and not without_end and self._goal.GetType() == _POSE:
-            # All solutions have the end at the same place.
-            if not self._end_is_free and self._hits(world, arms.end_and_others(world, state, arm), row, 0x83):
-                self.quit = True
-                return True
-            self._end_is_free = without_end = True
-        if check_self:
-            pairs = arms.arm_and_rest(world, state, arm, without_end=bool(options & _IGNORE_END_SELF))
-            if self._hits(world, pairs, row, IkReturnAction.RejectSelfCollision):
-                return True
-        if not check_env:
-            return False
-        pairs = arms.arm_and_others(world, state, arm, without_end=without_end)
-        return self._hits(world, pairs, row, IkReturnAction.RejectEnvCollision)
+    def answer(self, row: Floats) -> IkReturn:
+        """Return the answer with a solution that was accepted last, shape (n,)."""
+        answer, self._answer = self._answer, IkReturn(IkReturnAction.Success)
+        answer.SetSolution(row)
+        return answer
 
-    def _hits(self, world: CollisionWorld, pairs: Pairs, row: Floats, action: int) -> bool:
-        """Test pairs; where there is a collision, reject the solution."""
-        report = None if self._query.failures is None else CollisionReport()
-        hit = self._query.robot.GetEnv().GetCollisionChecker().answer(world, pairs, report)
-        if hit:
-            self._reject(row, action, "collision", report)
-        return hit
+    def filtered(self) -> IkReturn:
+        """Ask all filters about the present joint values, whatever collides."""
+        row = self.present()
+        with self.moving():
+            return self.answer(self.solution(row)) if self._pass(self._filters, row) else self.failure()
 
-    def _reject(self, row: Floats, action: int, why: str, report: CollisionReport | None = None) -> None:
-        self.action |= int(action)
-        if self._query.failures is not None:
-            info = IkFailureInfo(IkReturnAction(action), row.copy(), self._goal, report, why)
-            self._query.failures.append(info)
+    def reject(self, reason: Reason, row: Floats, findings: Findings | None) -> None:
+        """Take note that joint values are rejected; ``row`` is empty if there are none."""
+        self._reject(*_ACTIONS[reason], row, findings)
 
-    def fall_short(self, unreached: bool, limited: bool, *, limits: bool) -> None:
-        """Take note that the goal is out of reach, or, where limits count, that solutions are beyond them."""
-        if unreached:
-            self._reject(np.zeros(0), int(IkReturnAction.RejectKinematics), "out of reach")
-        if limited and limits:
-            self._reject(np.zeros(0), int(IkReturnAction.RejectJointLimits), "beyond the limits")
+    def _reject(self, action: int, why: str, row: Floats, findings: Findings | None = None) -> None:
+        self._action |= int(action)
+        if self._failures is not None:
+            report = None if findings is None else self._reports.report(findings)
+            info = IkFailureInfo(IkReturnAction(action), row.copy(), self._goal_of_users, report, why)
+            self._failures.append(info)
 
     def failure(self) -> IkReturn:
         """Return the answer for a goal without a good solution."""
-        answer = IkReturn(self.action | _REJECT)
-        failures = self._query.failures
+        answer = IkReturn(self._action | _REJECT)
+        failures = self._failures
         answer.name_failures([] if failures is None else list(range(self._started, len(failures))))
         return answer
-
-
-def solution(row: Floats) -> IkReturn:
-    """Return the answer with a solution, shape (n,)."""
-    answer = IkReturn(IkReturnAction.Success)
-    answer.SetSolution(row)
-    return answer

@@ -16,7 +16,7 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.ik_search import IkSearch
-from ravemj.rave.ik_validation import Filter, FilterFunction, solution
+from ravemj.rave.ik_validation import Filter, FilterFunction
 from ravemj.rave.ikreturn import IkReturn
 from ravemj.rave.interface import asked_for
 from ravemj.rave.specification import IkParameterization
@@ -106,10 +106,7 @@ class IkSolver(IkSearch):
         here = self._arm.GetIkParameterization(goal, False)
         if here.ComputeDistanceSqr(goal) > _NEAR:
             raise ArgumentError("CallFilters: ikparam is not where the tool is; it is relative to the arm's base")
-        row = self._configuration()
-        answer = solution(row)
-        with self._validator(goal, 0, None) as validator:
-            return answer if validator.passes(validator.filters, row, answer) else validator.failure()
+        return self._filtered(goal, None, 0).filtered()
 
     # Search
 

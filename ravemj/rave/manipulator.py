@@ -72,7 +72,7 @@ class Manipulator(ArmEnd, ArmRedundancy):
         Returns:
             The velocity of the tool's origin [m/s], then its angular velocity [rad/s], in world axes, shape (6,).
         """
-        effector = self._checked_effector()
+        effector = self._tool().effector
         with self._state.simulation.lock:
             velocity = self._state.link_velocities()[effector]
             arm = self.GetTransform()[:3, 3] - self._state.link_transform(effector)[:3, 3]
@@ -86,17 +86,13 @@ class Manipulator(ArmEnd, ArmRedundancy):
             The derivative of the tool's position in the world by the joint values of ``GetArmIndices()``,
             [m/rad or m/m], shape (3, arm dof).
         """
-        effector = self._checked_effector()
         with self._state.simulation.lock:
-            state, tool = self._state, self._tool()
-            point = state.link_transform(effector).dot(tool.origin)[:3]
-            return state.dynamics.translation_jacobian(effector, point).take(tool.dofs, 1)
+            return self._tool().translation_jacobian(self._state)
 
     def CalculateAngularVelocityJacobian(self) -> Floats:
         """Return the Jacobian of the tool's angular velocity in world axes, shape (3, arm dof)."""
-        effector = self._checked_effector()
         with self._state.simulation.lock:
-            return self._state.dynamics.rotation_jacobian(effector).take(self._tool().dofs, 1)
+            return self._tool().rotation_jacobian(self._state)
 
     def CalculateRotationJacobian(self) -> Floats:
         """Return the Jacobian of the tool's quaternion [w, x, y, z], shape (4, arm dof)."""

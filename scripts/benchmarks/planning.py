@@ -12,13 +12,13 @@ import numpy as np
 import ravemj
 from benchmarks.measure import ROOT, Row, microseconds, take_turns
 from ravemj.core.transforms import Floats, Ints
+from ravemj.manipulation.bodies import Bodies
 from ravemj.planning.edges import Edges, length
 from ravemj.planning.retiming.parabolic import Parabolic
 from ravemj.planning.retiming.segments import Limits, retime
 from ravemj.planning.rrt import Budget, Search, connect
 from ravemj.planning.shortcuts import shorten
 from ravemj.planning.space import Coordinates, Space
-from ravemj.rave.planning.bodies import Bodies
 
 _DOFS = 7
 _APART = 2.0  # rad, from start to goal
@@ -134,7 +134,7 @@ def _problem(
 def _tool(bodies: Bodies, values: Floats) -> Floats:
     bodies.move(values)
     (robot,) = bodies.bodies
-    return robot.GetLinks()[-1].GetTransform()[:3, 3]
+    return robot.link_transforms()[-1][:3, 3]
 
 
 def _world(boxes: Boxes, resolution: float, *, held: bool) -> tuple[ravemj.Environment, Bodies, Space]:
@@ -150,7 +150,7 @@ def _world(boxes: Boxes, resolution: float, *, held: bool) -> tuple[ravemj.Envir
         body = _add_box(env, "held", [x, y, z, 0.03, 0.03, 0.04])
         robot.Grab(body, robot.GetLinks()[-1])
     spec = robot.GetConfigurationSpecificationIndices(range(_DOFS))
-    bodies = Bodies(env, spec.GetGroups())
+    bodies = Bodies(env.simulation, spec.GetGroups(), env.GetCollisionChecker)
     lower, upper = bodies.numbers("lower"), bodies.numbers("upper")
     ones = np.ones(_DOFS)
     return env, bodies, Space(bodies.coordinates(), lower, upper, ones, resolution * ones)

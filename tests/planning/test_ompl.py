@@ -108,7 +108,8 @@ def test_without_ompl_there_is_no_such_planner_and_a_warning_names_the_extra(rob
         raise ImportError(name)
 
     ompl_search.planner_classes.cache_clear()
+    make = ravemj.RaveCreatePlanner  # which is imported when it is first asked for
     monkeypatch.setattr("importlib.import_module", missing)
-    assert ravemj.RaveCreatePlanner(robot.GetEnv(), "OMPL_RRTConnect") is None
+    assert make(robot.GetEnv(), "OMPL_RRTConnect") is None
     assert 'pip install "ravemj[planning]"' in caplog.text
     ompl_search.planner_classes.cache_clear()

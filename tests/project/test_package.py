@@ -24,6 +24,7 @@ ROOMS = [
     "trajectories",
     "ik",
     "planning",
+    "manipulation",
     "graphics",
     "gui",
     "rave",

@@ -14,10 +14,10 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
+from ravemj.manipulation.tool import ToolConstraint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import task_module
 from ravemj.rave.modules.grasp_planning import GraspQuery
-from ravemj.rave.planning.hand import ToolConstraint
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory

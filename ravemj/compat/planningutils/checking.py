@@ -59,7 +59,7 @@ def VerifyTrajectory(
         wrong = flaw(samples, values.limits(), lambda one: True)
     else:
         with values.bodies.kept():
-            wrong = flaw(samples, values.limits(), values.allowed())
+            wrong = flaw(samples, values.limits(), values.conditions.allowed())
     if wrong is not None:
         raise RavemjError(f"VerifyTrajectory: {wrong}", ErrorCode.InconsistentConstraints)
 
@@ -156,7 +156,7 @@ class DynamicsCollisionConstraint(ApiObject):
             invalid = parameters.GetStateFn()
             collisions = int(ConstraintFilterOptions.CheckEnvCollisions | ConstraintFilterOptions.CheckSelfCollisions)
             if code & collisions:
-                parameters.resolved().problem(invalid, wanted, self._report)
+                self._report = parameters.report(invalid, wanted)
         if not filterreturn:
             return code
         start, end = checked_numbers(q0, "q0"), checked_numbers(q1, "q1")
@@ -191,7 +191,7 @@ def JitterCurrentConfiguration(
     values = plannerparameters.resolved()
     if values.bodies is None:
         raise ArgumentError("JitterCurrentConfiguration: nothing moves; call SetRobotActiveJoints(robot) first")
-    allowed, bodies = values.allowed(), values.bodies
+    allowed, bodies = values.conditions.allowed(), values.bodies
     random = np.random.default_rng(int(values.numbers["_nrandomgeneratorseed"]))
 
     def roomy(one: Floats) -> bool:

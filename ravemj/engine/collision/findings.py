@@ -1,7 +1,8 @@
 """What reports tell of a query: the pairs of links or geometries that collide, contact points, distances."""
 
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from contextlib import AbstractContextManager
+from typing import Literal, NamedTuple, Protocol
 
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.shapes import Contact
@@ -56,6 +57,30 @@ class Findings(NamedTuple):
     distance: float  # the least one [m], not negative, or the one that was given where none is less
     nearest: Collision | None  # the geometries that are so near, where there are any
     within: int  # number of pairs within the tolerance
+
+
+class Checker(Protocol):
+    """Collision queries with the options of an environment, and with the functions of users that decide what counts.
+
+    The caller holds the lock.
+    """
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the engine's own tests answer as this does: no function of a user, no other geometries."""
+        ...
+
+    def world(self) -> AbstractContextManager[CollisionWorld]:
+        """Return the world with the geometries that the queries are about."""
+        ...
+
+    def collides(self, world: CollisionWorld, pairs: Pairs) -> bool:
+        """Return whether any of the pairs collide."""
+        ...
+
+    def find(self, world: CollisionWorld, pairs: Pairs) -> Findings:
+        """Return what a report should tell of the pairs."""
+        ...
 
 
 def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, counts: Counts | None) -> Findings:

@@ -7,12 +7,12 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.bodies import Bodies
 from ravemj.planning.edges import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.motions import Manipulation, Postprocessing, SearchOptions
-from ravemj.rave.planning.bodies import Bodies
 from ravemj.rave.planning.names import is_planner
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
@@ -126,8 +126,7 @@ class BaseManipulation(Manipulation):
         manip = self._solvable()
         T_world_tool = manip.GetTransform() if starteematrix is None else starteematrix
         reached, check = 0, ignorefirstcollision < 0
-        groups = manip.GetArmConfigurationSpecification().GetGroups()
-        with self.keeping_active(), Bodies(self.env, groups).kept():
+        with self.keeping_active(), self.bodies_of(manip.GetArmIndices()).kept():
             present = manip.GetArmDOFValues()
             self.robot.SetActiveDOFs(manip.GetArmIndices())
             is_here = starteematrix is None
@@ -198,8 +197,8 @@ class BaseManipulation(Manipulation):
         values, before = params.resolved(), robot.GetDOFValues(indices)
         space, here = values.space(), values.vectors["_vinitialconfig"]
         assert values.bodies is not None
-        moving = Bodies(self.env, robot.GetConfigurationSpecificationIndices(indices).GetGroups())
-        test = values.allowed()
+        moving = self.bodies_of(indices)
+        test = values.conditions.allowed()
 
         def hand_can_move(active: Floats) -> bool:
             if not test(active):
@@ -246,7 +245,7 @@ class BaseManipulation(Manipulation):
         assert values.bodies is not None
         with values.bodies.kept():
             random = np.random.default_rng(0)
-            found = nearby(values.space(), here, values.allowed(), maxiter, jitter, random)
+            found = nearby(values.space(), here, values.conditions.allowed(), maxiter, jitter, random)
         if found is None:
             raise PlanningError(f"{maxiter} configurations within {jitter:g} are all in collision")
         return found, self.straight(here[None] if found is here else np.stack([here, found]))

@@ -10,13 +10,13 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import matrixFromPose
+from ravemj.manipulation.tool import ToolConstraint
 from ravemj.rave.module import Command
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH, BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspQuery
 from ravemj.rave.modules.motions import Manipulation, SearchOptions
 from ravemj.rave.modules.task_manipulation import TaskManipulation
 from ravemj.rave.modules.tokens import Reader, Tokens, flag, read_options, switch, text
-from ravemj.rave.planning.hand import ToolConstraint
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory

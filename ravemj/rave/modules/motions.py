@@ -5,18 +5,20 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.bodies import Bodies
+from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.edges import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint
-from ravemj.rave.planning.hand import ToolConstraint, hand_of
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
-from ravemj.rave.planning.values import Values
+from ravemj.rave.planning.values import Values, hand_of
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 
@@ -87,6 +89,11 @@ class Manipulation:
         """Choose the path planner; an unknown name chooses ``birrt``, as in OpenRAVE."""
         self.planner = name if is_planner(name) else "birrt"
 
+    def bodies_of(self, dofs: ArrayLike) -> Bodies:
+        """Return some joints of the robot as what moves."""
+        groups = self.robot.GetConfigurationSpecificationIndices(dofs).GetGroups()
+        return Bodies(self.env.simulation, groups, self.env.GetCollisionChecker)
+
     def keeping_active(self) -> AbstractContextManager[object]:
         """Restore the active DOFs on leaving."""
         return self.robot.CreateRobotStateSaver(SaveParameters.ActiveDOF)
@@ -123,7 +130,8 @@ class Manipulation:
             params.set_goal_sampler(more.sample, more.probability)
         jitter = search.jitter
         if search.constraint is not None:
-            params.given.manifold = hand_of(params.resolved()).to_constraint(search.constraint)
+            tool = hand_of(self.env, params.resolved()).tool
+            params.given.conditions.manifold = tool.to_constraint(search.constraint)
             jitter = 0.0
             if postprocessing is None:
                 params.SetPostProcessing("LinearTrajectoryRetimer", "")
@@ -159,7 +167,7 @@ class Manipulation:
         assert values.bodies is not None
         random = np.random.default_rng(0)
         with values.bodies.kept():
-            test, space = values.allowed(), values.space()
+            test, space = values.conditions.allowed(), values.space()
             found = [nearby(space, one, test, JITTER_TRIES, jitter, random) for one in configurations]
         return [old if new is None else new for old, new in zip(configurations, found, strict=True)]
 

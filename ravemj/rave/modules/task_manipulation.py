@@ -8,15 +8,16 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.bodies import Bodies
+from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.projection import PROJECTION_STEPS, project
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspPlan, GraspQuery, plan_grasp
 from ravemj.rave.modules.motions import Manipulation
-from ravemj.rave.planning.bodies import Bodies
-from ravemj.rave.planning.hand import ToolConstraint, hand_of
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.values import hand_of
 from ravemj.rave.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -59,9 +60,9 @@ class TaskManipulation(Manipulation):
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
         values = params.resolved()
-        hand = hand_of(values)
-        error, threshold = hand.to_constraint(constraint)
-        with hand.bodies.kept():
+        tool = hand_of(self.env, values).tool
+        error, threshold = tool.to_constraint(constraint)
+        with tool.bodies.kept():
             found = [project(one, error, values.space(), threshold, PROJECTION_STEPS) for one in configurations]
         return [steps for steps, _ in found], [row for _, row in found]
 
@@ -130,7 +131,7 @@ class TaskManipulation(Manipulation):
             wanted = "finite directions, and a step above 0"
             raise ArgumentError(f"movingdir is {directions.tolist()} with steps of {step:g}, and should be {wanted}")
         robot, sides = self.robot, np.sign(directions)
-        bodies = Bodies(self.env, robot.GetConfigurationSpecificationIndices(dofs).GetGroups())
+        bodies = self.bodies_of(dofs)
         lower, upper = robot.GetDOFLimits(dofs)
         with bodies.kept():
             values = bodies.values()
@@ -170,5 +171,5 @@ class TaskManipulation(Manipulation):
         """Return whether a link that a joint moves touches another body, or a link that does not move with it."""
         state, simulation = self.robot.simulation_state, self.env.simulation
         moved = MovedBy((dof,))
-        with simulation.lock, self.env.GetCollisionChecker().groups.world() as world:
+        with simulation.lock, self.env.GetCollisionChecker().world() as world:
             return world.collide(body_and_others(world, state, moved)) or world.collide(itself(world, state, moved))

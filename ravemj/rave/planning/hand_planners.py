@@ -14,14 +14,13 @@ from ravemj.planning.projection import descend
 from ravemj.planning.rrt import Budget, End, Search
 from ravemj.planning.tracking import track
 from ravemj.rave.enums import PlannerStatusCode
-from ravemj.rave.planning.hand import Hand, hand_of
 from ravemj.rave.planning.parameter_text import CHAIN
 from ravemj.rave.planning.path_planners import PathPlanner, Query
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import post_process
 from ravemj.rave.planning.retimers import flag
 from ravemj.rave.planning.status import PlannerStatus
-from ravemj.rave.planning.values import Values
+from ravemj.rave.planning.values import Hand, Values, hand_of
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories import extraction
@@ -56,7 +55,7 @@ class WorkspaceTrajectoryTracker(Planner):
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
         try:
-            hand = hand_of(values)
+            hand = hand_of(self._env, values)
             goals = self._goals(values, hand)[1]
         except RavemjError as error:
             return self._failed(error.message)
@@ -84,7 +83,7 @@ class WorkspaceTrajectoryTracker(Planner):
         problem = self._prepare(values)
         if problem is not None:
             return problem
-        hand = hand_of(values)
+        hand = hand_of(self._env, values)
         times, goals = self._goals(values, hand)
         budget = Budget(len(goals), values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
         ended: list[End] = []
@@ -96,7 +95,7 @@ class WorkspaceTrajectoryTracker(Planner):
                 return []
             return self._solutions(values, hand, goals[number], near, check=self._is_checked(values, times[number]))
 
-        with hand.bodies.kept():
+        with hand.tool.bodies.kept():
             start = values.configurations("_vinitialconfig")[0]
             path = track(values.space(), len(goals), start, solve, self._connection(values, hand, times))
         reached = float(times[len(path) - 1]) if len(path) else 0.0
@@ -116,14 +115,14 @@ class WorkspaceTrajectoryTracker(Planner):
         self, values: Values, hand: Hand, goal: IkParameterization, near: Floats, *, check: bool
     ) -> list[Floats]:
         """Return the configurations that reach a goal, the nearest to ``near`` first; a greedy search gets only one."""
-        hand.bodies.move(near)
+        hand.tool.bodies.move(near)
         found: list[Floats] = []
         for row in hand.manip.FindIKSolutions(goal, 0):
-            configuration = np.zeros(hand.dof)
-            configuration[hand.columns] = row
+            configuration = np.zeros(hand.tool.dof)
+            configuration[hand.tool.columns] = row
             found.append(near + values.space().difference(configuration, near))
         if check:
-            found = list(filter(values.allowed(), found))
+            found = list(filter(values.conditions.allowed(), found))
         found.sort(key=lambda one: values.space().distance(one, near))
         return found[:1] if flag(values, "greedysearch") else found
 
@@ -133,15 +132,18 @@ class WorkspaceTrajectoryTracker(Planner):
         The line is refused if a joint jumps or is too fast, if the hand turns by more than ``maxdeviationangle``
         in half of the line, or if the robot collides on it.
         """
-        edges, largest_turn = Edges(values.space(), values.allowed()), values.tag("maxdeviationangle", 0.15 * np.pi)
-        fastest = values.limits().velocity if flag(values, "maintaintiming") else np.full(hand.dof, np.inf)
+        edges, largest_turn = (
+            Edges(values.space(), values.conditions.allowed()),
+            values.tag("maxdeviationangle", 0.15 * np.pi),
+        )
+        fastest = values.limits().velocity if flag(values, "maintaintiming") else np.full(hand.tool.dof, np.inf)
 
         def connects(number: int, before: Floats, after: Floats) -> bool:
             step = edges.space.difference(after, before)
             elapsed = times[number] - times[number - 1]
             if np.abs(step).max() > _LARGEST_JUMP or (np.abs(step) > fastest * elapsed * (1 + 1e-9)).any():
                 return False
-            turned = [hand.motion(one)[0][:3, :3] for one in (before, before + step / 2, after)]
+            turned = [hand.tool.motion(one)[0][:3, :3] for one in (before, before + step / 2, after)]
             if max(_angle(turned[0], turned[1]), _angle(turned[1], turned[2])) > largest_turn:
                 return False
             return not self._is_checked(values, times[number]) or edges.line(before, step)
@@ -200,7 +202,7 @@ class GraspGradient(PathPlanner):
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
         try:
-            hand_of(values)
+            hand_of(self._env, values)
             self._grasps(values)
         except ArgumentError as error:
             return self._failed(error.message)
@@ -223,8 +225,8 @@ class GraspGradient(PathPlanner):
 
     def _search(self, query: Query) -> Search:
         values, start = query.values, query.starts[0]
-        hand = hand_of(values)
-        errors = [hand.to_pose(grasp) for grasp in self._grasps(values)]
+        hand = hand_of(self._env, values)
+        errors = [hand.tool.to_pose(grasp) for grasp in self._grasps(values)]
         far = [float(np.linalg.norm(error(start)[0])) for error in errors]
         order: list[int] = np.argsort(far).tolist()
         near = [place for place in order if far[place] <= values.tag("graspdistthresh", 1.4)]

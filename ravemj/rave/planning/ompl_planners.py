@@ -41,7 +41,7 @@ class OmplPlanner(PathPlanner):
             return self._failed(str(error))
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
-        if values.manifold is not None:
+        if values.conditions.manifold is not None:
             return self._failed(f"{self._xmlid} knows no constraints of the tool; birrt does")
         return super()._prepare(values)
 

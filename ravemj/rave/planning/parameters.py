@@ -3,6 +3,7 @@
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,11 +13,14 @@ from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_number, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
+from ravemj.engine.collision.findings import Findings
 from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.manipulation.bodies import ALL, FREE, Bodies, Constraint
+from ravemj.rave.body.affine import affine_numbers, default_kinds
 from ravemj.rave.enums import Interval
-from ravemj.rave.planning.bodies import FREE, Bodies
 from ravemj.rave.planning.parameter_text import parameters_text
-from ravemj.rave.planning.values import ALL, Constraint, Values
+from ravemj.rave.planning.values import Values
+from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.layout import count
@@ -43,14 +47,15 @@ class PlannerParameters(ApiObject):
         True
     """
 
-    _internal = ("given", "of", "resolved")
+    _internal = ("given", "of", "report", "resolved")
 
     def __init__(self, other: "PlannerParameters | None" = None) -> None:
         self.given = Values()
         self._extra = ""
+        self._env: Environment | None = None
         if other is not None:
             source = checked_kind(other, PlannerParameters, "PlannerParameters: other")
-            self.given, self._extra = source.given.copied(), source._extra
+            self.given, self._extra, self._env = source.given.copied(), source._extra, source._env
 
     @classmethod
     def of(cls, values: Values, defaults: Mapping[str, str]) -> "PlannerParameters":
@@ -82,12 +87,14 @@ class PlannerParameters(ApiObject):
         """
         checked_kind(spec, ConfigurationSpecification, "SetConfigurationSpecification: spec")
         groups = spec.GetTimeDerivativeSpecification(0).GetGroups()
-        bodies, given = Bodies(env, groups), self.given
-        given.bodies, given.groups, given.weights = bodies, groups, bodies.numbers("weight")
+        self._env = env
+        bodies, given = Bodies(env.simulation, groups, env.GetCollisionChecker), self.given
+        given.conditions = replace(given.conditions, bodies=bodies)
+        given.groups, given.weights = groups, _setting(env, bodies, "weight")
         limits = ("lower", "upper", "max_velocity", "max_acceleration", "max_jerk")
         for name, of_body in zip(("lower", "upper", "velocity", "acceleration", "jerk"), limits, strict=True):
-            given.vectors[f"_vconfig{name}limit"] = bodies.numbers(of_body)
-        given.vectors["_vconfigresolution"] = bodies.numbers("resolution")
+            given.vectors[f"_vconfig{name}limit"] = _setting(env, bodies, of_body)
+        given.vectors["_vconfigresolution"] = _setting(env, bodies, "resolution")
         given.vectors["_vinitialconfig"] = bodies.values()
 
     def GetConfigurationSpecification(self) -> ConfigurationSpecification:
@@ -193,7 +200,7 @@ class PlannerParameters(ApiObject):
 
         When ``constraint`` is called with a configuration, shape (dof,), the robot is there.
         """
-        self.given.constraints.append(constraint)
+        self.given.conditions.constraints.append(constraint)
 
     def set_goal_sampler(self, sample: Callable[[], Floats | None] | None, probability: float = 0.1) -> None:
         """Let a function give further goals while ``birrt`` plans.
@@ -206,9 +213,10 @@ class PlannerParameters(ApiObject):
         self.given.goal_sampler = None if sample is None else (sample, probability)
 
     def _bodies(self) -> Bodies:
-        if self.given.bodies is None:
+        bodies = self.given.bodies
+        if bodies is None:
             raise ArgumentError("nothing moves yet; call SetRobotActiveJoints(robot) first", ErrorCode.NotInitialized)
-        return self.given.bodies
+        return bodies
 
     def SetStateValues(self, values: ArrayLike, options: int = 0) -> int:
         """Move the bodies to a configuration. Values outside the limits are set to the limits.
@@ -314,10 +322,18 @@ class PlannerParameters(ApiObject):
         last = steps if int(interval) in {Interval.OpenStart, Interval.Closed} else steps - 1
         with bodies.lock:
             for number in range(first, last + 1):
-                found = given.problem(start + step * (number / steps), int(options))
+                found = given.conditions.violation(start + step * (number / steps), int(options))
                 if found:
                     return found
         return FREE
+
+    def report(self, values: Floats, options: int) -> CollisionReport:
+        """Move the bodies to a configuration, and return the collision there; empty if there is none."""
+        told: list[Findings] = []
+        self.resolved().conditions.violation(values, options, told)
+        if self._env is None or not told:
+            return CollisionReport()
+        return self._env.GetCollisionChecker().report(told[-1])
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, PlannerParameters) and repr(self) == repr(other)
@@ -331,6 +347,19 @@ class PlannerParameters(ApiObject):
         given = self.given
         text = parameters_text(given.groups, given.vectors, given.numbers, given.postprocessing, self._extra)
         return f'Planner.PlannerParameters("""{text}""")'
+
+
+def _setting(env: "Environment", bodies: Bodies, name: str) -> Floats:
+    """Return one setting of each value of a configuration, shape (n,): a number of joints, or of affine DOFs."""
+    numbers = bodies.numbers(name)
+    for part in bodies.parts:
+        if not part.dofs:
+            body = env.wrap(part.body)
+            kinds = body.affine_kinds if isinstance(body, Robot) else default_kinds()
+            # OpenRAVE has no accelerations and jerks of affine DOFs: its maximum velocities stand for them.
+            names = {"max_acceleration": "max_velocity", "max_jerk": "max_velocity"}
+            numbers[part.columns] = affine_numbers(kinds, part.affine, part.axis, names.get(name, name))
+    return numbers
 
 
 def _whole(value: int, name: str) -> int:

@@ -9,14 +9,15 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.engine.collision.findings import Findings
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.bodies import USER
 from ravemj.planning.constrained_edges import ConstrainedEdges, bent_path
 from ravemj.planning.edges import Edges
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
 from ravemj.planning.shortcuts import shorten
-from ravemj.rave.enums import ConstraintFilterOptions, PlannerAction, PlannerStatusCode
-from ravemj.rave.planning.bodies import USER
+from ravemj.rave.enums import PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import post_process
 from ravemj.rave.planning.status import PlannerStatus
@@ -90,7 +91,7 @@ class PathPlanner(Planner):
 
     def _wrong(self, values: Values, name: str, configuration: Floats) -> PlannerStatus | None:
         """Return why a start or a goal cannot be used, or None if it can. The bodies are moved."""
-        space, report = values.space(), CollisionReport()
+        space, told = values.space(), list[Findings]()
         if not np.isfinite(configuration).all():
             status = self._failed(f"{name}: {configuration.tolist()} should be finite numbers")
         elif (outside := space.outside(configuration)) is not None:
@@ -98,13 +99,13 @@ class PathPlanner(Planner):
             described = f"{_described(values, outside)} is {configuration[outside]:.6g}, outside its limits {limits}"
             status = self._failed(f"{name}: {described}")
         else:
-            found = values.problem(configuration, int(ConstraintFilterOptions.RecommendedOptions))
+            found = values.conditions.violation(configuration, told=told)
             if not found:
                 return None
             if found == USER:
                 status = self._failed(f"{name}: {_off(values, configuration)}")
             else:
-                values.problem(configuration, int(ConstraintFilterOptions.RecommendedOptions), report)
+                report = self._env.GetCollisionChecker().report(told[-1])
                 status = self._failed(f"{name}: it collides: {_links(report)}")
                 status.report = report
         status.jointValues = configuration
@@ -122,7 +123,7 @@ class PathPlanner(Planner):
                 [one for one in candidates if self._wrong(values, "", one) is None]
                 for candidates in self._starts_and_goals(values)
             )
-            edges, numbers = values.edges(), values.numbers
+            edges, numbers = values.conditions.edges(values.space()), values.numbers
             iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
             budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
             random = values.random()
@@ -249,7 +250,7 @@ def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
 
 def _off(values: Values, configuration: Floats) -> str:
     """Return which constraint a configuration does not keep."""
-    manifold = values.manifold
+    manifold = values.conditions.manifold
     if manifold is None or manifold.has(configuration):
         return "a constraint does not allow it"
     most = manifold.threshold
@@ -264,6 +265,5 @@ def _links(report: CollisionReport) -> str:
 
 def _described(values: Values, index: int) -> str:
     """Return the name of one value of a configuration, for error messages."""
-    group = next(group for group in values.groups if group.offset <= index < group.offset + group.dof)
     assert values.bodies is not None
-    return values.bodies.described(group, index - group.offset)
+    return values.bodies.described(index)

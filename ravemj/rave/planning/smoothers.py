@@ -73,7 +73,7 @@ class Smoother(Planner):
             if values.bodies is None:
                 return self._smoothed(Edges(values.space(), lambda one: True), values, traj, points, profile)
             with values.bodies.kept():
-                edges = Edges(values.space(), values.allowed())
+                edges = Edges(values.space(), values.conditions.allowed())
                 if flag(values, "verifyinitialpath", default=True) and not path_is_allowed(edges, points):
                     return self._failed("the path is in collision from the start")
                 return self._smoothed(edges, values, traj, points, profile)

@@ -2,30 +2,27 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
-from ravemj.planning.edges import Allowed, Edges
+from ravemj.manipulation.bodies import Bodies, Conditions, space_of
+from ravemj.manipulation.tool import MovedTool
 from ravemj.planning.retiming.segments import Limits
 from ravemj.planning.space import Coordinates, Space
-from ravemj.rave.enums import ConstraintFilterOptions
-from ravemj.rave.planning.bodies import FREE, USER, Bodies, space_of
+from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.planning.parameter_text import CHAIN, NUMBERS, VECTORS, read_tags
-from ravemj.rave.report import CollisionReport
+from ravemj.rave.robot import Robot
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.layout import count
 
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
 _STEP_LENGTH = float(np.float32(0.04))
 """OpenRAVE's default step length [s], which it keeps in single precision."""
-
-ALL = int(ConstraintFilterOptions.RecommendedOptions)
-"""The tests that every configuration of a path has to pass."""
-
-Constraint = Callable[[Floats], bool]
-"""A function of a configuration that returns whether it is allowed."""
 
 
 def _empty() -> Floats:
@@ -42,9 +39,8 @@ class Values:
         groups: The layout of a configuration.
         weights: The weight of each value in distances, shape (n,).
         postprocessing: The name of the planner that processes the result, and its parameters as text.
-        bodies: The bodies that move; None for problems that are read from text.
-        constraints: Functions that return whether a configuration is allowed.
-        manifold: The configurations that keep a constraint of the hand; None: all.
+        conditions: The bodies that move, none in problems that are read from text, and the conditions that their
+            configurations have to keep.
         goal_sampler: A function that returns a further goal, or None if it has none now; and the fraction of the
             iterations that call it.
         tags: Further parameters of one kind of planner, as texts.
@@ -57,15 +53,19 @@ class Values:
     groups: Sequence[Group] = ()
     weights: Floats = field(default_factory=_empty)
     postprocessing: tuple[str, str] = CHAIN
-    bodies: Bodies | None = None
-    constraints: list[Constraint] = field(default_factory=lambda: [])
-    manifold: Manifold | None = None
+    conditions: Conditions = field(default_factory=Conditions)
     goal_sampler: tuple[Callable[[], Floats | None], float] | None = None
     tags: dict[str, str] = field(default_factory=lambda: {})
 
     def copied(self) -> "Values":
         """Return an independent copy."""
-        return replace(self, vectors=dict(self.vectors), numbers=dict(self.numbers), constraints=list(self.constraints))
+        conditions = replace(self.conditions, constraints=list(self.conditions.constraints))
+        return replace(self, vectors=dict(self.vectors), numbers=dict(self.numbers), conditions=conditions)
+
+    @property
+    def bodies(self) -> Bodies | None:
+        """The bodies that move; None in problems that are read from text."""
+        return self.conditions.bodies
 
     def with_tags(self, text: str) -> "Values":
         """Return a copy in which the elements of an XML text replace the values of the same names."""
@@ -145,31 +145,23 @@ class Values:
             raise ArgumentError(f"{name}: has {numbers.size} numbers, and should have a multiple of {dof}")
         return numbers.reshape(-1, dof)
 
-    def allowed(self) -> Allowed:
-        """Return the test of single configurations. Use it within ``bodies.kept``, since it may move the bodies."""
-        fast, manifold = None if self.bodies is None or self.constraints else self.bodies.fast_test(), self.manifold
-        if fast is None:
-            return lambda values: not self.problem(values, ALL)
-        if manifold is not None:
-            return lambda values: manifold.has(values) and not fast(values)
-        return lambda values: not fast(values)
 
-    def edges(self) -> Edges:
-        """Return the test of lines, for use within ``bodies.kept``."""
-        if self.manifold is None:
-            return Edges(self.space(), self.allowed())
-        return ConstrainedEdges(self.space(), replace(self, manifold=None).allowed(), self.manifold)
+class Hand(NamedTuple):
+    """The active manipulator of the one robot that a problem moves, and its tool."""
 
-    def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
-        """Move the bodies to a configuration, and return the bit of ``ConstraintFilterOptions`` that fails there, or 0.
+    manip: Manipulator
+    tool: MovedTool
 
-        ``options`` are the bits to test; the report receives the collision.
-        """
-        if self.bodies is None:
-            return FREE
-        self.bodies.move(values)
-        found = self.bodies.collision(report) & options
-        if found or not options & USER:
-            return found
-        keeps_all = all(constraint(values) for constraint in self.constraints)
-        return FREE if keeps_all and (self.manifold is None or self.manifold.has(values)) else USER
+
+def hand_of(env: "Environment", values: Values) -> Hand:
+    """Return the active manipulator of the one robot that a problem moves.
+
+    Raises:
+        ArgumentError: the problem moves anything but the arm joints of one robot's active manipulator.
+    """
+    bodies = values.bodies
+    robot = env.wrap(bodies.bodies[0]) if bodies is not None and len(bodies.bodies) == 1 else None
+    manip = robot.GetActiveManipulator() if isinstance(robot, Robot) else None
+    if manip is None or bodies is None:
+        raise ArgumentError("the hand of one robot should move, and it should have an active manipulator")
+    return Hand(manip, MovedTool.of(bodies, manip.description))

@@ -1,4 +1,4 @@
-"""The error of a robot's tool against a goal pose or a task-space constraint, with its Jacobian."""
+"""The tool of an arm: its pose and Jacobian, its error against a goal pose, and task-space constraints."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,16 +7,59 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.arrays import checked_transform, checked_vector
-from ravemj.core.transforms import Floats, inverse
-from ravemj.errors import ArgumentError
-from ravemj.ik.residuals import rotation_between
+from ravemj.core.transforms import Floats, Ints, inverse
+from ravemj.engine.simulation import BodyState
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.manipulation.bodies import Bodies
+from ravemj.model.scene import Manipulator
 from ravemj.planning.constrained_edges import Manifold
 from ravemj.planning.projection import Error
-from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.planning.bodies import Bodies
-from ravemj.rave.planning.values import Values
-from ravemj.rave.robot import Robot
-from ravemj.trajectories.groups import joint_indices
+
+# Importing ``ik`` takes as long as importing the rest, and most scripts do without it.
+# ruff: noqa: PLC0415
+
+
+class Tool(NamedTuple):
+    """The tool of a manipulator that has an effector.
+
+    Attributes:
+        arm: The manipulator.
+        T_effector_tool: The pose of the tool in the effector, shape (4, 4).
+        origin: Its last column.
+        dofs: The DOF indices of the joints, shape (n,).
+    """
+
+    arm: Manipulator
+    T_effector_tool: Floats
+    origin: Floats
+    dofs: Ints
+
+    @classmethod
+    def of(cls, arm: Manipulator) -> "Tool":
+        """Return the tool of a manipulator."""
+        T_effector_tool = arm.T_effector_tool.matrix()
+        return cls(arm, T_effector_tool, T_effector_tool[:, 3].copy(), np.array(arm.arm_dofs, dtype=np.int_))
+
+    def pose(self, body: BodyState) -> Floats:
+        """Return ``T_world_tool``, shape (4, 4)."""
+        return body.link_transform(self.effector).dot(self.T_effector_tool)
+
+    def translation_jacobian(self, body: BodyState) -> Floats:
+        """Return the derivative of the tool's position in the world by the joint values, shape (3, n)."""
+        effector = self.effector
+        point = body.link_transform(effector).dot(self.origin)[:3]
+        return body.dynamics.translation_jacobian(effector, point).take(self.dofs, 1)
+
+    def rotation_jacobian(self, body: BodyState) -> Floats:
+        """Return the Jacobian of the tool's angular velocity in world axes, shape (3, n)."""
+        return body.dynamics.rotation_jacobian(self.effector).take(self.dofs, 1)
+
+    @property
+    def effector(self) -> int:
+        """The index of the link that carries the tool."""
+        if self.arm.effector is None:
+            raise RavemjError(f"manipulator '{self.arm.name}' has no end effector")
+        return self.arm.effector
 
 
 class ToolConstraint(NamedTuple):
@@ -57,20 +100,45 @@ class ToolConstraint(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Hand:
-    """The active manipulator of the robot that a problem is about.
+class MovedTool:
+    """The tool of a robot that a planner moves.
 
     Attributes:
-        manip: The manipulator.
-        bodies: The robot, as the planner moves it.
-        columns: The columns of a configuration that hold the joints of ``manip.GetArmIndices()``.
-        dof: The number of values of a configuration.
+        tool: The tool.
+        bodies: The robot.
+        columns: The columns of a configuration that hold the joints of the arm.
     """
 
-    manip: Manipulator
+    tool: Tool
     bodies: Bodies
     columns: Sequence[int]
-    dof: int
+
+    @classmethod
+    def of(cls, bodies: Bodies, arm: Manipulator) -> "MovedTool":
+        """Return the tool of the one body that moves.
+
+        Raises:
+            ArgumentError: anything but the joints of its arm moves.
+        """
+        dofs = [dof for part in bodies.parts for dof in part.dofs]
+        if sorted(dofs) != sorted(arm.arm_dofs) or any(not part.dofs for part in bodies.parts):
+            wanted = f"those of the arm of '{arm.name}': {list(arm.arm_dofs)}"
+            raise ArgumentError(f"the DOFs are {dofs}, and should be {wanted}")
+        return cls(Tool.of(arm), bodies, [dofs.index(dof) for dof in arm.arm_dofs])
+
+    @property
+    def body(self) -> BodyState:
+        """The robot."""
+        return self.bodies.bodies[0]
+
+    @property
+    def dof(self) -> int:
+        """The number of values of a configuration."""
+        return len(self.columns)
+
+    def pose(self) -> Floats:
+        """Return ``T_world_tool`` where the robot is, shape (4, 4)."""
+        return self.tool.pose(self.body)
 
     def motion(self, values: Floats) -> tuple[Floats, Floats]:
         """Move the robot to a configuration (n,), and return ``T_world_tool`` and its Jacobian, shape (6, n).
@@ -79,12 +147,13 @@ class Hand:
         """
         self.bodies.move(values)
         jacobian = np.zeros((6, self.dof))
-        jacobian[:3, self.columns] = self.manip.CalculateJacobian()
-        jacobian[3:, self.columns] = self.manip.CalculateAngularVelocityJacobian()
-        return self.manip.GetTransform(), jacobian
+        jacobian[:3, self.columns] = self.tool.translation_jacobian(self.body)
+        jacobian[3:, self.columns] = self.tool.rotation_jacobian(self.body)
+        return self.pose(), jacobian
 
     def to_pose(self, T_world_goal: Floats) -> Error:
         """Return the error function of a goal pose (4, 4): the translation and rotation vectors that are left."""
+        from ravemj.ik.residuals import rotation_between
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
             T_world_tool, jacobian = self.motion(values)
@@ -99,7 +168,9 @@ class Hand:
         Raises:
             ArgumentError: the constraint has numbers that make no sense.
         """
-        T_task_world, T_tool_point, freedoms, threshold = constraint.checked(self.manip.GetTransform())
+        from ravemj.ik.residuals import rotation_between
+
+        T_task_world, T_tool_point, freedoms, threshold = constraint.checked(self.pose())
         rotation = T_task_world[:3, :3]
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
@@ -111,20 +182,3 @@ class Hand:
             return freedoms * error, freedoms[:, None] * np.vstack([rotation @ jacobian[3:], rotation @ moves])
 
         return Manifold(lacking, threshold)
-
-
-def hand_of(values: Values) -> Hand:
-    """Return the active manipulator of the one robot that a problem moves.
-
-    Raises:
-        ArgumentError: the problem moves anything but the arm joints of one robot's active manipulator.
-    """
-    robots = [] if values.bodies is None else values.bodies.bodies
-    manip = robots[0].GetActiveManipulator() if len(robots) == 1 and isinstance(robots[0], Robot) else None
-    if manip is None or values.bodies is None:
-        raise ArgumentError("the hand of one robot should move, and it should have an active manipulator")
-    dofs = [dof for group in values.groups for dof in joint_indices(group)]
-    arm = manip.GetArmIndices().tolist()
-    if sorted(dofs) != sorted(arm):
-        raise ArgumentError(f"the DOFs are {dofs}, and should be those of the arm of '{manip.GetName()}': {arm}")
-    return Hand(manip, values.bodies, [dofs.index(dof) for dof in arm], len(dofs))

@@ -1,32 +1,33 @@
-"""The bodies that a planner moves: their configuration, its limits, its collisions."""
+"""The bodies that a motion moves, as one configuration: its limits, and whether it is free of collisions."""
 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ravemj.core.transforms import Floats, Vec3
+from ravemj.engine.collision.findings import Checker, Findings
 from ravemj.engine.collision.moving import moving_test
+from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
+from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
-from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
+from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, affine_values, pose_with_values
 from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
+from ravemj.planning.edges import Allowed, Edges
 from ravemj.planning.space import Coordinates, Space
-from ravemj.rave.body.affine import affine_numbers, default_kinds
-from ravemj.rave.collision import CollisionChecker
-from ravemj.rave.report import CollisionReport
-from ravemj.rave.robot import Robot
 from ravemj.trajectories.extraction import rotation_columns
 from ravemj.trajectories.groups import AFFINE, IK, JOINTS, Group, affine_parts, ik_type, joint_indices
 
-if TYPE_CHECKING:
-    from ravemj.rave.environment import Environment
-    from ravemj.rave.kinbody import KinBody
-
 FREE, ENV_COLLISION, SELF_COLLISION, USER = 0, 1, 2, 0x8000
-"""Why a configuration is refused: bits of ``ConstraintFilterOptions``. ``USER`` is the bit of users' own functions."""
+"""Reason for refusing a configuration: bits of OpenRAVE's ``ConstraintFilterOptions``. ``USER`` is the bit of users'
+own functions."""
+
+ALL = 0xFFFF
+"""All tests that a configuration of a path has to pass."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
 """Limits of the values of a goal of inverse kinematics, and of a pose of no body. Callers have to set the limits that
@@ -45,7 +46,7 @@ _FULL_TURN = 2 * np.pi
 
 
 @dataclass(frozen=True)
-class _Part:
+class Part:
     """Some joints of one body, or its pose, as columns of a configuration.
 
     Attributes:
@@ -56,7 +57,7 @@ class _Part:
         axis: The axis of ``DOFAffine.RotationAxis``.
     """
 
-    body: "KinBody"
+    body: BodyState
     columns: slice
     dofs: tuple[int, ...]
     affine: int
@@ -64,37 +65,39 @@ class _Part:
 
 
 class Bodies:
-    """The bodies of a planning problem: their joints and poses, in the order of a specification's groups.
+    """The bodies of a planning problem: their joints and poses, in the order of the groups of a layout.
 
     Args:
-        env: The environment that contains the bodies.
+        simulation: The world that contains the bodies.
         groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals move nothing, and neither do
             poses of ``__dummy__``, which stands for no body.
+        checker: Returns the collision checker.
+
+    Attributes:
+        parts: What moves.
+        bodies: The bodies that move.
 
     Raises:
-        ArgumentError: a group names a body that is not in the environment, or a DOF that its body does not have.
+        ArgumentError: a group names a body that is not in the world, or a DOF that its body does not have.
     """
 
-    def __init__(self, env: "Environment", groups: Sequence[Group]) -> None:
-        self._env = env
-        self._simulation = env.simulation
-        self.lock = env.simulation.lock
+    def __init__(self, simulation: Simulation, groups: Sequence[Group], checker: Callable[[], Checker]) -> None:
+        self._simulation, self._checker = simulation, checker
+        self.lock = simulation.lock
         moving = [group for group in groups if group.kind in {JOINTS[0], AFFINE[0]} and not _is_unbound(group)]
-        self._parts = [_part(env, group) for group in moving]
+        self.parts = [_part(simulation, group) for group in moving]
         self._unbound = [group for group in groups if _is_unbound(group)]
-        self._dof = max((one.columns.stop for one in (*self._parts, *self._unbound)), default=0)
-        self.bodies = list(dict.fromkeys(part.body for part in self._parts))
-        self._free: set[KinBody] = set()  # whose joints stay as they are, and have no self-collision
+        self._dof = max((one.columns.stop for one in (*self.parts, *self._unbound)), default=0)
+        self.bodies = list(dict.fromkeys(part.body for part in self.parts))
+        self._free: set[BodyState] = set()  # whose joints stay as they are, and have no self-collision
 
     def numbers(self, name: str) -> Floats:
-        """Return one setting of each value, shape (n,).
-
-        Settings are ``lower``, ``upper``, ``max_velocity``, ``max_acceleration``, ``max_jerk``, ``weight`` and
-        ``resolution``.
-        """
+        """Return one setting of each joint value, a number of ``scene.Axis``, shape (n,); 0 or no limit for others."""
         result = np.zeros(self._dof)
-        for part in self._parts:
-            result[part.columns] = _numbers(part, name)
+        for part in self.parts:
+            axes = part.body.scene.dof_axes
+            if part.dofs:
+                result[part.columns] = [getattr(axes[dof], name) for dof in part.dofs]
         for group in self._unbound:
             result[group.columns] = _UNLIMITED.get(name, 0.0)
         return result
@@ -104,11 +107,11 @@ class Bodies:
         circular = np.zeros(self._dof, dtype=bool)
         translation: list[int] = []
         rotation: list[int] = []
-        poses = [(part.columns, part.affine) for part in self._parts if not part.dofs]
+        poses = [(part.columns, part.affine) for part in self.parts if not part.dofs]
         poses += [(group.columns, int(affine_parts(group)[0])) for group in self._unbound if group.kind == AFFINE[0]]
-        for part in self._parts:
+        for part in self.parts:
             if part.dofs:
-                axes = part.body.simulation_state.scene.dof_axes
+                axes = part.body.scene.dof_axes
                 circular[part.columns] = [axes[dof].circular for dof in part.dofs]
         for place, affine in poses:
             columns = range(place.start, place.stop)
@@ -123,29 +126,29 @@ class Bodies:
                 translation += range(group.offset + 4, group.offset + 7)
         return Coordinates(circular, tuple(translation), tuple(rotation))
 
-    def described(self, group: Group, index: int) -> str:
-        """Return the name of one value of a group, for error messages."""
-        part = next(part for part in self._parts if part.columns == group.columns)
+    def described(self, column: int) -> str:
+        """Return the name of one value of a configuration, for error messages."""
+        part = next(part for part in self.parts if column in range(self._dof)[part.columns])
+        index, scene = range(self._dof)[part.columns].index(column), part.body.scene
         if part.dofs:
-            return f"joint '{part.body.GetJointFromDOFIndex(part.dofs[index]).GetName()}'"
-        return f"value {index} of the pose of '{part.body.GetName()}'"
+            return f"joint '{scene.joint_of_dof(part.dofs[index]).name}'"
+        return f"value {index} of the pose of '{scene.name}'"
 
     def values(self) -> Floats:
         """Return the current configuration, shape (n,)."""
         result = np.zeros(self._dof)
         with self._simulation.lock:
-            for part in self._parts:
+            for part in self.parts:
                 if part.dofs:
-                    result[part.columns] = part.body.GetDOFValues(part.dofs)
+                    result[part.columns] = part.body.kinematics.values()[list(part.dofs)]
                 else:
-                    pose = part.body.simulation_state.pose()
-                    result[part.columns] = affine_values(pose, DOFAffine(part.affine), part.axis)
+                    result[part.columns] = affine_values(part.body.pose(), DOFAffine(part.affine), part.axis)
         return result
 
     def move(self, values: Floats) -> None:
         """Move the bodies to a configuration without checking limits. The caller holds the lock."""
-        for part in self._parts:
-            state = part.body.simulation_state
+        for part in self.parts:
+            state = part.body
             if part.dofs:
                 kinematics = state.kinematics
                 full = kinematics.values()
@@ -159,9 +162,8 @@ class Bodies:
         """Hold the lock; on leaving, restore the configurations of all bodies and of the bodies that they hold."""
         with self._simulation.lock:
             self._free.clear()
-            states = [body.simulation_state for body in self.bodies]
-            held = [grab.body for state in states for grab in state.grabs]
-            saved = [(state, state.configuration()) for state in [*states, *held]]
+            held = [grab.body for state in self.bodies for grab in state.grabs]
+            saved = [(state, state.configuration()) for state in [*self.bodies, *held]]
             stamps = [state.stamp for state, _ in saved]
             try:
                 yield
@@ -177,37 +179,33 @@ class Bodies:
         Use the test within ``kept``, and change nothing else in the world meanwhile.
         """
         # Checkers and callbacks of the user look at the bodies themselves, so these have to be moved.
-        checker = self._env.GetCollisionChecker()
-        is_plain = (
-            type(checker) is CollisionChecker and not checker.groups.is_used and not self._env.collision_callbacks
-        )
-        if not is_plain or len(self._parts) != 1 or not self._parts[0].dofs:
+        if not self._checker().is_plain or len(self.parts) != 1 or not self.parts[0].dofs:
             return None
-        return moving_test(self._parts[0].body.simulation_state, self._parts[0].dofs)
+        return moving_test(self.parts[0].body, self.parts[0].dofs)
 
-    def collision(self, report: CollisionReport | None = None) -> int:
+    def collision(self, told: list[Findings] | None = None) -> int:
         """Return whether the bodies collide where they are: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``.
 
-        Links that no value moves do not count, as with OpenRAVE's option ``ActiveDOFs``: the base of an arm touches
-        the floor in every configuration.
+        ``told`` gets the geometries that collide. Links that no value moves do not count, as with OpenRAVE's option
+        ``ActiveDOFs``: the base of an arm touches the floor in every configuration.
         """
-        checker = self._env.GetCollisionChecker()
-        with self._simulation.lock, checker.groups.world() as world:
+        checker = self._checker()
+        with self._simulation.lock, checker.world() as world:
             for body in self.bodies:
-                state, moved = body.simulation_state, self._moved(body)
-                if checker.answer(world, body_and_others(world, state, moved), report):
+                moved = self._moved(body)
+                if _hits(checker, world, body_and_others(world, body, moved), told):
                     return ENV_COLLISION
                 if body in self._free:
                     continue
-                if checker.answer(world, itself(world, state, moved), report):
+                if _hits(checker, world, itself(world, body, moved), told):
                     return SELF_COLLISION
-                if not any(part.dofs for part in self._parts if part.body is body):
+                if not any(part.dofs for part in self.parts if part.body is body):
                     self._free.add(body)
         return FREE
 
-    def _moved(self, body: "KinBody") -> MovedBy | None:
+    def _moved(self, body: BodyState) -> MovedBy | None:
         """Return the links of a body that the values move, or None if they move all of it."""
-        parts = [part for part in self._parts if part.body is body]
+        parts = [part for part in self.parts if part.body is body]
         return MovedBy(tuple(dof for part in parts for dof in part.dofs)) if all(part.dofs for part in parts) else None
 
 
@@ -216,30 +214,72 @@ def _is_unbound(group: Group) -> bool:
     return group.kind == IK[0] or (group.kind == AFFINE[0] and group.body == _NO_BODY)
 
 
-def _part(env: "Environment", group: Group) -> _Part:
-    body = env.GetKinBody(group.body or "")
+def _hits(checker: Checker, world: CollisionWorld, pairs: Pairs, told: list[Findings] | None) -> bool:
+    if told is None:
+        return checker.collides(world, pairs)
+    told.append(checker.find(world, pairs))
+    return bool(told[-1].collisions)
+
+
+def _part(simulation: Simulation, group: Group) -> Part:
+    body = simulation.body(group.body or "")
     if body is None:
         raise ArgumentError(f"group '{group.name}': there is no body '{group.body}'")
     if group.kind == JOINTS[0]:
         dofs = tuple(joint_indices(group))
-        if any(not 0 <= dof < body.GetDOF() for dof in dofs):
-            raise ArgumentError(f"group '{group.name}': '{group.body}' has {body.GetDOF()} DOFs")
-        return _Part(body, group.columns, dofs, 0, (0.0, 0.0, 1.0))
+        if any(not 0 <= dof < body.dof for dof in dofs):
+            raise ArgumentError(f"group '{group.name}': '{group.body}' has {body.dof} DOFs")
+        return Part(body, group.columns, dofs, 0, Z_AXIS)
     parts, axis = affine_parts(group)
-    return _Part(body, group.columns, (), parts, axis)
+    return Part(body, group.columns, (), parts, axis)
 
 
-def _numbers(part: _Part, name: str) -> Any:  # noqa: ANN401 - numbers
-    body = part.body
-    if not part.dofs:
-        kinds = body.affine_kinds if isinstance(body, Robot) else default_kinds()
-        # OpenRAVE has no accelerations and jerks of affine DOFs: its maximum velocities stand for them.
-        names = {"max_acceleration": "max_velocity", "max_jerk": "max_velocity"}
-        return affine_numbers(kinds, part.affine, part.axis, names.get(name, name))
-    if name == "max_jerk":
-        return body.GetDOFJerkLimits(part.dofs)
-    axes = body.simulation_state.scene.dof_axes
-    return [getattr(axes[dof], name) for dof in part.dofs]
+Constraint = Callable[[Floats], bool]
+"""A function of a configuration that returns whether it is allowed. It is called with the bodies there."""
+
+
+@dataclass
+class Conditions:
+    """The conditions that configurations of bodies have to keep.
+
+    Attributes:
+        bodies: The bodies; None if nothing collides.
+        constraints: Functions of users that return whether a configuration is allowed.
+        manifold: The configurations that keep a constraint of the tool; None: all.
+    """
+
+    bodies: Bodies | None = None
+    constraints: list[Constraint] = field(default_factory=lambda: [])
+    manifold: Manifold | None = None
+
+    def allowed(self) -> Allowed:
+        """Return the test of single configurations. Use it within ``bodies.kept``, since it may move the bodies."""
+        fast, manifold = None if self.bodies is None or self.constraints else self.bodies.fast_test(), self.manifold
+        if fast is None:
+            return lambda values: not self.violation(values)
+        if manifold is not None:
+            return lambda values: manifold.has(values) and not fast(values)
+        return lambda values: not fast(values)
+
+    def edges(self, space: Space) -> Edges:
+        """Return the test of lines, for use within ``bodies.kept``."""
+        if self.manifold is None:
+            return Edges(space, self.allowed())
+        return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold)
+
+    def violation(self, values: Floats, options: int = ALL, told: list[Findings] | None = None) -> int:
+        """Move the bodies to a configuration, and return the bit of the condition that it violates, or 0.
+
+        ``options`` are the bits to test; ``told`` gets the geometries that collide.
+        """
+        if self.bodies is None:
+            return FREE
+        self.bodies.move(values)
+        found = self.bodies.collision(told) & options
+        if found or not options & USER:
+            return found
+        keeps_all = all(constraint(values) for constraint in self.constraints)
+        return FREE if keeps_all and (self.manifold is None or self.manifold.has(values)) else USER
 
 
 def space_of(coordinates: Coordinates, lower: Floats, upper: Floats, weights: Floats, resolution: Floats) -> Space:

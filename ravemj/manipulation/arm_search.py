@@ -1,0 +1,222 @@
+"""Joint values that take the tool of an arm to a goal: candidates in order, collision tests, reasons for rejection."""
+
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import contextmanager
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision import arms
+from ravemj.engine.collision.findings import Checker, Findings
+from ravemj.engine.collision.pairs import Pairs
+from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.simulation import BodyState
+from ravemj.model.scene import Manipulator
+
+# Importing ``ik`` takes as long as importing the rest, and most scripts do without it.
+# ruff: noqa: PLC0415
+
+if TYPE_CHECKING:
+    from ravemj.ik import IKSolver
+
+
+class Reason(Enum):
+    """Reason for rejecting joint values, or for not finding any."""
+
+    OUT_OF_REACH = "out of reach"
+    LIMITS = "beyond the limits"
+    SELF_COLLISION = "collision with itself"
+    COLLISION = "collision with another body"
+    END_COLLISION = "collision of the links beyond the arm, which all joint values for a pose have"
+
+
+class Checks(NamedTuple):
+    """Tests of joint values that reach a goal.
+
+    Attributes:
+        others: Whether collisions with other bodies count.
+        itself: Whether collisions of the robot with itself count.
+        limits: Whether joint limits count. Without them, every branch gives one solution, with angles in [-pi, pi].
+        end_and_others: Whether the links beyond the arm count in collisions with other bodies.
+        end_and_rest: Whether collisions of the links beyond the arm with links that the arm does not move count.
+    """
+
+    others: bool = False
+    itself: bool = True
+    limits: bool = True
+    end_and_others: bool = True
+    end_and_rest: bool = True
+
+
+class ArmSearch:
+    """Search for joint values for one goal. It moves the robot, and restores its configuration.
+
+    Subclasses may override ``accepts`` and ``solution`` to ask functions of users, and ``reject`` to note why joint
+    values are rejected.
+
+    Args:
+        body: The robot.
+        arm: Its manipulator.
+        solver: The solver of the arm.
+        goal: A pose in the base of the arm (4, 4), or what else the task of the solver asks for.
+        checks: The tests of joint values.
+        checker: The collision checker.
+        free: The values of the free joints, shape (k,); None for samples.
+
+    Attributes:
+        asks_users: Whether ``accepts`` is to be called.
+        explains: Whether ``reject`` gets the colliding geometries.
+        ended: Whether no further joint values are to be tried.
+    """
+
+    def __init__(
+        self,
+        body: BodyState,
+        arm: Manipulator,
+        solver: "IKSolver",
+        goal: Floats,
+        checks: Checks,
+        checker: Checker,
+        free: Floats | None = None,
+    ) -> None:
+        self.body, self.arm, self.solver, self.checks = body, arm, solver, checks
+        self._goal, self._checker, self._free = goal, checker, free
+        self._end_is_free = False
+        self.asks_users = self.explains = self.ended = False
+
+    # Functions of users
+
+    def accepts(self, row: Floats, *, before_collisions: bool) -> bool:
+        """Return whether users accept joint values. The robot is there, before and after the collision tests."""
+        del row, before_collisions
+        return True
+
+    def solution(self, row: Floats) -> Floats:
+        """Return what takes the place of accepted joint values."""
+        return row
+
+    def reject(self, reason: Reason, row: Floats, findings: Findings | None) -> None:
+        """Take note that joint values are rejected; ``row`` is empty if there are none."""
+
+    @contextmanager
+    def moving(self) -> Generator[None]:
+        """Hold the lock; on leaving, restore the configuration of the robot."""
+        with self.body.simulation.lock:
+            saved = self.body.configuration()
+            try:
+                yield
+            finally:
+                self.body.restore(saved)
+
+    # Candidates
+
+    def nearest(self, seed: Floats | None = None) -> Floats | None:
+        """Return the first good joint values, those nearest to a configuration first, shape (n,), or None."""
+        start, limits = self.present() if seed is None else seed, self.checks.limits
+        if not self._is_tested and limits and self._free is None:
+            return self.solver.nearest(self._goal, start, weights=self.weights)
+        from ravemj.ik.candidates import nearest_first
+
+        rows = nearest_first(self.solver, self._goal, start, weights=self.weights, free=self._free, limits=limits)
+        with self.moving():
+            return next(self.good(rows), None)
+
+    def near(self, seed: Floats, largest: float) -> Floats | None:
+        """Return the good joint values nearest to a configuration; None if a joint moves farther than ``largest``."""
+        rows = self.rows()
+        away = np.abs(rows - seed).max(axis=1, initial=0.0)
+        order = [number for number in np.argsort(away, kind="stable").tolist() if away[number] <= largest]
+        with self.moving():
+            return next(self.good(rows[order]), None)
+
+    def every(self) -> list[Floats]:
+        """Return all good joint values, each of shape (n,); none if a function of users ends the search."""
+        rows = self.rows()
+        with self.moving():
+            found = list(self.good(rows))
+        return [] if self.ended else found
+
+    def rows(self) -> Floats:
+        """Return all joint values that reach the goal, good or not, shape (K, n)."""
+        free = None if self._free is None else self._free[None]
+        return self.solver.solve_one(self._goal, free=free, limits=self.checks.limits)
+
+    def present(self) -> Floats:
+        """Return the joint values of the arm, shape (n,)."""
+        return self.body.kinematics.values()[list(self.arm.arm_dofs)]
+
+    @cached_property
+    def weights(self) -> Floats:
+        """The weights of the joints in distances, shape (n,)."""
+        axes = self.body.scene.dof_axes
+        return np.array([axes[dof].weight for dof in self.arm.arm_dofs])
+
+    # Tests
+
+    @property
+    def _is_tested(self) -> bool:
+        return self.asks_users or self.checks.others or self.checks.itself
+
+    def good(self, rows: Iterable[Floats]) -> Iterator[Floats]:
+        """Yield the joint values, each of shape (n,), that pass the tests. Use it within ``moving``."""
+        for row in rows:
+            if not self._is_tested or self._is_good(row):
+                yield self.solution(row)
+            if self.ended:
+                return
+
+    def _is_good(self, row: Floats) -> bool:
+        values = self.body.kinematics.values()
+        values[list(self.arm.arm_dofs)] = row
+        self.body.set_values(values)
+        asks = self.asks_users
+        if (asks and not self.accepts(row, before_collisions=True)) or self._collides(row):
+            return False
+        return not asks or self.accepts(row, before_collisions=False)
+
+    def _collides(self, row: Floats) -> bool:
+        """Return whether the robot, which is at the joint values, collides."""
+        if not (self.checks.others or self.checks.itself):
+            return False
+        with self._checker.world() as world:
+            return self._collides_in(world, row)
+
+    def _collides_in(self, world: CollisionWorld, row: Floats) -> bool:
+        checks, body, arm = self.checks, self.body, self.arm
+        with_end = checks.end_and_others
+        if checks.others and with_end and self._goal.ndim == 2:
+            # All joint values for a pose have the links beyond the arm at the same place.
+            pairs = arms.end_and_others(world, body, arm)
+            if not self._end_is_free and self._hits(world, pairs, row, Reason.END_COLLISION):
+                self.ended = True
+                return True
+            self._end_is_free, with_end = True, False
+        if checks.itself:
+            pairs = arms.arm_and_rest(world, body, arm, without_end=not checks.end_and_rest)
+            if self._hits(world, pairs, row, Reason.SELF_COLLISION):
+                return True
+        if not checks.others:
+            return False
+        pairs = arms.arm_and_others(world, body, arm, without_end=not with_end)
+        return self._hits(world, pairs, row, Reason.COLLISION)
+
+    def _hits(self, world: CollisionWorld, pairs: Pairs, row: Floats, reason: Reason) -> bool:
+        """Test pairs of geoms, and reject the joint values if one collides."""
+        findings = self._checker.find(world, pairs) if self.explains else None
+        hit = bool(findings.collisions) if findings else self._checker.collides(world, pairs)
+        if hit:
+            self.reject(reason, row, findings)
+        return hit
+
+    def explain(self) -> None:
+        """Reject the goal itself: because it is out of reach, or because solutions are beyond limits that count."""
+        from ravemj.ik.candidates import shortfall
+
+        unreached, limited = shortfall(self.solver, self._goal, self._free)
+        if unreached:
+            self.reject(Reason.OUT_OF_REACH, np.zeros(0), None)
+        if limited and self.checks.limits:
+            self.reject(Reason.LIMITS, np.zeros(0), None)
