@@ -39,7 +39,8 @@ if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
     from ravemj.rave import *  # noqa: F403 - as its __all__ lists them
     from ravemj.rave.recording import record
-    from ravemj.trajectories.motion import Motion, read_motion
+    from ravemj.trajectories.motion import Motion
+    from ravemj.trajectories.motion_reading import read_motion
     from ravemj.trajectories.motion_writing import write_motion
 
 __version__ = "0.1.0"
@@ -75,7 +76,7 @@ __all__ += rave.__all__  # pyright: ignore[reportUnsupportedDunderAll] - it take
 _LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
     "Motion": "ravemj.trajectories.motion",
     "Viewer": "ravemj.gui.viewers",
-    "read_motion": "ravemj.trajectories.motion",
+    "read_motion": "ravemj.trajectories.motion_reading",
     "record": "ravemj.rave.recording",
     "write_motion": "ravemj.trajectories.motion_writing",
 }

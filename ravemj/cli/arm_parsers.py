@@ -3,7 +3,15 @@
 import argparse
 
 from ravemj.cli.argument_types import file_name, positive, seed, vector
-from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command
+from ravemj.cli.shared_options import (
+    VIDEOS,
+    Commands,
+    add_manipulator,
+    add_model,
+    add_picture_options,
+    add_robot,
+    command,
+)
 from ravemj.geometry_functions.ik_types import GOAL_TYPES
 
 _GOAL_TYPES = sorted(kind.name for kind in GOAL_TYPES)
@@ -53,10 +61,11 @@ def add_plan(commands: Commands) -> None:
     parser = command(
         commands,
         "plan.plan",
-        "find a motion without collisions, and write it as a table, a picture or a video",
+        "find a motion without collisions, and write it as a table, a page, a picture or a video",
         'ravemj plan puma560 --to "1.2,0.4,-0.3,0,0.5,0"',
         'ravemj plan puma560 --pose "0.3,0.3,0.9,0.7071,0,0.7071,0" -o plan.mp4',
         'ravemj plan workshop --manip panda_arm --to "1,0.6,0,-1.6,0,2.2,0.8" -o plan.csv',
+        'ravemj plan workshop --robot scara --to "1.5,-2,0.1,0" -o plan.html',
         'ravemj plan scara --to "1.5,-2,0.1,0" -o trees.png --show-tree',
     )
     add_model(parser)
@@ -79,8 +88,8 @@ def add_plan(commands: Commands) -> None:
         "--output",
         type=file_name,
         metavar="FILE",
-        help="motion as .csv or .npz, which play takes; picture of start, goal and way as .png or .jpg; or video as "
-        + VIDEOS,
+        help="motion as .csv or .npz, which play takes; page that plays it as .html; picture of start, goal and way as "
+        ".png or .jpg; or video as " + VIDEOS,
     )
     parser.add_argument(
         "--show-tree",
@@ -95,7 +104,8 @@ def add_plan(commands: Commands) -> None:
 
 
 def _add_arm_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
+    add_robot(parser, "robot that moves; default: the one of the manipulator, else the first")
+    add_manipulator(parser)
     parser.add_argument(
         "--from",
         dest="start",

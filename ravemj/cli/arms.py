@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.cli.argument_parser import did_you_mean
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Source, SourceError
 from ravemj.geometry_functions import matrixFromPose
@@ -17,7 +18,6 @@ from ravemj.rave import (
     CollisionOptions,
     CollisionOptionsStateSaver,
     CollisionReport,
-    Environment,
     RaveCreateRobot,
     Robot,
 )
@@ -40,23 +40,25 @@ class Solution(NamedTuple):
     trouble: tuple[str, ...]
 
 
-def arm_of(env: Environment, name: str | None) -> Manipulator:
+def arm_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
     """Return the manipulator of a name, or the active one of the first robot that has one.
 
     Raises:
         ArgumentError: there is no such manipulator.
     """
-    arms = [arm for robot in env.GetRobots() for arm in robot.GetManipulators()]
+    arms = [arm for robot in robots for arm in robot.GetManipulators()]
     if name is None:
-        active = (robot.GetActiveManipulator() for robot in env.GetRobots())
+        active = (robot.GetActiveManipulator() for robot in robots)
         chosen = next((arm for arm in active if arm is not None), None)
     else:
         chosen = next((arm for arm in arms if arm.GetName() == name), None)
     if chosen is None:
+        owner = f"robot '{robots[0].GetName()}'" if len(robots) == 1 else "the model"
         if not arms:
-            raise ArgumentError("the model has no manipulator, and this command needs one: a <Manipulator> of a robot")
-        names = ", ".join(arm.GetName() for arm in arms)
-        raise ArgumentError(f"there is no manipulator '{name}'; the model has {names}")
+            raise ArgumentError(f"{owner} has no manipulator, and this command needs one: a <Manipulator> of a robot")
+        names = [arm.GetName() for arm in arms]
+        known = f"{owner} has {', '.join(names)}{did_you_mean(name or '', names)}"
+        raise ArgumentError(f"there is no manipulator '{name}'; {known}")
     return chosen
 
 

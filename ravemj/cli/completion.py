@@ -1,11 +1,18 @@
-"""Completion of commands, options and models in shells."""
+"""Completion of commands, options, models and parts of models in shells."""
 
 import argparse
+import contextlib
+import warnings
+from typing import TYPE_CHECKING
 
 from argcomplete.completers import FilesCompleter
 from argcomplete.shell_integration import shellcode
 
+from ravemj.errors import RavemjError
 from ravemj.formats.shipped import SHIPPED_MODELS
+
+if TYPE_CHECKING:
+    from ravemj.rave import Robot
 
 
 def completion(options: argparse.Namespace) -> int:
@@ -18,3 +25,25 @@ def models(prefix: str, **_: object) -> list[str]:
     """Return the completions of the name of a model: models that come with ravemj, and files."""
     shipped = [name for name in SHIPPED_MODELS if name.startswith(prefix)]
     return [*shipped, *FilesCompleter(("xml", "dae", "zae"))(prefix)]
+
+
+def robots(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Return the completions of the name of a robot of the model that was named before."""
+    return [robot.GetName() for robot in _robots(parsed_args) if robot.GetName().startswith(prefix)]
+
+
+def manipulators(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """Return the completions of the name of a manipulator of the model, or of the robot that was named before."""
+    chosen = [robot for robot in _robots(parsed_args) if parsed_args.robot in {None, robot.GetName()}]
+    names = dict.fromkeys(arm.GetName() for robot in chosen for arm in robot.GetManipulators())
+    return [name for name in names if name.startswith(prefix)]
+
+
+def _robots(options: argparse.Namespace) -> "list[Robot]":
+    """Return the robots of the model of a command; none if it is not named yet or cannot be read."""
+    from ravemj.cli.models import loaded, model_file  # noqa: PLC0415 - slow to import
+
+    with warnings.catch_warnings(), contextlib.suppress(RavemjError):
+        warnings.simplefilter("ignore")
+        return loaded(model_file(options.model)).GetRobots() if options.model else []
+    return []

@@ -9,7 +9,7 @@ import numpy as np
 
 from ravemj.cli.arms import Solution, add_ghost, arm_of, pose_goal, reached, start_values, validated
 from ravemj.cli.console import console, table
-from ravemj.cli.models import load_model
+from ravemj.cli.models import chosen_robots, load_model
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_size
@@ -27,7 +27,7 @@ def ik(options: argparse.Namespace) -> int:
     if options.output is not None:
         check_picture(options.output)
     env = load_model(options)
-    arm = arm_of(env, options.manip)
+    arm = arm_of(chosen_robots(env, options.robot), options.manip)
     robot = arm.GetRobot()
     if options.start is not None:
         robot.SetDOFValues(start_values(options.start, robot))

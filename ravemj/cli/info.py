@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from ravemj.cli.console import console, table
-from ravemj.cli.models import load_model
+from ravemj.cli.models import load_model, named_robot
 from ravemj.cli.summary import dof_starts, sensor_summary, summarize
 from ravemj.model.scene import AttachedSensor, Intrinsics, Joint, KinBody, Link, Manipulator
 
@@ -14,8 +14,10 @@ from ravemj.model.scene import AttachedSensor, Intrinsics, Joint, KinBody, Link,
 def info(options: argparse.Namespace) -> int:
     """Show what the bodies of a model consist of."""
     env = load_model(options)
-    bodies = [state.scene for state in env.simulation.bodies]
-    sensors = [sensor.description for sensor in env.GetSensors() if sensor.attached is None]
+    robot = named_robot(env, options.robot)
+    bodies = [body.simulation_state.scene for body in (env.GetBodies() if robot is None else [robot])]
+    loose = [sensor for sensor in env.GetSensors() if sensor.attached is None and robot is None]
+    sensors = [sensor.description for sensor in loose]
     if options.json:
         content = {"bodies": list(map(summarize, bodies)), "sensors": list(map(sensor_summary, sensors))}
         print(json.dumps({"gravity": env.simulation.gravity, **content}, indent=1))

@@ -4,12 +4,18 @@ import argparse
 import os
 import warnings
 from collections.abc import Sequence
+from typing import cast
 
+import numpy as np
+
+from ravemj.cli.argument_parser import did_you_mean
 from ravemj.cli.checking import FATAL_CODES
 from ravemj.cli.console import print_findings
-from ravemj.errors import Diagnostic, RavemjWarning, SourceError
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning, SourceError
 from ravemj.formats.shipped import SHIPPED_MODELS, model_path
-from ravemj.rave import Environment, load
+from ravemj.rave import Environment, Robot, load
+from ravemj.trajectories.motion_arguments import first_robot
 
 
 def load_model(options: argparse.Namespace) -> Environment:
@@ -38,6 +44,48 @@ def loaded(file: str) -> Environment:
         return load(file)
     except SourceError as error:
         raise error if error.cause is None else failure_of([error.cause]) from None
+
+
+def named_robot(env: Environment, name: str | None) -> Robot | None:
+    """Return the robot of ``--robot``; None if there is no name.
+
+    Raises:
+        ArgumentError: the model has no such robot.
+    """
+    if name is None:
+        return None
+    robot = env.GetRobot(name)
+    if robot is None:
+        names = [other.GetName() for other in env.GetRobots()]
+        kind = f"'{name}' is a body, not a robot" if env.GetKinBody(name) else f"there is no robot '{name}'"
+        raise ArgumentError(f"--robot: {kind}; the model has {', '.join(names) or 'none'}{did_you_mean(name, names)}")
+    return robot
+
+
+def chosen_robots(env: Environment, name: str | None) -> list[Robot]:
+    """Return the robot of ``--robot``, by default all of them; errors as for ``named_robot``."""
+    robot = named_robot(env, name)
+    return env.GetRobots() if robot is None else [robot]
+
+
+def moving_robot(env: Environment, name: str | None) -> Robot:
+    """Return the robot of ``--robot``, by default the first robot with joints.
+
+    Raises:
+        ArgumentError: the model has no such robot, or it has no joints.
+    """
+    robot = named_robot(env, name) or cast("Robot", env.wrap(first_robot(env.simulation)))
+    if not robot.GetDOF():
+        raise ArgumentError(f"--robot: '{name}' has no joints to move")
+    return robot
+
+
+def shown_sphere(env: Environment, robot: Robot | None) -> tuple[Floats, float]:
+    """Return centre, shape (3,), and radius [m] of a sphere around a robot, by default around everything."""
+    if robot is None:
+        return env.renderer.bounding_sphere()
+    box = robot.ComputeAABB()
+    return box.pos(), float(np.linalg.norm(box.extents()))
 
 
 def hold_bases(env: Environment) -> None:

@@ -5,7 +5,15 @@ import argparse
 from ravemj.cli.argument_parser import Parser
 from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, file_name, port, positive, vector
 from ravemj.cli.arm_parsers import add_ik, add_plan
-from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, complete_models
+from ravemj.cli.shared_options import (
+    VIDEOS,
+    Commands,
+    add_model,
+    add_picture_options,
+    add_robot,
+    command,
+    complete_models,
+)
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
 
@@ -49,6 +57,7 @@ def _add_view(commands: Commands) -> None:
         "ravemj view --physics pendulum        # right drags pull it, Space stops time",
     )
     add_model(parser)
+    add_robot(parser, "robot to look at, selected, so that the sliders turn its joints; default: everything in view")
     parser.add_argument(
         "--watch",
         action="store_true",
@@ -84,8 +93,10 @@ def _add_play(commands: Commands) -> None:
         "ravemj play env.xml -o pendulum.mp4 --camera camera.json",
         'ravemj play pendulum -o frames/ --to "1.57,-1.57" --duration 2',
         "ravemj play env.xml -o swing.gif --trajectory swing.csv --fps 25",
+        'ravemj play workshop --robot scara --to "1,-2,0.1,0"',
     )
     add_model(parser)
+    add_robot(parser, "robot that moves; default: the one whose joints a table names, else the first with joints")
     parser.add_argument(
         "-o",
         "--output",
@@ -104,7 +115,8 @@ def _add_play(commands: Commands) -> None:
         "--trajectory",
         type=file_name,
         metavar="FILE",
-        help="motion as .csv (header time,<joint>,…; seconds, rad or m) or .npz (arrays time and values)",
+        help="motion as .csv (header time,<joint>,…; seconds, rad or m), as .npz (arrays time, values and joints), or "
+        "as OpenRAVE's file of a trajectory",
     )
     parser.add_argument(
         "--duration", type=positive, metavar="S", help="seconds the motion takes; default: 1, or as the file says"
@@ -122,9 +134,10 @@ def _add_render(commands: Commands) -> None:
         'ravemj render pendulum -o pendulum.png --q "0.785,0.785" --size 1280x720',
     )
     add_model(parser)
+    add_robot(parser, "robot to look at, which --q moves; default: everything in view, and the first with joints moves")
     parser.add_argument("-o", "--output", type=file_name, required=True, metavar="FILE", help=".png, .jpg or .webp")
     parser.add_argument(
-        "--q", type=vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
+        "--q", type=vector, metavar="Q", help="joint values of the robot, rad or m, separated by commas"
     )
     add_picture_options(parser, "size of the picture (640x480)")
 
@@ -224,8 +237,10 @@ def _add_info(commands: Commands) -> None:
         "show the links, joints, manipulators and sensors of a model",
         "ravemj info panda",
         "ravemj info panda --json > panda.json",
+        "ravemj info workshop --robot scara",
     )
     add_model(parser)
+    add_robot(parser, "robot to show; default: all bodies")
     parser.add_argument("--json", action="store_true", help="print all numbers as JSON")
 
 

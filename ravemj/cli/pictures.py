@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from ravemj.cli.console import console, progress, table
-from ravemj.cli.models import load_model
+from ravemj.cli.models import load_model, moving_robot, named_robot, shown_sphere
 from ravemj.core.output import check_file
 from ravemj.core.signals import signals_raised
 from ravemj.errors import ArgumentError
+from ravemj.graphics.rendering.camera import Camera, three_quarter_view
 from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import INSTALL, RAY, requested_backend
 from ravemj.graphics.rendering.doctor import probe_backends
@@ -22,60 +23,64 @@ from ravemj.graphics.video import VIDEO_FORMATS, check_picture, check_target, kn
 from ravemj.gui.viewers import has_display
 from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment, KinBody
-from ravemj.rave.recording import Shot, camera_for_motion, draw_frames, moving_body, within_limits
-from ravemj.trajectories.motion import Motion, read_motion
+from ravemj.rave.recording import Shot, camera_for_motion, draw_frames, followed_motion
+from ravemj.trajectories.body_motion import BodyMotion
+from ravemj.trajectories.motion import Motion, number_of_frames
+from ravemj.trajectories.motion_arguments import body_motion
 
 _MOST_FRAMES = 1_000_000  # nine hours at 30 frames a second: more is a slip of the finger
-_PAGE = ".html"
+PAGE = ".html"
+"""The suffix of a page that plays a motion."""
 
 
 def play(options: argparse.Namespace) -> int:
     """Play a motion: in a window, or into a video."""
     output: str | None = options.output
-    is_page = output is not None and known_suffix(output, [_PAGE, *VIDEO_FORMATS]) == _PAGE
+    is_page = output is not None and known_suffix(output, [PAGE, *VIDEO_FORMATS]) == PAGE
     if output is not None:
         (check_file if is_page else check_target)(output)
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
-    body = moving_body(env)
-    motion = within_limits(body, _motion(options, body))
+    motion = _motion(env, options)
     _check_length(motion, options.fps)
-    camera = camera or camera_for_motion(env, body, motion, options.size[0] / options.size[1])
-    background = env.background if options.background is None else tuple(options.background)
     if output is not None and is_page:
-        env.save_html(output, motion, robot=body, fps=options.fps, camera=camera.T_world_camera, background=background)
-        print(f"wrote {os.path.abspath(output)} ({motion.duration:g} s; any browser plays it)")
+        write_page(output, env, motion, options, camera)
         return 0
+    motion = followed_motion(env, motion)
+    camera = camera or camera_for_motion(env, motion, options.size[0] / options.size[1])
+    background = env.background if options.background is None else tuple(options.background)
     shot = Shot(camera, background, Format(*options.size), options.fps)
-    if output is None and _play_in_window(env, body, motion, shot):
+    if output is None and _play_in_window(env, motion, shot):
         return 0
-    write_video(output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
+    write_video(output or f"{Path(options.model).stem}.mp4", env, motion, shot)
     return 0
 
 
-def _check_length(motion: Motion, fps: float) -> None:
+def _check_length(motion: BodyMotion, fps: float) -> None:
     """Check that a motion is not so long that a video of it would fill the disk.
 
     Raises:
         ArgumentError: the motion has too many frames.
     """
-    count = motion.number_of_frames(fps)
+    count = number_of_frames(motion.duration, fps)
     if count > _MOST_FRAMES:
         found = f"{motion.duration:g} s at {fps:g} frames a second are {count:.3g} frames"
         raise ArgumentError(f"{found}, and at most {_MOST_FRAMES:,} are drawn; give a smaller --duration or --fps")
 
 
-def _motion(options: argparse.Namespace, body: KinBody) -> Motion:
+def _motion(env: Environment, options: argparse.Namespace) -> BodyMotion:
     """Return the motion that the options ask for, from where the robot is."""
-    start = body.GetDOFValues()
     if options.trajectory is not None:
-        motion = read_motion(options.trajectory, [joint.GetName() for joint in body.GetJoints()], start)
+        robot = named_robot(env, options.robot)
+        motion = body_motion(env.simulation, options.trajectory, None if robot is None else robot.simulation_state)
         return motion if options.duration is None else motion.rescaled(options.duration)
+    robot = moving_robot(env, options.robot)
+    start = robot.GetDOFValues()
     if options.to is None:
-        goal = body.simulation_state.kinematics.limits.clamp(np.array([math.pi] + [0.0] * (len(start) - 1)))
+        goal = robot.simulation_state.kinematics.limits.clamp(np.array([math.pi] + [0.0] * (len(start) - 1)))
     else:
-        goal = _checked_values("--to", options.to, body)
-    return Motion.line(start, goal, options.duration or 1.0)
+        goal = _checked_values("--to", options.to, robot)
+    return BodyMotion.of_motion(robot.simulation_state, Motion.line(start, goal, options.duration or 1.0))
 
 
 def _checked_values(option: str, values: list[float], body: KinBody) -> list[float]:
@@ -86,14 +91,14 @@ def _checked_values(option: str, values: list[float], body: KinBody) -> list[flo
     """
     dof = body.GetDOF()
     if len(values) != dof:
-        joints = ", ".join(joint.GetName() for joint in body.GetJoints())
+        names = ", ".join(body.simulation_state.scene.dof_names)
         raise ArgumentError(
-            f"{option}: found {len(values)}, expected {dof}: one for each DOF of '{body.GetName()}': {joints}"
+            f"{option}: found {len(values)}, expected {dof}: one for each DOF of '{body.GetName()}': {names}"
         )
     return values
 
 
-def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> bool:
+def _play_in_window(env: Environment, motion: BodyMotion, shot: Shot) -> bool:
     """Play in a window, and wait until it is closed; return False if no window can be opened."""
     if not has_display():
         return False
@@ -103,17 +108,26 @@ def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot)
         return False
     viewer.SetCamera(shot.camera.T_world_camera)
     viewer.SetBkgndColor(shot.background)
-    viewer.play(motion, robot=body)
+    viewer.play(motion)
     with signals_raised():  # Ctrl-C then leaves time to complete a file that is being saved
         viewer.wait()
     return True
 
 
-def write_video(path: str, env: Environment, body: KinBody, motion: Motion, shot: Shot) -> None:
+def write_page(
+    path: str, env: Environment, motion: BodyMotion, options: argparse.Namespace, camera: Camera | None
+) -> None:
+    """Write the page that plays a motion, and say so."""
+    view = None if camera is None else camera.T_world_camera
+    env.save_html(path, motion, fps=options.fps, camera=view, background=options.background)
+    print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s; any browser plays it)")
+
+
+def write_video(path: str, env: Environment, motion: BodyMotion, shot: Shot) -> None:
     """Write a video of a motion, and say so."""
-    count = motion.number_of_frames(shot.fps)
+    count = number_of_frames(motion.duration, shot.fps)
     with progress(f"drawing {path}", count) as advance:
-        write_frames(path, draw_frames(env, body, motion, shot), shot.fps, on_frame=advance)
+        write_frames(path, draw_frames(env, motion, shot), shot.fps, on_frame=advance)
     explain_rays(env, shot.form)
     frames = f"{count} frames of {shot.form.width}x{shot.form.height} by {env.renderer.backend(shot.form)}"
     print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s, {frames})")
@@ -124,10 +138,12 @@ def render(options: argparse.Namespace) -> int:
     check_picture(options.output)
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
+    robot, (width, height) = named_robot(env, options.robot), options.size
     if options.q is not None:
-        body = moving_body(env)
-        body.SetDOFValues(_checked_values("--q", options.q, body))
-    width, height = options.size
+        moved = moving_robot(env, options.robot)
+        moved.SetDOFValues(_checked_values("--q", options.q, moved))
+    if camera is None and robot is not None:
+        camera = three_quarter_view(*shown_sphere(env, robot), width / height)
     matrix = None if camera is None else camera.T_world_camera
     write_picture(options.output, env.render(width, height, camera=matrix, background=options.background))
     explain_rays(env, Format(width, height, shadows=True))

@@ -3,13 +3,12 @@
 import argparse
 import time
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 
 from ravemj.cli.arms import arm_of, pose_goal, reached, start_values, validated
 from ravemj.cli.console import progress
-from ravemj.cli.models import load_model
+from ravemj.cli.models import chosen_robots, load_model, moving_robot
 from ravemj.cli.plan_output import Plan, check_output, write
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, RavemjError
@@ -18,7 +17,6 @@ from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.rave import Environment, Planner, Robot, Trajectory
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.planning.path_planners import BiRrt
-from ravemj.rave.recording import moving_body
 from ravemj.trajectories.motion import Motion
 
 _POSE, _POINT = 7, 3  # numbers
@@ -34,7 +32,7 @@ def plan(options: argparse.Namespace) -> int:
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     arm = _arm(env, options)
-    robot = cast("Robot", moving_body(env) if arm is None else arm.GetRobot())
+    robot = moving_robot(env, options.robot) if arm is None else arm.GetRobot()
     if options.start is not None:
         robot.SetDOFValues(start_values(options.start, robot), checklimits=0)
     dofs, goals = _values(robot, arm, options) if options.pose is None else _solutions(arm, options.pose)
@@ -50,8 +48,9 @@ def plan(options: argparse.Namespace) -> int:
 
 def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
     """Return the manipulator that moves; None: joint values are the goal of a robot that has none."""
-    has_arms = any(robot.GetManipulators() for robot in env.GetRobots())
-    return arm_of(env, options.manip) if has_arms or options.manip or options.pose else None
+    robots = chosen_robots(env, options.robot)
+    has_arms = any(robot.GetManipulators() for robot in robots)
+    return arm_of(robots, options.manip) if has_arms or options.manip or options.pose else None
 
 
 def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) -> tuple[list[int], Floats]:

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.cli.arms import add_ghost
-from ravemj.cli.pictures import explain_rays, write_video
+from ravemj.cli.pictures import PAGE, explain_rays, write_page, write_video
+from ravemj.core.output import check_file
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.simulation_renderer import Format
@@ -18,8 +19,10 @@ from ravemj.rave import Planner, Robot
 from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.recording import Shot, camera_for_motion
+from ravemj.trajectories.body_motion import BodyMotion
 from ravemj.trajectories.motion import Motion
-from ravemj.trajectories.motion_writing import MOTION_SUFFIXES, check_motion_file, write_motion
+from ravemj.trajectories.motion_reading import MOTION_SUFFIXES
+from ravemj.trajectories.motion_writing import check_motion_file, write_motion
 
 _PICTURES = (".png", ".jpg", ".jpeg")
 _STEP = 0.1  # rad or m, between the points of a line in the space of joint values
@@ -54,6 +57,7 @@ class Plan(NamedTuple):
 def check_output(path: str) -> None:
     """Check that a motion, picture or video can be written to a path, without touching anything."""
     kinds = {**dict.fromkeys(MOTION_SUFFIXES, check_motion_file), **dict.fromkeys(_PICTURES, check_picture)}
+    kinds[PAGE] = check_file
     kinds.get(known_suffix(path, [*kinds, *VIDEO_FORMATS]), check_target)(path)
 
 
@@ -62,21 +66,27 @@ def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> Non
     robot, path = plan.robot, options.output
     suffix = Path(path).suffix.lower()
     if plan.motion is not None and suffix in MOTION_SUFFIXES:
-        write_motion(path, plan.motion, [joint.GetName() for joint in robot.GetJoints()])
+        write_motion(path, plan.motion, robot.simulation_state.scene.dof_names)
         print(f"wrote {path}")
     elif suffix in _PICTURES and (plan.motion is not None or options.show_tree):
         _write_picture(plan, camera, options)
     elif suffix not in _PICTURES and plan.motion is not None:
-        shot = _shot(plan, camera, options)
-        drawn = _draw(plan, path=options.show_tree, trees=options.show_tree)
-        write_video(path, robot.GetEnv(), robot, plan.motion, shot)
+        env, drawn = robot.GetEnv(), _draw(plan, path=options.show_tree, trees=options.show_tree)
+        if suffix == PAGE:
+            write_page(path, env, _followed(plan), options, camera)
+        else:
+            write_video(path, env, _followed(plan), _shot(plan, camera, options))
         del drawn
+
+
+def _followed(plan: Plan) -> BodyMotion:
+    motion = plan.motion or Motion([0.0], [plan.robot.GetDOFValues()])
+    return BodyMotion.of_motion(plan.robot.simulation_state, motion)
 
 
 def _shot(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> Shot:
     env, form = plan.robot.GetEnv(), Format(*options.size)
-    motion = plan.motion or Motion([0.0], [plan.robot.GetDOFValues()])
-    view = camera or camera_for_motion(env, plan.robot, motion, form.width / form.height)
+    view = camera or camera_for_motion(env, _followed(plan), form.width / form.height)
     return Shot(view, env.background if options.background is None else tuple(options.background), form, options.fps)
 
 

@@ -40,15 +40,30 @@ def command(commands: Commands, run: str, summary: str, *examples: str) -> argpa
     return parser
 
 
-def complete_models(argument: argparse.Action) -> None:
-    """Let shells complete an argument with names and files of models."""
+def _complete(argument: argparse.Action, function: str) -> None:
+    """Let shells complete an argument with what a function of ``ravemj.cli.completion`` returns."""
 
-    def completer(prefix: str, **_: object) -> list[str]:
-        from ravemj.cli.completion import models  # noqa: PLC0415 - only where a shell asks
-
-        return models(prefix)
+    def completer(prefix: str, **known: object) -> list[str]:
+        completion = import_module("ravemj.cli.completion")  # only where a shell asks
+        return getattr(completion, function)(prefix, **known)
 
     argument.completer = completer  # pyright: ignore[reportAttributeAccessIssue] - argcomplete's
+
+
+def complete_models(argument: argparse.Action) -> None:
+    """Let shells complete an argument with names and files of models."""
+    _complete(argument, "models")
+
+
+def add_robot(parser: argparse.ArgumentParser, meaning: str) -> None:
+    """Add the robot that a command is about."""
+    _complete(parser.add_argument("--robot", metavar="NAME", help=meaning), "robots")
+
+
+def add_manipulator(parser: argparse.ArgumentParser) -> None:
+    """Add the manipulator that a command moves."""
+    argument = parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
+    _complete(argument, "manipulators")
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:

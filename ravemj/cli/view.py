@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.cli.models import hold_bases, load_model
+from ravemj.cli.models import hold_bases, load_model, named_robot, shown_sphere
 from ravemj.cli.reloading import Reloader
 from ravemj.core.signals import signals_delayed, signals_raised
+from ravemj.graphics.rendering import three_quarter_view
 from ravemj.gui.viewers import Viewer, has_display
 from ravemj.gui.viewers.window import WindowViewer
-from ravemj.rave import Environment
+from ravemj.rave import Environment, Robot
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers.web import WebViewer
@@ -32,10 +33,11 @@ _ASPECT = 4 / 3
 def view(options: argparse.Namespace) -> int:
     """Show a model until its window is closed, or its page is ended by Ctrl-C."""
     env = load_model(options)
+    robot = named_robot(env, options.robot)
     try:
-        window = None if options.web or not has_display() else _open_window(env, options)
+        window = None if options.web or not has_display() else _open_window(env, robot, options)
         if window is None:
-            _serve(env, options)
+            _serve(env, robot, options)
         else:
             reloader = Reloader(env, window, options.model, watches=options.watch)
             with signals_raised():  # so that what is being saved gets complete
@@ -45,23 +47,25 @@ def view(options: argparse.Namespace) -> int:
     return 0
 
 
-def _open_window(env: Environment, options: argparse.Namespace) -> WindowViewer | None:
+def _open_window(env: Environment, robot: Robot | None, options: argparse.Namespace) -> WindowViewer | None:
     """Open a window; None where there is no OpenGL for it."""
     env.SetViewer("window")
     viewer = env.GetViewer()
     if not isinstance(viewer, WindowViewer):
         return None
-    _arrange(env, viewer, options)
+    _arrange(viewer, env, robot, options)
     return viewer
 
 
-def _arrange(env: Environment, viewer: Viewer, options: argparse.Namespace) -> None:
-    """Show the name of the model, the floor, and everything from a corner where the file has no camera."""
+def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
+    """Show the name of the model, the floor, and from a corner the robot, or everything if the file has no camera."""
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
-    if env.renderer.file_camera() is None:
-        camera = env.renderer.camera_for_stills(_ASPECT)
-        center, _ = env.renderer.bounding_sphere()
+    if robot is not None or env.renderer.file_camera() is None:
+        center, radius = shown_sphere(env, robot)
+        camera = three_quarter_view(center, radius, _ASPECT)
         viewer.SetCamera(camera.T_world_camera, float(np.linalg.norm(center - camera.position)))
+    if robot is not None:
+        viewer.interaction.choose(robot.simulation_state)
     viewer.interaction.controls.display.shown |= {"floor"}
     if options.physics:
         hold_bases(env)
@@ -69,12 +73,12 @@ def _arrange(env: Environment, viewer: Viewer, options: argparse.Namespace) -> N
         env.StartSimulation(_TIMESTEP)
 
 
-def _serve(env: Environment, options: argparse.Namespace) -> None:
+def _serve(env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
     """Serve the page, print its address, and wait for Ctrl-C, which is how it ends."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(options.host, options.port, options.token)
-    _arrange(env, viewer, options)
+    _arrange(viewer, env, robot, options)
     if not is_local(options.host):
         print(
             "ravemj: warning: browsers of other machines can come here; whoever knows the address sees and moves "

@@ -1,18 +1,20 @@
 """Motions as pages that play them."""
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.rendering.checks import checked_colour
 from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
-from ravemj.rave.enums import CheckLimitsAction
-from ravemj.rave.recording import camera_for_motion, moving_body, within_limits
-from ravemj.trajectories.motion import Motion
+from ravemj.rave.recording import camera_for_motion, followed_motion
+from ravemj.trajectories.body_motion import BodyMotion
+from ravemj.trajectories.motion_arguments import MotionLike
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -26,7 +28,7 @@ _LOWEST_FPS, _HIGHEST_FPS = 0.01, 1000
 
 def animate(
     env: "Environment",
-    motion: Motion | None,
+    motion: MotionLike | None,
     robot: "KinBody | None" = None,
     fps: float = 30.0,
     camera: ArrayLike | None = None,
@@ -36,16 +38,16 @@ def animate(
     if not _LOWEST_FPS <= fps <= _HIGHEST_FPS:  # NaN is refused, too
         raise ArgumentError(f"expected from {_LOWEST_FPS} to {_HIGHEST_FPS} frames a second, found {fps}")
     with env:
-        body = moving_body(env) if robot is None and motion is not None else robot
-        course = None if body is None or motion is None else within_limits(body, motion)
+        followed = None if motion is None else followed_motion(env, motion, robot)
         if camera is not None:
             view = Camera.from_matrix(camera)
-        elif body is None or course is None:
+        elif followed is None:
             view = env.default_camera(_ASPECT)
         else:
-            view = camera_for_motion(env, body, course, _ASPECT)
-        recording = _recorded(env, body, course, fps)
-        title = "ravemj" if body is None else body.GetName()
+            view = camera_for_motion(env, followed, _ASPECT)
+        shown = followed.bodies if followed is not None else () if robot is None else (robot.simulation_state,)
+        recording = _recorded(env, shown, followed, fps)
+        title = ", ".join(body.scene.name for body in shown) or "ravemj"
         colour = env.background if background is None else checked_colour(background)
         compiled, drawings = env.simulation.compiled(), env.simulation.drawings.primitives()
         return Animation(
@@ -53,28 +55,21 @@ def animate(
         )
 
 
-def _recorded(env: "Environment", body: "KinBody | None", motion: Motion | None, fps: float) -> Recording:
-    """Move the body as the motion says, and return where everything was."""
-    rows: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
-    for values in _frames(body, motion, fps):
+def _recorded(env: "Environment", bodies: Sequence[BodyState], motion: BodyMotion | None, fps: float) -> Recording:
+    """Move the bodies as the motion says, and return where everything was."""
+    rows: list[tuple[Floats, Floats, Floats]] = []
+    for time in [0.0] if motion is None else motion.frame_times(fps):
+        if motion is not None:
+            motion.place(time)
         data = env.simulation.compiled().data
-        rows.append((data.xpos.copy(), data.xquat.copy(), values))
-    joints = [] if body is None else [(joint, axis) for joint in body.GetJoints() for axis in range(joint.GetDOF())]
+        values = [body.kinematics.values() for body in bodies]
+        rows.append((data.xpos.copy(), data.xquat.copy(), np.concatenate([*values, np.zeros(0)])))
+    joints = [joint for body in bodies for joint in body.scene.joints]
     return Recording(
         fps,
         np.array([row[0] for row in rows]),
         np.array([row[1] for row in rows]),
         np.array([row[2] for row in rows]),
-        [joint.GetName() + (f", axis {axis}" if joint.GetDOF() > 1 else "") for joint, axis in joints],
-        ["m" if joint.IsPrismatic(axis) else "rad" for joint, axis in joints],
+        [(f"{body.scene.name} " if bodies[1:] else "") + name for body in bodies for name in body.scene.dof_names],
+        ["m" if joint.slides(axis) else "rad" for joint in joints for axis in range(len(joint.axes))],
     )
-
-
-def _frames(body: "KinBody | None", motion: Motion | None, fps: float) -> Iterator[np.ndarray]:
-    """Yield the joint values of each frame, with the body there."""
-    if body is None or motion is None:
-        yield np.zeros(0) if body is None else body.GetDOFValues()
-        return
-    for values in motion.frames(fps):
-        body.SetDOFValues(values, None, CheckLimitsAction.Nothing)
-        yield values

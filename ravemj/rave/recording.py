@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.errors import ArgumentError, Diagnostic, send_warning
+from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState
+from ravemj.errors import Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera, three_quarter_view
 from ravemj.graphics.rendering.checks import checked_colour
 from ravemj.graphics.simulation_renderer import Format, Frame
-from ravemj.rave.enums import CheckLimitsAction
-from ravemj.trajectories.motion import Motion
+from ravemj.trajectories.body_motion import BodyMotion
+from ravemj.trajectories.motion_arguments import MotionLike, body_motion
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -34,7 +36,7 @@ class Shot(NamedTuple):
 def record(  # noqa: PLR0913 - keyword arguments
     env: "Environment",
     path: str | os.PathLike[str],
-    motion: Motion,
+    motion: MotionLike,
     *,
     robot: "KinBody | None" = None,
     width: int = 640,
@@ -50,8 +52,11 @@ def record(  # noqa: PLR0913 - keyword arguments
         env: The environment.
         path: The video file, ``.mp4``, ``.avi``, ``.mpg``, ``.gif`` or ``.webp``; without a suffix, a folder for PNG
             frames.
-        motion: Joint values over time. Values outside the limits are set to the limits, with a warning.
-        robot: The body that moves; by default the first robot.
+        motion: A ``Motion``; a trajectory of OpenRAVE with times; rows (time, value, value, …) or (time, values); the
+            pair of times, shape (N,), and joint values, shape (N, dof); or the path of a ``.csv`` or ``.npz`` table, as
+            ``write_motion`` writes it, or of a file of a trajectory. Joints stop at their limits, with a warning.
+        robot: The body that moves; by default the first robot with joints, or the one whose joints a table names. A
+            trajectory names its bodies.
         width: The width of the frames [pixels].
         height: The height of the frames [pixels].
         fps: Frames per second.
@@ -65,6 +70,7 @@ def record(  # noqa: PLR0913 - keyword arguments
 
     Raises:
         ArgumentError: an argument is wrong, or there is no robot.
+        SourceError: the file of a motion cannot be read.
         OutputError: the video cannot be written; no partial file is left behind.
         RenderingError: no renderer works on this machine.
 
@@ -74,75 +80,59 @@ def record(  # noqa: PLR0913 - keyword arguments
     """
     from ravemj.graphics.video import write_frames  # noqa: PLC0415 - slow to import
 
-    body = moving_body(env) if robot is None else robot
-    allowed = within_limits(body, motion)
+    followed = followed_motion(env, motion, robot)
     form = Format(width, height)
     shot = Shot(
-        camera_for_motion(env, body, allowed, form.aspect) if camera is None else Camera.from_matrix(camera),
+        camera_for_motion(env, followed, form.aspect) if camera is None else Camera.from_matrix(camera),
         env.background if background is None else checked_colour(background),
         form,
         fps,
     )
-    return write_frames(path, draw_frames(env, body, allowed, shot), fps, on_frame=on_frame)
+    return write_frames(path, draw_frames(env, followed, shot), fps, on_frame=on_frame)
 
 
-def draw_frames(env: "Environment", body: "KinBody", motion: Motion, shot: Shot) -> Iterator[Frame]:
-    """Move a body along a motion, and yield the frames."""
-    for values in motion.frames(shot.fps):
+def followed_motion(env: "Environment", motion: MotionLike, robot: "KinBody | None" = None) -> BodyMotion:
+    """Return how the bodies move; a warning names each joint that stops at a limit. ``record`` has the arguments."""
+    with env:
+        followed = body_motion(env.simulation, motion, None if robot is None else robot.simulation_state)
+        for body, rows in zip(followed.bodies, followed.rows, strict=True):
+            _warn_of_limits(body, rows)
+    return followed
+
+
+def draw_frames(env: "Environment", motion: BodyMotion, shot: Shot) -> Iterator[Frame]:
+    """Move bodies along a motion, and yield the frames."""
+    for time in motion.frame_times(shot.fps):
         with env:
-            body.SetDOFValues(values, None, CheckLimitsAction.Nothing)
+            motion.place(time)
             frame = env.renderer.render(shot.camera, shot.background, shot.form)
         yield frame
 
 
-def moving_body(env: "Environment") -> "KinBody":
-    """Return the body that moves by default: the first robot with joints.
-
-    Raises:
-        ArgumentError: no robot has joints.
-    """
-    for robot in env.GetRobots():
-        if robot.GetDOF():
-            return robot
-    names = ", ".join(body.GetName() for body in env.GetBodies())
-    raise ArgumentError(f"there is no robot with joints to move; the bodies are: {names or 'none'}")
+def _warn_of_limits(body: BodyState, rows: Floats) -> None:
+    beyond = (body.kinematics.limits.clamp(rows) != rows).any(axis=0)
+    for dof in np.flatnonzero(beyond).tolist():
+        joint, axis = body.scene.joint_of_dof(dof), body.scene.dof_axes[dof]
+        message = (
+            f"the motion takes joint '{body.scene.dof_names[dof]}' outside its limits "
+            f"[{axis.lower:.6g}, {axis.upper:.6g}]; it stops at the limit"
+        )
+        send_warning(Diagnostic("warning", "value-outside-limits", message, joint.source))
 
 
-def within_limits(body: "KinBody", motion: Motion) -> Motion:
-    """Return the motion with values outside the limits set to the limits; a warning names each such joint.
-
-    Raises:
-        ArgumentError: the motion has another number of joints than the body.
-    """
-    if motion.dof != body.GetDOF():
-        raise ArgumentError(f"the motion has {motion.dof} joints, and '{body.GetName()}' has {body.GetDOF()} DOFs")
-    lower, upper = body.GetDOFLimits()
-    values = body.simulation_state.kinematics.limits.clamp(motion.values)
-    for joint in body.GetJoints():
-        dof = joint.GetDOFIndex()
-        if np.any(values[:, dof] != motion.values[:, dof]):
-            source = body.simulation_state.scene.joints[joint.GetJointIndex()].source
-            message = (
-                f"the motion takes joint '{joint.GetName()}' outside its limits "
-                f"[{lower[dof]:.6g}, {upper[dof]:.6g}]; it stops at the limit"
-            )
-            diagnostic = Diagnostic("warning", "value-outside-limits", message, source)
-            send_warning(diagnostic)
-    return Motion(motion.times, values)
-
-
-def camera_for_motion(env: "Environment", body: "KinBody", motion: Motion, aspect: float) -> Camera:
-    """Return the viewer's camera, else the file's, else one that sees the whole motion of a body."""
+def camera_for_motion(env: "Environment", motion: BodyMotion, aspect: float) -> Camera:
+    """Return the viewer's camera, else the file's, else one that sees the whole motion."""
     chosen = env.renderer.file_camera() if env.GetViewer() is None else env.default_camera()
     if chosen is not None:
         return chosen
-    before = body.GetDOFValues()
+    before = [(body, body.pose(), body.kinematics.values()) for body in motion.bodies]
     spheres = [env.renderer.bounding_sphere()]
-    for step in range(_POSES_FOR_THE_VIEW):
-        time = float(motion.times[0]) + motion.duration * step / (_POSES_FOR_THE_VIEW - 1)
-        body.SetDOFValues(motion.sample(time), None, CheckLimitsAction.Nothing)
+    for time in np.linspace(0.0, motion.duration, _POSES_FOR_THE_VIEW):
+        motion.place(float(time))
         spheres.append(env.renderer.bounding_sphere())
-    body.SetDOFValues(before, None, CheckLimitsAction.Nothing)
+    for body, pose, values in before:
+        body.set_pose(pose)
+        body.set_values(values)
     lowest = np.min([center - radius for center, radius in spheres], axis=0)
     highest = np.max([center + radius for center, radius in spheres], axis=0)
     center = (lowest + highest) / 2

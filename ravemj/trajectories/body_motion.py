@@ -1,7 +1,7 @@
 """Bodies that follow a motion or a trajectory, as viewers play them, and bodies that a robot grabs meanwhile."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +11,7 @@ from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
 from ravemj.trajectories import extraction
 from ravemj.trajectories.groups import AFFINE, JOINTS, Group
-from ravemj.trajectories.motion import Motion
+from ravemj.trajectories.motion import Motion, number_of_frames, positive
 from ravemj.trajectories.waypoints import Waypoints
 
 
@@ -22,12 +22,14 @@ class BodyMotion:
     Attributes:
         bodies: Those that move.
         duration: When it ends [s]; it starts at 0.
-        place: Puts the bodies where they are at a time [s].
+        place: Puts the bodies where they are at a time [s], with joints within their limits.
+        rows: For each body, the joint values of the rows or waypoints, as they are given, shape (N, dof).
     """
 
     bodies: tuple[BodyState, ...]
     duration: float
     place: Callable[[float], None]
+    rows: tuple[Floats, ...]
 
     @classmethod
     def of_motion(cls, body: BodyState, motion: Motion) -> "BodyMotion":
@@ -39,8 +41,12 @@ class BodyMotion:
         name, dof = body.scene.name, body.kinematics.dof
         if motion.dof != dof:
             raise ArgumentError(f"the motion has {motion.dof} joints, and '{name}' has {dof} DOFs")
-        start = float(motion.times[0])
-        return cls((body,), motion.duration, lambda time: set_within_limits(body, motion.sample(start + time)))
+        start, end, duration = float(motion.times[0]), float(motion.times[-1]), motion.duration
+
+        def place(time: float) -> None:
+            set_within_limits(body, motion.sample(start + time if time < duration else end))
+
+        return cls((body,), duration, place, (motion.values,))
 
     @classmethod
     def of_waypoints(cls, simulation: Simulation, waypoints: Waypoints) -> "BodyMotion":
@@ -65,7 +71,38 @@ class BodyMotion:
             for body in bodies:
                 _place(body, dofs[body], groups, numbers)
 
-        return cls(bodies, waypoints.duration(), place)
+        rows = tuple(_rows(body, dofs[body], groups, waypoints) for body in bodies)
+        return cls(bodies, waypoints.duration(), place, rows)
+
+    def frame_times(self, fps: float) -> Iterator[float]:
+        """Return an iterator over the time [s] of each frame of a video; the last frame is the end."""
+        last = number_of_frames(self.duration, fps) - 1
+        return (self.duration if frame == last else frame / fps for frame in range(last + 1))
+
+    def rescaled(self, duration: float) -> "BodyMotion":
+        """Return the same motion in another duration [s].
+
+        Raises:
+            ArgumentError: the motion has one row only, or the duration is not above 0.
+        """
+        if not self.duration:
+            raise ArgumentError("a motion of one row has no duration that could be rescaled")
+        rate = self.duration / positive(duration, "duration")
+
+        def place(time: float) -> None:
+            self.place(time * rate)
+
+        return replace(self, duration=duration, place=place)
+
+
+def _rows(body: BodyState, dofs: list[int], groups: list[Group], waypoints: Waypoints) -> Floats:
+    """Return the joint values of a body at the waypoints; joints that these lack have the present values."""
+    rows = np.tile(body.kinematics.values(), (len(waypoints), 1))
+    for row, numbers in zip(rows, waypoints.data, strict=True):
+        values = extraction.joint_values(groups, numbers, body.scene.name, dofs, 0)
+        if values is not None:
+            row[dofs] = values
+    return rows
 
 
 def _place(body: BodyState, dofs: list[int], groups: list[Group], numbers: Floats) -> None:

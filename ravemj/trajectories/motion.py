@@ -1,35 +1,16 @@
-"""Motions: joint values over time, and the files that hold them.
-
-A motion file is a table. As ``.csv``, the first line names the columns, ``time`` in seconds and joints in radians
-or metres, in any order; joints without a column keep their value. Empty lines and lines that start with ``#`` are
-comments::
-
-    # a swing
-    time, Arm0, Arm1
-    0.0,  0.0,  0.0
-    1.0,  1.57, -0.5
-
-As ``.npz``, it holds the arrays ``time`` of shape (N,) and ``values`` of shape (N, dof).
-"""
+"""Motions: joint values over time, with straight lines between them."""
 
 import math
-import os
-import reprlib
-from array import array
-from collections.abc import Generator, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TextIO
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError, Source, SourceError
+from ravemj.errors import ArgumentError
 from ravemj.trajectories.interpolation import between
 
-_TIME = "time"
 _SAME_FRAME = 1e-6  # frames: a motion that ends this close to a frame ends on it
 
 
@@ -81,7 +62,7 @@ class Motion:
         first, last = (_finite(end, name, "(dof,)", 1) for end, name in ((start, "start"), (goal, "goal")))
         if first.shape != last.shape:
             raise ArgumentError(f"start and goal must have equally many values, found {len(first)} and {len(last)}")
-        return cls((0.0, _positive(duration, "duration")), (first, last))
+        return cls((0.0, positive(duration, "duration")), (first, last))
 
     @property
     def duration(self) -> float:
@@ -107,15 +88,8 @@ class Motion:
         return between((first, second), float((t - t0) / (t1 - t0)))
 
     def number_of_frames(self, fps: float) -> int:
-        """Return how many frames ``frames(fps)`` yields.
-
-        Frames lie 1/fps apart, from the start to the end of the motion. An end that is not on this raster gets a frame
-        of its own, so there are ceil(duration * fps) + 1 frames; a motion of one row has one frame.
-        """
-        steps = self.duration * _positive(fps, "fps")
-        if not math.isfinite(steps):
-            raise ArgumentError(f"{self.duration} s at {fps} frames a second are too many frames")
-        return max(1, math.ceil(steps - _SAME_FRAME)) + 1 if steps else 1
+        """Return how many frames ``frames(fps)`` yields: as ``number_of_frames`` says."""
+        return number_of_frames(self.duration, fps)
 
     def frames(self, fps: float) -> Iterator[Floats]:
         """Return an iterator over the (dof,) joint values of each frame of a video; it never holds them all.
@@ -138,152 +112,23 @@ class Motion:
         if not self.duration:
             raise ArgumentError("a motion of one row has no duration that could be rescaled")
         start = self.times[0]
-        return Motion(start + (self.times - start) / self.duration * _positive(duration, "duration"), self.values)
+        return Motion(start + (self.times - start) / self.duration * positive(duration, "duration"), self.values)
 
 
-def read_motion(path: str | os.PathLike[str], joint_names: Sequence[str], current: ArrayLike) -> Motion:
-    """Return the motion of a ``.csv`` or ``.npz`` file; the module's text describes both.
+def number_of_frames(duration: float, fps: float) -> int:
+    """Return the number of frames of a video.
 
-    Args:
-        path: The file.
-        joint_names: Names of the dof joint values, in the order of the result's columns.
-        current: (dof,) values that joints without a column keep [rad or m].
-
-    Raises:
-        SourceError: The file cannot be read as a motion; ``source`` has the line for ``.csv``.
-        ArgumentError: ``current`` does not fit ``joint_names``.
+    Frames lie 1/fps apart, from the start to the end. An end that is not on this raster gets a frame of its own, so
+    there are ceil(duration * fps) + 1 frames; a motion without duration has one frame.
     """
-    rest = _finite(current, "current", f"({len(joint_names)},)", 1)
-    if len(rest) != len(joint_names):
-        raise ArgumentError(f"expected one current value for each of {len(joint_names)} joints, found {len(rest)}")
-    file = os.fspath(path)
-    suffix = Path(file).suffix.lower()
-    if suffix not in {".csv", ".npz"}:
-        raise SourceError(f"a motion is a .csv or a .npz file, not '{suffix}'", Source(file))
-    with _problems_in(file):
-        if suffix == ".npz":
-            return _read_npz(file, len(joint_names))
-        with open(file, encoding="utf-8-sig", errors="surrogateescape") as text:
-            return _read_csv(file, text, joint_names, rest)
+    steps = duration * positive(fps, "fps")
+    if not math.isfinite(steps):
+        raise ArgumentError(f"{duration} s at {fps} frames a second are too many frames")
+    return max(1, math.ceil(steps - _SAME_FRAME)) + 1 if steps else 1
 
 
-@contextmanager
-def _problems_in(file: str) -> Generator[None]:
-    """Turn what Python and numpy say about a file into ``SourceError``."""
-    try:
-        yield
-    except SourceError:
-        raise
-    except ArgumentError as error:
-        raise SourceError(error.message, Source(file)) from error
-    except (OSError, ValueError) as error:  # ValueError: a path that holds a null byte
-        reason = getattr(error, "strerror", None) or " ".join(str(error).split())
-        raise SourceError(f"cannot read the file: {reason[:1].lower()}{reason[1:]}", Source(file)) from error
-
-
-def _read_npz(file: str, dof: int) -> Motion:
-    try:
-        with open(file, "rb") as raw, np.load(raw, allow_pickle=False) as archive:
-            arrays: dict[str, Floats] = {name: archive[name] for name in (_TIME, "values") if name in archive}
-    except OSError:
-        raise
-    except Exception as error:  # zipfile, zlib and numpy have a dozen kinds for bytes that make no sense
-        hint = "write it with numpy.savez(path, time=..., values=...)"
-        raise SourceError("the file is not an intact .npz archive of number arrays", Source(file), hint) from error
-    if len(arrays) < 2:
-        missing = {_TIME, "values"}.difference(arrays).pop()
-        raise SourceError(f"there is no array '{missing}'", Source(file), "a motion has 'time' and 'values'")
-    motion = Motion(arrays[_TIME], arrays["values"])
-    if motion.dof != dof:
-        raise SourceError(f"expected values of shape (N, {dof}), found {motion.values.shape}", Source(file))
-    return motion
-
-
-def _read_csv(file: str, text: TextIO, joint_names: Sequence[str], rest: Floats) -> Motion:
-    lines = _lines(file, text)
-    line, header = next(lines, (0, [""]))
-    source = Source(file, line)
-    columns = _columns(header, joint_names, source)
-    numbers = _numbers(file, lines, len(header), header.index(_TIME))
-    if not numbers:
-        raise SourceError("there are no rows under the names of the columns", source)
-    table = np.frombuffer(numbers).reshape(-1, len(header))
-    values = np.tile(rest, (len(table), 1))
-    for column, dof in columns.items():
-        values[:, dof] = table[:, column]
-    return Motion(table[:, header.index(_TIME)], values)
-
-
-def _lines(file: str, text: TextIO) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the cells of each line that holds some."""
-    import csv  # noqa: PLC0415 - slow to import
-
-    for number, line in enumerate(text, 1):
-        content = line.strip()
-        if not content or content.startswith("#"):
-            continue
-        try:
-            content.encode()  # bytes that are not UTF-8 were read as surrogates, which cannot be encoded
-            cells = next(csv.reader((content,), skipinitialspace=True))
-        except (csv.Error, UnicodeEncodeError) as error:
-            reason = error if isinstance(error, csv.Error) else "not UTF-8 text"
-            raise SourceError(f"the line cannot be read: {reason}", Source(file, number)) from error
-        yield number, [cell.strip() for cell in cells]
-
-
-def _columns(header: list[str], joint_names: Sequence[str], source: Source) -> dict[int, int]:
-    """Return the index of the joint value for each column but the time's."""
-    dofs = {name: dof for dof, name in enumerate(joint_names)}
-    columns: dict[int, int] = {}
-    if _TIME not in header:
-        hint = f"the first line names the columns, separated by commas: {_TIME},<joint>,…"
-        raise SourceError(f"there is no column '{_TIME}'", source, hint)
-    for column, name in enumerate(header):
-        if name in header[:column]:
-            raise SourceError(f"there are two columns {reprlib.repr(name)}", source)
-        if name == _TIME:
-            continue
-        if name not in dofs:
-            found = f"column {column + 1} is named {reprlib.repr(name)}, which is not a joint"
-            raise SourceError(found, source, _did_you_mean(name, joint_names))
-        columns[column] = dofs[name]
-    return columns
-
-
-def _did_you_mean(name: str, joint_names: Sequence[str]) -> str:
-    import difflib  # noqa: PLC0415 - slow to import
-
-    close = difflib.get_close_matches(name[:100], joint_names, 1)
-    guess = f"did you mean '{close[0]}'? " if close else ""
-    return f"{guess}the joints are {', '.join(joint_names) or 'none'}"
-
-
-def _numbers(file: str, lines: Iterable[tuple[int, list[str]]], width: int, time: int) -> "array[float]":
-    """Return all cells of the table in one array, row by row."""
-    numbers = array("d")
-    before = -math.inf
-    for line, cells in lines:
-        if len(cells) != width:
-            raise SourceError(f"expected {width} cells as in the first line, found {len(cells)}", Source(file, line))
-        row = [_number(cell, file, line) for cell in cells]
-        if row[time] <= before:
-            raise SourceError(f"times must increase, found {row[time]} s after {before} s", Source(file, line))
-        before = row[time]
-        numbers.extend(row)
-    return numbers
-
-
-def _number(cell: str, file: str, line: int) -> float:
-    try:
-        number = float(cell)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise SourceError(f"{reprlib.repr(cell)} is not a finite number", Source(file, line))
-    return number
-
-
-def _positive(number: float, name: str) -> float:
+def positive(number: float, name: str) -> float:
+    """Return a finite number above 0, or raise ``ArgumentError``."""
     if not (math.isfinite(number) and number > 0):
         raise ArgumentError(f"expected a {name} above 0, found {number}")
     return number

@@ -1,4 +1,4 @@
-"""Files of motions, as ``motion.read_motion`` reads them."""
+"""Files of motions, as ``motion_reading`` reads them."""
 
 import os
 from collections.abc import Sequence
@@ -9,9 +9,7 @@ import numpy as np
 from ravemj.core.output import check_file, new_file, output_error
 from ravemj.errors import ArgumentError
 from ravemj.trajectories.motion import Motion
-
-MOTION_SUFFIXES = (".csv", ".npz")
-"""Of the files that hold motions."""
+from ravemj.trajectories.motion_reading import MOTION_SUFFIXES
 
 
 def check_motion_file(path: str | os.PathLike[str]) -> None:
@@ -53,7 +51,7 @@ def write_motion(path: str | os.PathLike[str], motion: Motion, joint_names: Sequ
         try:
             if Path(path).suffix.lower() == ".npz":
                 with temporary.open("wb") as file:
-                    np.savez(file, time=motion.times, values=motion.values)
+                    np.savez(file, time=motion.times, values=motion.values, joints=np.array(joint_names, dtype=str))
             else:
                 temporary.write_text(_table(motion, joint_names), encoding="utf-8")
         except OSError as error:

@@ -26,7 +26,7 @@ from ravemj.graphics.rendering.contexts import RAY, OffscreenContext
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
 from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.graphics.video import write_frames
-from ravemj.rave.recording import Shot, draw_frames
+from ravemj.rave.recording import Shot, draw_frames, followed_motion
 
 _STEADY = 30
 _FRAMES = 241
@@ -113,7 +113,8 @@ class _Play:
             if number == _STEADY:
                 begin = time.perf_counter()
 
-        write_frames(self.ours, draw_frames(self.env, self.robot, self.motion, self.shot), _FPS, on_frame=on_frame)
+        followed = followed_motion(self.env, self.motion)
+        write_frames(self.ours, draw_frames(self.env, followed, self.shot), _FPS, on_frame=on_frame)
         return (_FRAMES - _STEADY) / (time.perf_counter() - begin)
 
     def drawn(self, renderer: Renderer) -> Iterator[Frame]:

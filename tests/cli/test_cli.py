@@ -487,6 +487,73 @@ def test_plan_takes_the_tool_of_a_named_arm_to_a_pose(folder):
     assert np.allclose(robot.GetActiveManipulator().GetTransform(), goal, atol=1e-6)
 
 
+@pytest.mark.parametrize("name", ["plan.csv", "plan.npz"])
+def test_a_planned_motion_plays_with_the_robot_whose_joints_it_names(folder, name):
+    values = "1,0.6,0,-1.6,0,2.2,0.8"
+    said(ravemj_command(folder, "plan", "workshop", "--manip", "panda_arm", "--to", values, "-o", name))
+    for file, words in {"alone.html": (), "named.html": ("--robot", "panda")}.items():
+        said(ravemj_command(folder, "play", "workshop", "--trajectory", name, "-o", file, "--fps", "5", *words))
+        assert "<title>panda</title>" in (folder / file).read_text()
+    assert (folder / "alone.html").read_text() == (folder / "named.html").read_text()
+
+
+def test_a_plan_is_a_page_of_its_robot(folder):
+    words = ("plan", "workshop", "--robot", "scara", "--to", "1.5,-2,0.1,0", "--show-tree", "-o", "plan.html")
+    printed = said(ravemj_command(folder, *words))
+    assert re.search(r"\nwrote .*plan\.html \([\d.]+ s; any browser plays it\)\n$", printed)
+    assert "<title>scara</title>" in (folder / "plan.html").read_text()
+
+
+def test_play_takes_a_trajectory_file_of_openrave(folder):
+    env = ravemj.load(folder / "env.xml")
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    spec = env.GetRobots()[0].GetActiveConfigurationSpecification("linear")
+    spec.AddDeltaTimeGroup()
+    trajectory.Init(spec)
+    trajectory.Insert(0, [0, 0, 0, np.pi, 0, 1.0])
+    trajectory.SaveToFile(folder / "swing.xml", 0x8000)
+    words = ("--camera", "camera.json", "--size", "160x120", "--fps", "2", "-o", "frames", "--duration", "2")
+    said(ravemj_command(folder, "play", "env.xml", "--trajectory", "swing.xml", *words))
+    assert [pose(picture) for picture in frames_of(folder / "frames")][::2] == ["hanging", "level", "upright"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "play workshop -o a.html",
+        "render workshop -o a.png",
+        "info workshop",
+        "ik workshop --to 0,0,0",
+        "plan workshop --to 0",
+        "view workshop --web",
+    ],
+)
+def test_a_robot_that_the_model_lacks_is_said_with_a_guess(folder, words):
+    done = ravemj_command(folder, *words.split(), "--robot", "pandda")
+    known = "the model has puma, panda, scara; did you mean panda?"
+    _check_failure(done, 1, re.escape(f"ravemj: error: --robot: there is no robot 'pandda'; {known}"))
+    done = ravemj_command(folder, *words.split(), "--robot", "table")
+    _check_failure(done, 1, "ravemj: error: --robot: 'table' is a body, not a robot; the model has puma")
+
+
+IK_OF_THE_SCARA = ("ik", "workshop", "--robot", "scara", "--to", "0.3,0.2", "--type", "TranslationXY2D", "--json")
+
+
+def test_robots_are_chosen(folder):
+    shown = json.loads(said(ravemj_command(folder, "info", "workshop", "--robot", "scara", "--json")))
+    assert [body["name"] for body in shown["bodies"]] == ["scara"]
+    found = said(ravemj_command(folder, *IK_OF_THE_SCARA))
+    assert {len(solution["values"]) for solution in json.loads(found)} == {4}
+    scara = ("--robot", "scara")
+    for name, words in {"a": (*scara, "--q", "1,1,0,0"), "b": scara}.items():
+        said(ravemj_command(folder, "render", "workshop", "-o", f"{name}.png", *SMALL, *words))
+    pictures = [np.asarray(Image.open(folder / f"{name}.png")).astype(int) for name in "ab"]
+    assert np.abs(pictures[0] - pictures[1]).max() > 50
+    rows, columns = np.nonzero(pictures[1][..., 0] - pictures[1][..., 2] > 100)
+    assert abs(rows.mean() / 72 - 0.5) < 0.15, "the robot is in the middle"
+    assert abs(columns.mean() / 96 - 0.5) < 0.15
+
+
 def test_doctor_says_what_draws_here(folder):
     printed = said(ravemj_command(folder, "doctor"))
     assert "display: none" in printed
@@ -584,6 +651,8 @@ BAD_FILES = {
     "nan.csv": "time,Joint0,Joint1\n0,0,0\n1,nan,0\n",
     "short.csv": "time,Joint0,Joint1\n0,0\n",
     "back.csv": "time,Joint0,Joint1\n1,0,0\n0,0,0\n",
+    "mixed.csv": "time,puma_joint1,puma_joint2,panda_joint1\n0,0,0,0\n",
+    "panda.csv": "time,panda_joint1\n0,0\n",
     "one.csv": "time,Joint0\n0,0\n",
     "junk.npz": "junk",
 }
@@ -622,6 +691,12 @@ BAD_WORDS = [
     (TO_A + "--camera three.json", 1, "three.json: error: "),
     (TO_A + "--camera gone.json", 1, "gone.json: error: "),
     (TO_A + "--trajectory column.csv", 1, "column.csv:1: error: .*'Elbow'.*Joint0, Joint1"),
+    (TO_A.replace("env.xml", "workshop") + "--trajectory mixed.csv", 1, "mixed.csv:1: error: .*'panda_joint1'.*'puma'"),
+    (
+        TO_A.replace("env.xml", "workshop") + "--robot puma --trajectory panda.csv",
+        1,
+        "panda.csv:1: error: column 2 is named 'panda_joint1', which is a joint of 'panda', not of 'puma'; a table",
+    ),
     (TO_A + "--trajectory notime.csv", 1, "notime.csv:1: error: .*'time'"),
     (TO_A + "--trajectory nan.csv", 1, "nan.csv:3: error: "),
     (TO_A + "--trajectory short.csv", 1, "short.csv:2: error: "),
@@ -647,10 +722,12 @@ BAD_WORDS = [
     ("convert env.xml -o .", 1, "ravemj: error: "),
     ("ik puma560 --to 1,2", 1, "ravemj: error: --to: found 2, expected x,y,z,qw,qx,qy,qz"),
     ("ik puma560 --to 0,0,1,0,0,0,0", 1, "ravemj: error: --to: the quaternion"),
-    ("ik env.xml --to 0,0,1", 1, "ravemj: error: the model has no manipulator"),
-    ("ik puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; the model has arm"),
+    ("ik env.xml --to 0,0,1", 1, "ravemj: error: robot 'Pendulum' has no manipulator"),
+    ("ik puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; robot 'PUMA560' has arm"),
     ("ik puma560 --to 0,0,1 --from gone.json", 1, "gone.json: error: "),
     ("ik puma560 --to 0,0,1 --from three.json", 1, "three.json: error: found 3 values, expected 6 joint values"),
+    ("ik workshop --manip panda_am --to 0,0,1", 1, ".*has puma_arm, panda_arm, scara_arm; did you mean panda_arm"),
+    ("ik workshop --robot scara --manip panda_arm --to 0,0,1", 1, ".*'panda_arm'; robot 'scara' has scara_arm"),
     ("ik puma560", 2, "ravemj ik: error: .*--to"),
     ("plan puma560", 2, "ravemj plan: error: .*--to"),
     ("plan puma560 --to 0,0,0,0,0,0 --pose 0,0,0", 2, "ravemj plan: error: .*--pose"),
@@ -668,8 +745,8 @@ BAD_WORDS = [
     ("plan workshop --manip panda_arm --pose 0.2,0.2,0.35,0,1,0,0", 1, ".*no motion: all .* nearest: .* hits table"),
     ("plan puma560 --pose 1,2", 1, "ravemj: error: --pose: found 2, expected"),
     ("plan puma560 --pose 0,0,1,0,0,0,0", 1, "ravemj: error: --pose: the quaternion"),
-    ("plan env.xml --pose 0,0,1", 1, "ravemj: error: the model has no manipulator"),
-    ("plan puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; the model has arm"),
+    ("plan env.xml --pose 0,0,1", 1, "ravemj: error: robot 'Pendulum' has no manipulator"),
+    ("plan puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; robot 'PUMA560' has arm"),
     ("plan puma560 --to 0,0,0,0,0,0 --from gone.json", 1, "gone.json: error: "),
     ("run gone.py", 1, "gone.py: error: "),
     ("run .", 1, r"\.: error: this is a folder"),
@@ -801,6 +878,8 @@ def test_bash_completes_commands_options_and_models(folder):
     (folder / "puma.dae").touch()
     (folder / "puma.txt").touch()
     lines = ["ravemj pl", "ravemj render env.xml --back", "ravemj play pu", "ravemj completion f"]
+    lines += [f"ravemj {command} workshop --robot p" for command in ("play", "render", "info", "ik", "plan", "view")]
+    lines += ["ravemj ik workshop --manip p", "ravemj ik workshop --robot scara --manip s", "ravemj ik gone --manip p"]
     command = ["bash", "-c", COMPLETE, "bash", *lines]
     done = subprocess.run(
         command, cwd=folder, env={**os.environ, "PYTHON": sys.executable}, capture_output=True, text=True, check=True
@@ -810,6 +889,10 @@ def test_bash_completes_commands_options_and_models(folder):
         ["--background"],
         ["puma560", "puma.dae"],
         ["fish"],
+        *[["puma", "panda"]] * 6,
+        ["puma_arm", "panda_arm"],
+        ["scara_arm"],
+        [],
     ]
 
 

@@ -65,6 +65,14 @@ def test_another_host_is_served_with_a_warning(folder):
         assert "ravemj: warning: browsers of other machines can come here" in warning
 
 
+def test_the_robot_of_the_option_is_looked_at_and_selected(folder):
+    with Served(folder, "view", "--web", "workshop", "--robot", "scara") as page:
+        address = page.url.replace("http", "ws", 1) + "socket"
+        with connect(address, origin=page.url.rsplit("/", 2)[0], compression=None) as connection:
+            connection.send('{"type": "ready"}')
+            assert "Robot scara" in json.loads(connection.recv(PATIENCE))["lines"]
+
+
 def test_physics_runs_from_the_start_and_can_be_paused(folder):
     with served(folder, "--web", "--physics") as page:
         address = page.url.replace("http", "ws", 1) + "socket"

@@ -444,9 +444,10 @@ class TestRecord:
             ravemj.record(env, tmp_path / "x.mp4", ravemj.Motion.line([0], [1]))
 
     def test_default_view_shows_the_whole_motion(self, env, robot):
-        from ravemj.rave.recording import camera_for_motion
+        from ravemj.rave.recording import camera_for_motion, followed_motion
 
-        camera = camera_for_motion(env, robot, ravemj.Motion.line([0, 0], [math.pi, 0]), 4 / 3)
+        swing = followed_motion(env, ravemj.Motion.line([0, 0], [math.pi, 0]))
+        camera = camera_for_motion(env, swing, 4 / 3)
         for q in ([0, 0], [math.pi / 2, 0], [math.pi, 0]):
             robot.SetDOFValues(q)
             tips = np.array([link @ [0.2, 0, 0, 1] for link in robot.GetLinkTransformations()[1:]])[:, :3]

@@ -7,7 +7,7 @@ figures, the text and the rectangles of ``overlay()``.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ravemj.engine.simulation import Simulation
+from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.graphics.rendering import Camera, Style
 from ravemj.gui.interaction import mode_buttons
 from ravemj.gui.interaction.controls import Controls, Display
@@ -129,6 +129,11 @@ class Interaction:
         with self._simulation.lock:
             self._selector.selection = selection
             self._selector.changes += 1  # all views show it
+
+    def choose(self, body: BodyState) -> None:
+        """Select a body, as a click on its first link does."""
+        with self._simulation.lock:
+            self._selector.choose(self.view, body, 0)
 
     @property
     def hover(self) -> Hit | None:

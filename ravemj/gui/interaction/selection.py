@@ -261,6 +261,5 @@ def _joint_line(body: BodyState, dof: int) -> str:
     """Return the name of a joint, the index of a DOF of it, and its value [rad and degrees, for sliders m]."""
     joint, axis = joint_and_axis(body, dof)
     value = float(body.kinematics.values()[dof])
-    which = f", axis {axis}" if len(joint.axes) > 1 else ""
     shown = f"{value:z.3f} m" if joint.slides(axis) else f"{value:z.3f} rad, {math.degrees(value):z.1f} deg"
-    return f"Joint {joint.name}{which}, DOF {dof}: {shown}"
+    return f"Joint {body.scene.dof_names[dof]}, DOF {dof}: {shown}"

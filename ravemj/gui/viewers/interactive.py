@@ -12,9 +12,7 @@ from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Hit, Interaction, Playback, Ray
-from ravemj.trajectories.body_motion import BodyMotion
-from ravemj.trajectories.motion import Motion
-from ravemj.trajectories.waypoints import Waypoints
+from ravemj.trajectories.motion_arguments import MotionLike, body_motion
 
 _LOG = logging.getLogger("ravemj")
 
@@ -52,13 +50,6 @@ class Callbacks:
 
     def __bool__(self) -> bool:
         return bool(self._functions)
-
-
-class _Trajectory(Protocol):
-    """A trajectory of the API, which stands above viewers."""
-
-    @property
-    def waypoints(self) -> Waypoints: ...
 
 
 class _Body(Protocol):
@@ -137,15 +128,17 @@ class Interactive(ApiObject):
         """The motion that is played, or was: where it is, how fast it goes."""
         return self.interaction.controls.playback
 
-    def play(self, motion: Motion | _Trajectory, *, robot: _Body | None = None, speed: float = 1.0) -> Playback:
+    def play(self, motion: MotionLike, *, robot: _Body | None = None, speed: float = 1.0) -> Playback:
         """Play a motion, and let people go through it: play and pause it, step, change the speed, drag its time.
 
         This returns at once. Windows and pages play in real time while they show it. Without either nothing plays by
         itself; ``playback.seek`` goes to any time.
 
         Args:
-            motion: A ``Motion``, or a trajectory with times. Joints stop at their limits.
-            robot: Which body follows a ``Motion``; None: the first robot with joints. A trajectory names its bodies.
+            motion: A ``Motion``, a trajectory with times, rows of time and joint values, or the path of a file. Joints
+                stop at their limits.
+            robot: The body that moves; by default the first robot with joints, or the one whose joints a table names.
+                A trajectory names its bodies.
             speed: Seconds of the motion in a second.
 
         Returns:
@@ -161,12 +154,7 @@ class Interactive(ApiObject):
         """
         with self._simulation.lock:
             playback = self.playback
-            if isinstance(motion, Motion):
-                body = self._first_robot() if robot is None else robot.simulation_state
-                followed = BodyMotion.of_motion(body, motion)
-            else:
-                known = motion.waypoints
-                followed = BodyMotion.of_waypoints(self._simulation, Waypoints(known.groups, known.data.copy()))
+            followed = body_motion(self._simulation, motion, None if robot is None else robot.simulation_state)
             before, playback.speed = playback.speed, speed
             try:
                 playback.load(followed)
@@ -175,9 +163,3 @@ class Interactive(ApiObject):
                 raise
             playback.play()
             return playback
-
-    def _first_robot(self) -> BodyState:
-        for body in self._simulation.bodies:
-            if body.scene.is_robot and body.scene.dof_axes:
-                return body
-        raise ArgumentError("there is no robot with joints to move")

@@ -147,6 +147,15 @@ class KinBody(Record):
         """The axes of all active joints, in DOF order."""
         return tuple(axis for joint in self.joints for axis in joint.axes)
 
+    @property
+    def dof_names(self) -> list[str]:
+        """The name of each DOF: that of its joint, with the axis if the joint has several."""
+        return [
+            joint.name + (f", axis {axis}" if len(joint.axes) > 1 else "")
+            for joint in self.joints
+            for axis in range(len(joint.axes))
+        ]
+
     def joint_of_dof(self, dof: int) -> Joint:
         """Return the joint that a DOF belongs to."""
         return [joint for joint in self.joints for _ in joint.axes][dof]

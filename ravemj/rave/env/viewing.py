@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ravemj.gui.viewers.web import WebViewer
     from ravemj.rave.environment import Environment
     from ravemj.rave.kinbody import KinBody
-    from ravemj.trajectories.motion import Motion
+    from ravemj.trajectories.motion_arguments import MotionLike
 
 
 class Viewing(EnvironmentPart):
@@ -174,7 +174,7 @@ class Viewing(EnvironmentPart):
 
     def animation(
         self,
-        motion: "Motion | None" = None,
+        motion: "MotionLike | None" = None,
         *,
         robot: "KinBody | None" = None,
         fps: float = 30.0,
@@ -187,9 +187,10 @@ class Viewing(EnvironmentPart):
         move.
 
         Args:
-            motion: Joint values over time. Values outside the limits are set to the limits, with a warning. Afterwards
-                the robot is at the end of the motion. Without a motion, the page shows the scene as it is.
-            robot: The body that moves; by default the first robot with joints.
+            motion: In any form that ``record`` accepts: a ``Motion``, a trajectory, rows of time and joint values, or
+                the path of a file. Joints stop at their limits, with a warning. Afterwards the robot is at the end of
+                the motion. Without a motion, the page shows the scene as it is.
+            robot: The body that moves; by default the first robot with joints, or the one whose joints a table names.
             fps: Poses stored for each second. The page interpolates between them at the rate of the screen.
             camera: The first ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's, else the
                 file's, else a view of the whole motion.
@@ -213,7 +214,7 @@ class Viewing(EnvironmentPart):
     def save_html(
         self,
         path: AnyPath,
-        motion: "Motion | None" = None,
+        motion: "MotionLike | None" = None,
         *,
         robot: "KinBody | None" = None,
         fps: float = 30.0,
@@ -224,7 +225,7 @@ class Viewing(EnvironmentPart):
 
         Args:
             path: The file.
-            motion: Joint values over time; see ``animation`` for this and the other arguments.
+            motion: See ``animation`` for this and the other arguments.
             robot: The body that moves.
             fps: Poses stored for each second.
             camera: The first ``T_world_camera``.
