@@ -66,10 +66,8 @@ def gltf(name):
     }
 
 
-def glb(name):
-    text = json.dumps(gltf("")).replace('{"uri": "", "byteLength": 36}', json.dumps({"uri": name, "byteLength": 36}))
-    # the first buffer of a GLB is its own chunk, so that the one outside comes second
-    tree = json.loads(text)
+def glb(tree):
+    """Return GLB with the buffers of glTF behind its own."""
     tree["buffers"].insert(0, {"byteLength": 4})
     for view in tree["bufferViews"]:
         view["buffer"] += 1
@@ -130,7 +128,10 @@ PARTS = {
 }
 """Of what meshes name and is read as what it is."""
 
-RAW = {"glTF": ("a.gltf", "s.bin", lambda name: json.dumps(gltf(name))), "GLB": ("a.glb", "s.bin", glb)}
+RAW = {
+    "glTF": ("a.gltf", "s.bin", lambda name, more=(): json.dumps(gltf(name) | dict(more)).encode()),
+    "GLB": ("a.glb", "s.bin", lambda name, more=(): glb(gltf(name) | dict(more))),
+}
 """Of bytes that become numbers."""
 
 ALL = MODELS | PARTS | RAW
@@ -284,6 +285,29 @@ def test_the_tree_of_a_model_holds_its_meshes_and_what_they_share(places, tmp_pa
     else:
         assert (loaded, found, opened) == (True, set(), [ALL[kind][1]])
         assert str(tmp_path / "out" / opened[0]) in env.files
+
+
+@pytest.mark.parametrize("picture", ["../out/s.bin", "../out/wood.png", "{out}/s.bin?a"])
+@pytest.mark.parametrize("suffix", ["gltf", "glb", "ply"])
+def test_pictures_are_not_read(places, picture, suffix, caplog):
+    picture = picture.replace("{out}", str(places.outside))
+    (places.outside / "wood.png").write_bytes(b"\x89PNG\r\n")
+    path = places.inside / f"a.{suffix}"
+    if suffix == "ply":
+        text = (DATA / "meshes" / "wedge.ply").read_text()
+        path.write_text(text.replace("\nelement", f"\ncomment TextureFile {picture}\nelement", 1))
+    else:
+        (places.inside / "sub" / "s.bin").write_text(SECRETS["s.bin"])
+        pictures = {
+            "images": [{"uri": picture}],
+            "textures": [{"source": 0}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        }
+        path.write_bytes(RAW["glTF" if suffix == "gltf" else "GLB"][2]("sub/s.bin", pictures))
+    (loaded, found, _), opened = places.opened(lambda: findings(str(path)))
+    assert (loaded, found, opened, caplog.records) == (True, set(), [], [])
+    trouble, opened = places.opened(lambda: ravemj.Environment().add_file(str(path)))
+    assert (trouble, opened) == ("", [])
 
 
 def test_the_error_names_both_files_the_reason_and_what_to_do(places):

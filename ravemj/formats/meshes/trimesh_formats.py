@@ -1,7 +1,9 @@
 """The reader of PLY, OFF, GLB and glTF, formats that are rare with OpenRAVE: it uses trimesh."""
 
+import functools
 import importlib
 import io
+import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -41,20 +43,23 @@ def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
     )
 
 
-_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".ktx2", ".dds", ".bmp", ".gif", ".tif", ".tiff", ".tga")
-
-
 class _References(Mapping[str, bytes]):
-    """Gives trimesh the files that a file names: buffers, which are raw data, and no pictures, which nothing shows."""
+    """Gives trimesh the files that glTF names: buffers, which are raw data, and no pictures, which nothing shows."""
 
     def __init__(self, file: FileContent) -> None:
         self._file = file
 
     def __getitem__(self, name: str) -> bytes:
-        found = None if name.lower().endswith(_PICTURES) else self._file.refer(name, is_raw=True)
+        found = self._file.refer(name, is_raw=True) if name in self._buffers else None
         if found is None:
             raise KeyError(name)
         return found.data
+
+    @functools.cached_property
+    def _buffers(self) -> set[str]:
+        data = self._file.data
+        text = data[20 : 20 + int.from_bytes(data[12:16], "little")] if data.startswith(b"glTF") else data
+        return {buffer["uri"] for buffer in json.loads(text)["buffers"] if "uri" in buffer}
 
     def __iter__(self) -> Iterator[str]:
         return iter(())
@@ -69,11 +74,7 @@ def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | Non
     if kind == "ply":  # trimesh takes headers for UTF-8, and comments of older programs are Latin-1
         header, end, rest = data.partition(b"end_header")
         data = header.decode("ascii", "replace").encode("ascii", "replace") + end + rest
-    options = {
-        "resolver": _References(file),
-        "process": False,
-        "skip_materials": kind == "ply",
-    }  # which has pictures alone
+    options = {"resolver": _References(file), "process": False, "skip_materials": kind == "ply"}  # those are pictures
     trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
     try:
         scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind, **options)
