@@ -13,7 +13,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 import ravemj
+from ravemj.gui.interaction import Resize
 from ravemj.gui.viewers.dropping import Upload
+from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.web import uploads
 from ravemj.gui.viewers.web.limits import Guesses
 from ravemj.gui.viewers.web.messages import Piece, parse
@@ -258,6 +260,13 @@ def test_pictures_have_16_to_4096_pixels_a_side(viewer, shape, size, caplog):
     is_right = min(size) > 16 and max(size) < 4096
     assert caplog.text.count("pictures have 16 to 4096 pixels a side") == (not is_right)
     handle.Close()
+
+
+def test_files_have_these_sizes_too(env, viewer):
+    for size, expected in (((8192, 1), (4096, 16)), ((5000, 2500), (4096, 2048)), ((333, 250), (333, 250))):
+        viewer.interaction.handle(Resize(*size))
+        source = FrameSource(viewer.interaction, env.renderer, (1, 1, 1))
+        assert source.frame().shape[1::-1] == expected
 
 
 # --- uploads

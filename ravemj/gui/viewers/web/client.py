@@ -14,12 +14,11 @@ from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay, Resize
 from ravemj.gui.viewers.recorder import free_path
-from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness, period
+from ravemj.gui.viewers.sharpness import CRISP, LARGEST_SIDE, LEAST_SIDE, REST, Level, Sharpness, bounded_size, period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
 from ravemj.gui.viewers.web.feed import Feed, Stage
 from ravemj.gui.viewers.web.frame_pacing import Link
-from ravemj.gui.viewers.web.limits import LARGEST_SIDE, LEAST_SIDE
 from ravemj.gui.viewers.web.messages import Draws, Piece, Ready, Rejections, Shape, parse
 from ravemj.gui.viewers.web.scenes import Scenes
 from ravemj.gui.viewers.window_renderer import appearance
@@ -264,8 +263,7 @@ class Client:
     def _form(self, level: Level) -> Format:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, LARGEST_SIDE / max(width, height), 1.0) * level.scale
-        columns, rows = (max(int(length * shrink), LEAST_SIDE) for length in (width, height))
-        return Format(columns, rows, samples=level.samples, scale=shrink)
+        return Format(*bounded_size(shrink * width, shrink * height), samples=level.samples, scale=shrink)
 
     def send_file(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""

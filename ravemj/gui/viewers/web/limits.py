@@ -13,9 +13,6 @@ MOST_PAGES = 64
 MOST_STRANGERS = 32
 """Maximum number of connections that have not sent the secret yet, beside those of pages."""
 
-LEAST_SIDE, LARGEST_SIDE = 16, 4096
-"""Bounds of the width and height of pictures [px]."""
-
 _MOST_GUESSES = 20
 _MINUTE = 60.0
 _MOST_PEERS = 1024
