@@ -79,7 +79,15 @@ def _add_view(commands: Commands) -> None:
     parser.add_argument(
         "--token",
         metavar="T",
-        help="secret in the address of the page, 8 letters or more; with --port, the page outlives a restart",
+        help="secret in the address of the page, 8 letters or more; with --port, an open page survives a restart",
+    )
+    parser.add_argument(
+        "--embed",
+        action="append",
+        default=[],
+        metavar="ORIGIN",
+        help="let pages of an origin, such as https://lab.example, show the page in a frame, as those of this machine "
+        "may; may be repeated, and RAVEMJ_EMBED adds others",
     )
 
 

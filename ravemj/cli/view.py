@@ -77,12 +77,13 @@ def _serve(env: Environment, robot: Robot | None, options: argparse.Namespace) -
     """Serve the page, print its address, and wait for Ctrl-C, which is how it ends."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
-    viewer = env.serve_viewer(options.host, options.port, options.token)
+    viewer = env.serve_viewer(options.host, options.port, options.token, options.embed)
     _arrange(viewer, env, robot, options)
     if not is_local(options.host):
         print(
             "ravemj: warning: browsers of other machines can come here; whoever knows the address sees and moves "
-            "everything, and nothing is encrypted on the way",
+            "everything, adds models, and writes videos into this folder; nothing is encrypted on the way, so whoever "
+            "listens there knows the address, too",
             file=sys.stderr,
         )
     reloader = Reloader(env, viewer, options.model, watches=options.watch)

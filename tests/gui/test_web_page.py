@@ -3,13 +3,16 @@
 The server draws, but for tests of ``BOTH``: these are done once more by a page that draws by itself, with WebGL.
 """
 
+import contextlib
 import math
 import re
+import signal
+import socket
 
 import numpy as np
 import pytest
 from browsers import ASLANT, CLEAR, NEEDS_A_BROWSER, SIZE, Desk, assert_apart
-from command_line import colour_of
+from command_line import Served, colour_of
 from conftest import MODELS
 from waiting import await_that
 
@@ -519,8 +522,59 @@ class TestTrouble:
             own_desk.env.SetViewer("")
         else:
             (own_desk.env.Destroy if how == "Destroy" else own_desk.viewer.quitmainloop)()
-        await_that(lambda: own_desk.page.inner_text("#notice") == "The viewer has been closed.", "it says nothing")
+        ended = "The viewer has been closed: its server has ended."
+        await_that(lambda: own_desk.page.inner_text("#notice") == ended, "it says nothing")
         assert own_desk.viewer.main() == 0
+
+    def test_it_is_tried_again_from_half_a_second_to_every_ten(self, desk):
+        delays = desk.page.evaluate(
+            """() => {
+              const delays = [], set = window.setTimeout;
+              window.setTimeout = (again, delay) => { delays.push(delay); };
+              const one = new Reconnecting(() => {}, true);
+              for (let i = 0; i < 8; i++) one.fail(i ? 1006 : 1001);
+              one.restart();
+              one.fail(1006);
+              one.succeed();
+              window.setTimeout = set;
+              return delays;
+            }"""
+        )
+        assert delays == [500, 1000, 2000, 4000, 8000, 10000, 10000, 10000, 500]
+
+    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+    def test_with_port_and_token_it_comes_back_after_any_end(self, browser, folder, number):
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            options = ["--web", "--port", str(free.getsockname()[1]), "--token", "robots-2026", "env.xml"]
+        with contextlib.closing(browser.new_page()) as page:
+            with Served(folder, "view", *options) as server:
+                page.goto(server.url)
+                page.wait_for_selector("[data-crisp=true]")
+                server.end(number)
+            said = "Connection lost" if number == signal.SIGKILL else "The viewer has been closed"
+            page.wait_for_selector(f"#notice >> text={said}, reconnecting")
+            page.wait_for_timeout(1000)  # some tries are in vain
+            with Served(folder, "view", *options):
+                page.get_by_role("button", name="Try now").click()
+                page.wait_for_selector("#notice span", state="hidden")
+                page.keyboard.press("Escape")
+                page.wait_for_selector("[data-mode=interaction]")
+
+    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+    def test_with_another_address_at_each_start_it_says_that_its_server_has_ended(self, browser, folder, number):
+        with contextlib.closing(browser.new_page()) as page:
+            page.clock.install()
+            with Served(folder, "view", "--web", "env.xml") as server:
+                page.goto(server.url)
+                page.wait_for_selector("[data-crisp=true]")
+                server.end(number)
+
+            def is_said():
+                page.clock.run_for(10000)
+                return "has ended" in page.inner_text("#notice span")
+
+            await_that(is_said, "it is not said")
+            assert page.is_visible("#notice button") == (number == signal.SIGKILL), "the way there may be broken"
 
     def test_a_browser_that_leaves_in_the_middle_harms_nobody(self, own_desk):
         other = own_desk.open_page()

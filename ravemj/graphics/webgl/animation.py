@@ -96,6 +96,7 @@ def animation_page(
         "camera": _file("camera.js"),
         "renderer": _file("renderer.js"),
         "sharpness": _file("sharpness.js"),
+        "wheel": _file("wheel.js"),
         "player": _file("animation.js"),
         "scene": package.text(),
     }

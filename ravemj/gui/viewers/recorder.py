@@ -13,6 +13,7 @@ from pathlib import Path
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Interaction, Notices, Playback
+from ravemj.gui.viewers.sharpness import bounded_size
 
 _FPS = 30
 _LONGEST_END = 5.0
@@ -32,8 +33,8 @@ class FrameSource:
         """Watch a view; its background is in 0..1, and a point has ``ratio`` pixels."""
         self._interaction, self._renderer = weakref.ref(interaction), weakref.ref(renderer)
         self._background = background
-        width, height = (max(round(ratio * length), 1) for length in interaction.view.size)
-        self._form = Format(width, height)
+        width, height = (round(ratio * length) for length in interaction.view.size)
+        self._form = Format(*bounded_size(width, height))
 
     def frame(self) -> Frame | None:
         """Return what the view shows now, always of one size; None once there is none."""

@@ -21,6 +21,16 @@ _INERTIA = 0.6
 """Weight of earlier pictures when the next one's time is guessed."""
 
 
+LEAST_SIDE, LARGEST_SIDE = 16, 4096
+"""Bounds of the width and height of pictures [px]."""
+
+
+def bounded_size(width: float, height: float) -> tuple[int, int]:
+    """Return the size of a picture within the bounds, with the same aspect if there is such a size."""
+    shrink = min(LARGEST_SIDE / max(width, height), 1.0)
+    return max(int(shrink * width), LEAST_SIDE), max(int(shrink * height), LEAST_SIDE)
+
+
 def period(unchanged: float) -> float:
     """Return when to look again for a change [s], after so long without one [s]."""
     return _QUIET_PERIOD if unchanged > _QUIET else _PERIOD

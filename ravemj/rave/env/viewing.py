@@ -2,6 +2,7 @@
 
 import os
 import weakref
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, cast
 
 from numpy.typing import ArrayLike
@@ -75,7 +76,9 @@ class Viewing(EnvironmentPart):
             self._attach(viewer)
         return viewer
 
-    def serve_viewer(self, host: str = "127.0.0.1", port: int = 0, token: str | None = None) -> "WebViewer":
+    def serve_viewer(
+        self, host: str = "127.0.0.1", port: int = 0, token: str | None = None, embed: str | Iterable[str] = ()
+    ) -> "WebViewer":
         """Attach a viewer for browsers, as ``SetViewer('web')`` does, at a given port.
 
         Args:
@@ -84,22 +87,27 @@ class Viewing(EnvironmentPart):
                 and the connection is not encrypted.
             port: The number of the port; 0 for any free port.
             token: The secret in the address, 8 to 64 letters, digits, ``-`` and ``_``; by default a new one. With a
-                fixed token, an open page finds the viewer again after a restart.
+                fixed port and a fixed token, an open page finds the viewer again after a restart.
+            embed: Origins, such as ``https://lab.example``, whose pages may show the page in a frame, besides those of
+                this machine and of VS Code. The variable ``RAVEMJ_EMBED`` adds further ones.
 
         Returns:
             The viewer; ``url`` is the address of its page.
 
         Raises:
             RenderingError: the port is not available. Earlier viewers stay.
-            ArgumentError: the token has a wrong length, or other characters.
+            ArgumentError: the token has a wrong length, or other characters; or ``embed`` is not an origin.
 
         Example:
             >>> print(env.serve_viewer(port=8080).url)
         """
         from ravemj.gui.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
+        from ravemj.gui.viewers.web.embedding import checked_origins  # noqa: PLC0415
 
         self._check_alive()
+        origins = checked_origins(embed)
         viewer = WebViewer(self._simulation, self._renderer, "web", host, port, token=token)
+        viewer.server.let_embed(origins)
         self._close_viewers()
         self._attach(viewer)
         return viewer

@@ -118,7 +118,15 @@ function followPointers(player, canvas, onHover) {
   }
   canvas.addEventListener("pointerleave", () => onHover(-1, -1));
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  const hint = document.getElementById("hint");
+  let hintTimer = 0;
+  const say = (words) => {
+    [hint.textContent, hint.hidden] = [words, false];
+    clearTimeout(hintTimer);
+    hintTimer = setTimeout(() => { hint.hidden = true; }, 1500);
+  };
   canvas.addEventListener("wheel", (event) => {
+    if (!isWheelHere(event, say)) return;
     const lines = event.deltaMode === 1 ? event.deltaY : event.deltaY / 40;
     player.look(player.view.zoomed(Math.max(-3, Math.min(3, lines)) * 0.06));
     event.preventDefault();

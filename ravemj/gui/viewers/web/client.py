@@ -13,9 +13,8 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay, Resize
-from ravemj.gui.viewers.dropping import Upload
 from ravemj.gui.viewers.recorder import free_path
-from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness, period
+from ravemj.gui.viewers.sharpness import CRISP, LARGEST_SIDE, LEAST_SIDE, REST, Level, Sharpness, bounded_size, period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
 from ravemj.gui.viewers.web.feed import Feed, Stage
@@ -74,7 +73,8 @@ class Client:
 
     Attributes:
         interaction: The mouse and the keys of the page, and its view.
-        complete_uploads: Files that were dropped on the page, which are to be added.
+        pieces: Pieces of files that were dropped on the page, which are to be taken in.
+        tab: Name of the view, which the page asks for when it comes again.
         looks: How often it was found, or seen to, that the page was sent how everything is.
     """
 
@@ -102,8 +102,8 @@ class Client:
         self._seen_view: object = None
         self._says_locked = False
         self._complaint = ""
-        self._upload: Upload | None = None
-        self.complete_uploads: list[Upload] = []
+        self.pieces: deque[Piece] = deque()
+        self.tab = ""
         self._changed_at = 0.0
         self._is_crisp = True
 
@@ -136,26 +136,23 @@ class Client:
                 continue
             self._acknowledged += 1
             if isinstance(message, Piece):
-                self._take_piece(message)
+                self.pieces.append(message)
                 continue
             if isinstance(message, Draws):
                 self._feed, self._seen = Feed() if message.itself else None, None
                 continue
             if isinstance(message, Shape):
-                self._ratio = message.ratio
-                message = Resize(round(message.width), round(message.height))
+                message = self._resize(message, complain)
             if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
                 self._waiting.pop()  # only where the pointer is now counts
             self._waiting.append(message)
 
-    def _take_piece(self, piece: Piece) -> None:
-        upload = self._upload = self._upload or Upload()
-        if not upload.take(piece.name, piece.data):
-            self.interaction.controls.notices.say("The files that were dropped are too large")
-            self._upload = None
-        elif piece.is_last:
-            self.complete_uploads.append(upload)
-            self._upload = None
+    def _resize(self, shape: Shape, complain: Rejections) -> Resize:
+        sides = shape.ratio * shape.width, shape.ratio * shape.height
+        if min(sides) < LEAST_SIDE or max(sides) > LARGEST_SIDE:
+            complain(f"pictures have {LEAST_SIDE} to {LARGEST_SIDE} pixels a side, not these", sides)
+        self._ratio = shape.ratio
+        return Resize(round(shape.width), round(shape.height))
 
     def attend(self, connection: Connection, style: PageStyle, *, is_watched: bool = False) -> Frame | None:
         """Do what the page said, and send it what is new if it takes that and anything has changed or come to rest.
@@ -265,9 +262,8 @@ class Client:
 
     def _form(self, level: Level) -> Format:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
-        shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0) * level.scale
-        size = max(int(width * shrink), 1), max(int(height * shrink), 1)
-        return Format(*size, samples=level.samples, scale=shrink)
+        shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, LARGEST_SIDE / max(width, height), 1.0) * level.scale
+        return Format(*bounded_size(shrink * width, shrink * height), samples=level.samples, scale=shrink)
 
     def send_file(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
@@ -317,4 +313,5 @@ class Client:
             "help": overlay.help,
             "tree": overlay.tree,
             "chosen": overlay.chosen,
+            "tab": self.tab,
         }

@@ -12,11 +12,12 @@ _LINKS = re.compile(
 )
 
 
-def document(scene: str) -> tuple[bytes, str]:
+def document(scene: str, *, is_lasting: bool) -> tuple[bytes, str]:
     """Return the page with its styles and scripts in it, and the policy that lets browsers run these and nothing else.
 
     Args:
         scene: The name of the surfaces that the page fetches while it connects; empty if it has to wait for their name.
+        is_lasting: Whether a later server may have the same address, so that the page should wait for it.
     """
     hashes: dict[str, list[str]] = {"style": [], "script": []}
 
@@ -32,7 +33,8 @@ def document(scene: str) -> tuple[bytes, str]:
         f"default-src 'none'; script-src {' '.join(hashes['script'])}; style-src {' '.join(hashes['style'])}; "
         "connect-src 'self'; img-src data:; base-uri 'none'; form-action 'none'"
     )
-    return page.replace('data-scene=""', f'data-scene="{scene}"', 1).encode(), policy
+    page = page.replace('data-scene=""', f'data-scene="{scene}"', 1)
+    return page.replace('data-lasting=""', f'data-lasting="{"yes" if is_lasting else ""}"', 1).encode(), policy
 
 
 def _file(name: str) -> Traversable:

@@ -4,6 +4,7 @@ import base64
 import json
 import logging
 import math
+import os
 import re
 from collections.abc import Callable
 from enum import Enum
@@ -26,7 +27,7 @@ from ravemj.gui.interaction import (
 
 _LOG = logging.getLogger("ravemj")
 
-LONGEST = 1024
+LONGEST = 1536
 """Longest message of a page [bytes]."""
 
 _FARTHEST = 100_000.0
@@ -35,6 +36,11 @@ _LONGEST_NAME = 20
 _MOST_BRACKETS = 8
 _FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
 """Names of files that a page may send; none of them leads to another folder."""
+
+_MOST_BYTES = 255
+"""Longest name of a file on most file systems [bytes]; longer ones are cut, and keep their suffix."""
+
+_LONGEST_SUFFIX = 20
 
 
 class Shape(NamedTuple):
@@ -135,7 +141,10 @@ def _name(kind: str) -> Callable[[object], str]:
 def _file_name(name: object) -> str:
     if not isinstance(name, str) or not _FILE.fullmatch(name):
         raise ValueError("there are no such files")
-    return name
+    stem, suffix = os.path.splitext(name)
+    if len(suffix) > _LONGEST_SUFFIX:
+        stem, suffix = name, ""
+    return stem.encode()[: _MOST_BYTES - len(suffix.encode())].decode(errors="ignore") + suffix
 
 
 def _data(text: object) -> bytes:

@@ -11,7 +11,7 @@ import socket
 import threading
 import time
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 
 from websockets.datastructures import Headers
@@ -20,6 +20,8 @@ from websockets.sync.server import ServerConnection, serve
 
 from ravemj.errors import ArgumentError, RenderingError
 from ravemj.gui.viewers.web.document import document
+from ravemj.gui.viewers.web.embedding import checked_origins, frame_ancestors, origins_of_environment
+from ravemj.gui.viewers.web.limits import MOST_PAGES, MOST_STRANGERS, Guesses
 from ravemj.gui.viewers.web.messages import LONGEST, Rejections
 
 LOOPBACK = "127.0.0.1"
@@ -30,7 +32,10 @@ _FOREVER = "private, max-age=31536000, immutable"
 """How long browsers keep what has a name made of its content."""
 
 _TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")
-_MOST_CONNECTIONS = 32
+_MAY_REPEAT = {"forwarded", "via", "x-forwarded-for", "x-forwarded-port", "x-forwarded-proto"}
+"""Headers that each proxy may add once more."""
+
+_METHOD = re.compile(rb"([A-Za-z]{1,16})(?: |$)")
 _HANDSHAKE = 5.0
 """How long a stranger may take to say what is wanted [s]."""
 
@@ -74,8 +79,10 @@ class PageServer:
 
         Raises:
             RenderingError: this port cannot be had.
-            ArgumentError: the token is too short, or has letters that no address has.
+            ArgumentError: the token is too short, or has letters that no address has; or ``RAVEMJ_EMBED`` is wrong.
         """
+        self._origins = origins_of_environment()
+        self._is_lasting = port != 0 and token is not None
         self.token = secrets.token_urlsafe(16) if token is None else checked_token(token)
         self.complain = Rejections()
         self.closed = threading.Event()
@@ -86,12 +93,14 @@ class PageServer:
         self.port = int(self._listening.getsockname()[1])
         self._threads: set[threading.Thread] = set()
         self._strangers: dict[threading.Thread, socket.socket] = {}  # who has not said the secret yet, the oldest first
+        self._pages: set[threading.Thread] = set()
+        self._guesses = Guesses()
         silent = logging.getLogger("ravemj.web")
         silent.setLevel(logging.CRITICAL)  # what strangers send is no news
         self._server = serve(
             serve_page,
             sock=self._listening,
-            process_request=lambda connection, request: self._answer(request),
+            process_request=self._answer,
             max_size=LONGEST,
             compression=None,
             open_timeout=_HANDSHAKE,
@@ -106,6 +115,14 @@ class PageServer:
         """Return the address of the page for those who know this machine by a name."""
         name = socket.gethostname() if host in _EVERYWHERE else f"[{host}]" if ":" in host else host
         return f"{scheme}://{name}:{self.port}/{self.token}/"
+
+    def let_embed(self, origins: str | Iterable[str]) -> None:
+        """Let pages of further origins show the page in a frame.
+
+        Raises:
+            ArgumentError: one of them is not an origin.
+        """
+        self._origins += checked_origins(origins)
 
     def close(self) -> None:
         """Listen no more, and wait a moment for the pages to leave. Threads that hang do not keep Python alive."""
@@ -131,7 +148,7 @@ class PageServer:
             except OSError:  # closed, or too many files are open
                 self.closed.wait(0.1)
                 continue
-            if len(self._threads) >= _MOST_CONNECTIONS:
+            if len(self._threads) >= MOST_PAGES + MOST_STRANGERS:
                 self.complain("there are too many connections")
                 if not self._turn_out_a_stranger():
                     connection.close()
@@ -152,16 +169,22 @@ class PageServer:
         return False
 
     def _serve(self, connection: socket.socket, address: object) -> None:
+        thread = threading.current_thread()
         try:
-            self._server.handler(connection, address)
+            if not _is_refused(connection):
+                self._server.handler(connection, address)
         finally:
-            self._threads.discard(threading.current_thread())
-            self._strangers.pop(threading.current_thread(), None)
+            self._threads.discard(thread)
+            self._pages.discard(thread)
+            self._strangers.pop(thread, None)
 
-    def _answer(self, request: Request) -> Response | None:
+    def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answer a request: with a file, with a refusal, or None where a page may open its connection."""
         token, slash, name = request.path.partition("?")[0].removeprefix("/").partition("/")
         is_friend = secrets.compare_digest(token.encode(), self.token.encode())
+        refusal = _repeated(request.headers) or self._refusal_of_guess(connection, token, is_right=is_friend)
+        if refusal is not None:
+            return refusal
         scene = self._find_scene(name) if is_friend else None
         is_known = is_friend and (name in {"", _SOCKET} or scene is not None)
         if is_known:
@@ -170,14 +193,38 @@ class PageServer:
             return _text(http.HTTPStatus.NOT_FOUND, "There is nothing here.\n")
         if scene is not None:
             return _response(http.HTTPStatus.OK, "application/octet-stream", scene, {"Cache-Control": _FOREVER})
-        if name != _SOCKET:
-            page, policy = document(self._first_scene())
-            return _page(page, policy, may_compress="gzip" in request.headers.get("Accept-Encoding", ""))
-        origin = request.headers.get("Origin", "")
-        if not self._is_our_page(origin, request.headers):
+        return self._open(request.headers) if name == _SOCKET else self._document(request.headers)
+
+    def _document(self, headers: Headers) -> Response:
+        if len(self._pages) >= MOST_PAGES:
+            return self._full()
+        page, policy = document(self._first_scene(), is_lasting=self._is_lasting)
+        policy = f"{policy}; {frame_ancestors(self._origins)}"
+        return _page(page, policy, may_compress="gzip" in headers.get("Accept-Encoding", ""))
+
+    def _open(self, headers: Headers) -> Response | None:
+        """Return None if a page may open its connection, else a refusal."""
+        origin, thread = headers.get("Origin", ""), threading.current_thread()
+        if not self._is_our_page(origin, headers):
             self.complain("a page of another site is refused", origin)
             return _text(http.HTTPStatus.FORBIDDEN, "Other sites may not connect.\n")
-        return None
+        self._pages.add(thread)
+        if len(self._pages) <= MOST_PAGES:
+            return None
+        self._pages.discard(thread)
+        return self._full()
+
+    def _full(self) -> Response:
+        self.complain("there are too many pages")
+        return _text(http.HTTPStatus.SERVICE_UNAVAILABLE, f"The viewer has {MOST_PAGES} open pages, and no more.\n")
+
+    def _refusal_of_guess(self, connection: ServerConnection, token: str, *, is_right: bool) -> Response | None:
+        peer = str(connection.remote_address[0])
+        if not self._guesses.refuses(peer, token, is_right=is_right):
+            return None
+        self.complain("there are too many wrong addresses", peer)
+        text = "Too many wrong addresses have come from this machine: try again in a minute.\n"
+        return _text(http.HTTPStatus.TOO_MANY_REQUESTS, text, {"Retry-After": "60"})
 
     def _is_our_name(self, host: str) -> bool:
         return self._any_name or host in {f"{_bracketed(name)}:{self.port}" for name in _LOCAL_NAMES}
@@ -229,6 +276,40 @@ def _bracketed(name: str) -> str:
     return f"[{name}]" if ":" in name else name
 
 
+def _is_refused(connection: socket.socket) -> bool:
+    """Wait for the method of a request; refuse it, and close the connection, if it is not GET.
+
+    ``websockets`` closes the connection without an answer, or did so in earlier versions.
+    """
+    try:
+        connection.settimeout(_HANDSHAKE)
+        first = connection.recv(17, socket.MSG_PEEK)
+        connection.settimeout(None)
+        method = _METHOD.match(first)
+        if method is None or b"GET ".startswith(method[0]):
+            return False
+        refusal = _text(http.HTTPStatus.METHOD_NOT_ALLOWED, "The only method here is GET.\n", {"Allow": "GET"})
+        connection.settimeout(_FAREWELL)
+        connection.sendall(refusal.serialize() if method[1] != b"HEAD" else refusal.serialize()[: -len(refusal.body)])
+        connection.shutdown(socket.SHUT_WR)
+        for _ in range(64):  # what is not read yet would end the connection before the answer is read
+            if not connection.recv(65536):
+                break
+    except OSError:
+        pass
+    connection.close()
+    return True
+
+
+def _repeated(headers: Headers) -> Response | None:
+    """Return a refusal if a header comes twice, which programs in between may understand in another way."""
+    names = [name.lower() for name, _ in headers.raw_items()]
+    again = next((name for name in names if names.count(name) > 1 and name not in _MAY_REPEAT), None)
+    if again is None:
+        return None
+    return _text(http.HTTPStatus.BAD_REQUEST, f"The header {again} comes more than once.\n")
+
+
 def _page(page: bytes, policy: str, *, may_compress: bool) -> Response:
     headers = {"Content-Security-Policy": policy}
     if may_compress:
@@ -236,8 +317,8 @@ def _page(page: bytes, policy: str, *, may_compress: bool) -> Response:
     return _response(http.HTTPStatus.OK, "text/html; charset=utf-8", page, headers)
 
 
-def _text(status: http.HTTPStatus, text: str) -> Response:
-    return _response(status, "text/plain", text.encode())
+def _text(status: http.HTTPStatus, text: str, more: Mapping[str, str] = MappingProxyType({})) -> Response:
+    return _response(status, "text/plain", text.encode(), more)
 
 
 def _response(

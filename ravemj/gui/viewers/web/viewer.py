@@ -1,5 +1,6 @@
 """The viewer whose window is a page in a browser."""
 
+import itertools
 import logging
 import re
 import threading
@@ -23,6 +24,7 @@ from ravemj.gui.viewers.viewer import Viewer
 from ravemj.gui.viewers.web.client import Client, PageStyle, receive
 from ravemj.gui.viewers.web.scenes import Scenes
 from ravemj.gui.viewers.web.server import LOOPBACK, PageServer, is_local
+from ravemj.gui.viewers.web.uploads import PageUploads, UploadQuota
 
 _LOG = logging.getLogger("ravemj")
 _LONGEST_SYNC, _SYNC_STEP = 0.5, 0.005
@@ -70,6 +72,8 @@ class WebViewer(Viewer):
         """
         super().__init__(simulation, renderer, name)
         self._clients: dict[ServerConnection, Client] = {}
+        self._uploads: dict[ServerConnection, PageUploads] = {}
+        self._quota = UploadQuota()
         self._views: dict[str, Interaction] = {}
         self._lock = threading.Lock()
         self._scenes = Scenes()
@@ -133,16 +137,25 @@ class WebViewer(Viewer):
             self._simulation.lock.release()
 
     def welcome(self, connection: ServerConnection) -> None:
-        """Take a page up; one that was here before has the view that it had."""
-        tab = _tab(connection)
+        """Take a page up; one that was here before has the view that it had.
+
+        Frames of one tab, and tabs that were duplicated, ask for the same view: who comes while it is shown has another
+        one, with a number behind its name.
+        """
+        wanted = _tab(connection)
         with self._lock:
-            view = self._views.pop(tab, None) or self.interaction.another_view(has_tools=False)
-            if any(client.interaction is view for client in self._clients.values()):
-                view = view.another_view(has_tools=False)  # the tab was duplicated
+            open_tabs = {client.tab for client in self._clients.values()}
+            first, _, _ = wanted.partition(".")
+            names = itertools.chain([wanted], (f"{first}.{number}" for number in itertools.count(1)))
+            tab = next(name for name in names if name not in open_tabs)
+            like = self._views.get(wanted, self.interaction)
+            view = self._views.pop(tab, None) or like.another_view(has_tools=False)
             self._views[tab] = view
-            for oldest in list(self._views)[:-_MOST_TABS]:
+            for oldest in [name for name in self._views if name not in open_tabs][:-_MOST_TABS]:
                 del self._views[oldest]
-            self._clients[connection] = Client(self._simulation, self._renderer, view, self._scenes)
+            client = self._clients[connection] = Client(self._simulation, self._renderer, view, self._scenes)
+            client.tab = tab
+            self._uploads[connection] = PageUploads(self._quota)
 
     def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> float:
         """Do what a page says and send it a picture if one is due; return how long to wait for more that it says [s].
@@ -160,9 +173,20 @@ class WebViewer(Viewer):
             self._image_callbacks.call(picture)
         for request in client.interaction.controls.take_requests():
             self._grant(request, client, connection, style)
-        while client.complete_uploads:
-            client.complete_uploads.pop(0).add_to(self.GetEnv(), client.interaction.controls.notices)
+        if client.pieces:
+            self._take_pieces(client, self._uploads[connection])
         return client.patience
+
+    def _take_pieces(self, client: Client, uploads: PageUploads) -> None:
+        """Take in what a page sends of files, and add complete ones."""
+        notices = client.interaction.controls.notices
+        while client.pieces:
+            trouble = uploads.add(client.pieces.popleft())
+            if trouble:
+                self.server.complain(trouble)
+                notices.say(trouble)
+        while uploads.complete:
+            uploads.complete.pop(0).add_to(self.GetEnv(), notices)
 
     def _grant(self, request: Request | str, client: Client, connection: ServerConnection, style: PageStyle) -> None:
         """Do what a button asked for that needs the page, or writes here."""
@@ -180,7 +204,9 @@ class WebViewer(Viewer):
     def dismiss(self, connection: ServerConnection) -> None:
         """Forget a page that has left, in the thread that drew for it."""
         with self._lock:
-            client = self._clients.pop(connection, None)
+            client, uploads = self._clients.pop(connection, None), self._uploads.pop(connection, None)
+        if uploads is not None:
+            uploads.close()
         if client is not None:
             client.interaction.let_go()
         self._renderer.close()
@@ -220,5 +246,5 @@ def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) ->
 def _tab(connection: ServerConnection) -> str:
     """Return the name that a page gives itself, or an own one for those that do not."""
     request = connection.request
-    found = None if request is None else re.search(r"\?tab=([A-Za-z0-9-]{1,40})$", request.path)
+    found = None if request is None else re.search(r"\?tab=([A-Za-z0-9-]{1,40}(?:\.\d{1,3})?)$", request.path)
     return found[1] if found else f"#{id(connection)}"

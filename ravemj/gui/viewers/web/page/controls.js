@@ -185,9 +185,9 @@ function copyOldWay(text) {  // where pages have no clipboard: on other machines
 }
 
 let toastTimer = 0;
-function toast(words) {
+function toast(words, duration = 6000) {
   const element = document.getElementById("toast");
   element.textContent = words;
   clearTimeout(toastTimer);
-  toastTimer = setTimeout(() => { element.textContent = ""; }, 6000);
+  toastTimer = setTimeout(() => { element.textContent = ""; }, duration);
 }

@@ -1,16 +1,20 @@
 "use strict";
 const view = document.getElementById("view"), text = document.getElementById("text");
-const notice = document.getElementById("notice"), context2d = view.getContext("2d");
+const context2d = view.getContext("2d");
 const buttons = ["left", "middle", "right"];
-const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AWAY = 1001;
+const LONG_PRESS = 550, FAR = 4, LEAST_SIDE = 16, LARGEST_SIDE = 4096;
 
 // --- the connection
 
-let socket = null, overlay = {}, reconnectDelay = FIRST_WAIT, reconnectTimer = 0, pendingReadies = 0, sentCount = 0;
+let socket = null, overlay = {}, pendingReadies = 0, sentCount = 0;
 let drawing = null;  // what draws in this page; null: the server draws
 let messageQueue = Promise.resolve();  // messages are handled one after the other
 
-const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(3)).join("-");
+let tab = crypto.getRandomValues(new Uint32Array(3)).join("-");
+try {
+  tab = sessionStorage.ravemj ||= tab;  // frames of a tab share it
+} catch {}  // browsers may refuse it in frames of other sites
+const reconnecting = new Reconnecting(connect, document.body.dataset.lasting !== "");
 
 function send(message) {
   if (!socket || socket.readyState !== WebSocket.OPEN) return;
@@ -21,12 +25,11 @@ function send(message) {
 }
 
 function connect() {
-  clearTimeout(reconnectTimer);
+  if (socket) socket.close();
   const opened = socket = new WebSocket(new URL("socket?tab=" + tab, location.href.replace(/^http/, "ws")));
   opened.binaryType = "arraybuffer";
   opened.onopen = () => {
-    reconnectDelay = FIRST_WAIT;
-    showNotice("");
+    reconnecting.succeed();
     [overlay, sentCount] = [{}, 0];
     if (drawing) drawing.reset();
     sendShape();
@@ -40,19 +43,8 @@ function connect() {
     });
   };
   opened.onclose = (event) => {
-    if (event.code === GOING_AWAY) {
-      showNotice("The viewer has been closed.");
-      return;
-    }
-    showNotice("Connection lost, reconnecting …");
-    reconnectTimer = setTimeout(connect, reconnectDelay);
-    reconnectDelay = Math.min(1.7 * reconnectDelay, LONGEST_WAIT);
+    if (opened === socket) reconnecting.fail(event.code);
   };
-}
-
-function showNotice(words) {
-  notice.textContent = words;
-  document.body.classList.toggle("is-lost", words !== "");
 }
 
 function ready() {  // pages that nobody sees take no pictures
@@ -64,15 +56,12 @@ document.addEventListener("visibilitychange", () => {
   for (; pendingReadies > 0 && !document.hidden; pendingReadies -= 1) send({ type: "ready" });
 });
 
-window.addEventListener("online", () => {
-  if (socket.readyState === WebSocket.CLOSED) connect();
-});
-
 async function handleMessage(data, from) {
   if (typeof data === "string") {
     const message = JSON.parse(data);
     if (message.task) return doTask(message);
     overlay = { ...overlay, ...message };
+    tab = overlay.tab || tab;  // another one if a frame beside this one has it
     for (const one of message.changed || []) {
       overlay.controls = overlay.controls.map((other) => (other.name === one.name ? { ...other, ...one } : other));
     }
@@ -148,7 +137,14 @@ function sendShape() {
     context2d.drawImage(kept, 0, 0, columns, rows);
     requestDrawing();
   }
-  send({ type: "shape", width, height, ratio });
+  send({ type: "shape", ...pictureShape(width, height, ratio) });
+}
+
+/** Shape of the view in pictures of the server, which have bounds. */
+function pictureShape(width, height, ratio) {
+  const most = Math.min(ratio, LARGEST_SIDE / Math.max(width, height));
+  const least = Math.ceil(LEAST_SIDE / most);
+  return { width: Math.max(width, least), height: Math.max(height, least), ratio: most };
 }
 
 let resizeTimer = 0;
@@ -188,6 +184,7 @@ document.documentElement.addEventListener("mouseleave", () => {
 window.addEventListener("contextmenu", (event) => event.preventDefault());
 view.addEventListener("auxclick", (event) => event.preventDefault());
 view.addEventListener("wheel", (event) => {
+  if (!isWheelHere(event, (words) => toast(words, 1500))) return;
   const steps = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY / 100 : event.deltaY / 3;
   send({ type: "wheel", steps: Math.max(-10, Math.min(10, -steps)) });
   event.preventDefault();
