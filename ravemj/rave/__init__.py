@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ravemj.core.argument_errors import explained
 from ravemj.core.handles import Handle as UserData
+from ravemj.core.signatures import show_as_written
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.lazy_imports import MODULE_OF
 
@@ -395,5 +396,5 @@ def __getattr__(name: str) -> object:
     if isinstance(value, FunctionType):
         value = explained(value)
         value.__module__ = __name__  # where pickle finds it
-    globals()[name] = value
-    return value
+    show_as_written(value)
+    return globals().setdefault(name, value)
