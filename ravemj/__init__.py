@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 from ravemj import geometry_functions, rave
 from ravemj.compat import names
 from ravemj.compat.names import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
+from ravemj.core.signatures import show_as_written
 from ravemj.errors import (
     ArgumentError,
     CompileError,
@@ -89,6 +90,7 @@ def __getattr__(name: str) -> object:
     if name not in _LATE:
         raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
     value = getattr(importlib.import_module(_LATE[name]), name)
+    show_as_written(value)
     globals()[name] = value
     return value
 

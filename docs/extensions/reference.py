@@ -92,7 +92,7 @@ def written_signature(
         return "", None
     made_of: Any = member.__init__ if inspect.isclass(member) else getattr(member, "__func__", member)
     function = inspect.unwrap(made_of)
-    if hasattr(function, "__signature__"):  # what ravemj lacks: the source of all is one function
+    if hasattr(function, "capability"):  # what ravemj lacks: the source of all is one function
         return signature, answer
     try:
         (definition,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body

@@ -6,6 +6,7 @@ from types import FunctionType
 from typing import ClassVar
 
 from ravemj.core.argument_errors import explained
+from ravemj.core.signatures import show_as_written
 
 _HOT = frozenset(
     {
@@ -49,15 +50,18 @@ class ApiObject(metaclass=_ApiType):
     _names_wrong_arguments: ClassVar[bool] = True
 
     def __init_subclass__(cls, **kwargs: object) -> None:
-        """Let public methods and the constructor name an argument of a wrong type; see ``argument_errors``."""
+        """Let public methods and the constructor name an argument of a wrong type, and show their signature as written.
+
+        See ``argument_errors`` and ``signatures``.
+        """
         super().__init_subclass__(**kwargs)
-        if not cls._names_wrong_arguments:
-            return
-        skipped = {*cls._internal, *_HOT}
-        for name, method in tuple(vars(cls).items()):
-            is_public = name[0] != "_" or (name == "__init__" and cls.__name__ not in _OFTEN_MADE)
-            if isinstance(method, FunctionType) and is_public and name not in skipped and _takes(method):
-                setattr(cls, name, explained(method))
+        if cls._names_wrong_arguments:
+            skipped = {*cls._internal, *_HOT}
+            for name, method in tuple(vars(cls).items()):
+                is_public = name[0] != "_" or (name == "__init__" and cls.__name__ not in _OFTEN_MADE)
+                if isinstance(method, FunctionType) and is_public and name not in skipped and _takes(method):
+                    setattr(cls, name, explained(method))
+        show_as_written(cls)
 
     def __dir__(self) -> list[str]:
         return _listed(type(self), super().__dir__())

@@ -4,6 +4,7 @@ Quaternions are (w, x, y, z), poses (qw, qx, qy, qz, x, y, z), angles radians. L
 number are taken; what comes back are new arrays of float64. Names and meaning are OpenRAVE's, older names included.
 """
 
+from ravemj.core.signatures import show_as_written
 from ravemj.geometry_functions.affine import (
     DOFAffine,
     RaveGetAffineDOF,
@@ -151,3 +152,6 @@ __all__ = [
     "transformLookat",
     "transformPoints",
 ]
+
+for _name in __all__:
+    show_as_written(globals()[_name])

@@ -11,6 +11,7 @@ from types import FunctionType
 
 from ravemj.core.argument_errors import explained
 from ravemj.core.handles import Handle as UserData
+from ravemj.core.signatures import show_as_written
 from ravemj.errors import RavemjError
 
 _LINES = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
@@ -35,5 +36,5 @@ def __getattr__(name: str) -> object:
     if isinstance(value, FunctionType):
         value = explained(value)
         value.__module__ = __name__  # where pickle finds it
-    globals()[name] = value
-    return value
+    show_as_written(value)
+    return globals().setdefault(name, value)

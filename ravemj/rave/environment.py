@@ -223,6 +223,13 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
     def __repr__(self) -> str:
         return f"RaveGetEnvironment({self._number})"
 
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
+        """Print a table of the bodies in IPython, where ``repr`` would name the environment alone."""
+        from ravemj.rave.tables import environment_text, print_pretty  # noqa: PLC0415 - html is slow to import
+
+        del cycle
+        print_pretty(printer, self, environment_text(self))
+
     def __str__(self) -> str:
         names = ", ".join(body.GetName() for body in self.GetBodies())
         return f"<environment:{self._number}, bodies={names or 'none'}>"

@@ -1,6 +1,7 @@
 """Joints of a body."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -316,6 +317,13 @@ class Joint(JointLimits):
         from ravemj.rave.tables import joint_table  # noqa: PLC0415 - html is slow to import
 
         return joint_table(self)
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
+        """Print the table of the axes in IPython, where ``repr`` would name the joint alone."""
+        from ravemj.rave.tables import joint_text, print_pretty  # noqa: PLC0415 - html is slow to import
+
+        del cycle
+        print_pretty(printer, self, joint_text(self))
 
     def __str__(self) -> str:
         place = f"({self.GetJointIndex()}), dof={self.GetDOFIndex()}"

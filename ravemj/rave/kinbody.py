@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from types import EllipsisType, TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -355,6 +355,13 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
         from ravemj.rave.tables import body_table  # noqa: PLC0415 - html is slow to import
 
         return body_table(self)
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
+        """Print the table of the DOFs in IPython, where ``repr`` would name the body alone."""
+        from ravemj.rave.tables import body_text, print_pretty  # noqa: PLC0415 - html is slow to import
+
+        del cycle
+        print_pretty(printer, self, body_text(self))
 
     def __str__(self) -> str:
         kind = self._interface_type.name

@@ -6,6 +6,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 from conftest import MODELS
+from IPython.core.formatters import PlainTextFormatter
 
 import ravemj
 from ravemj import (
@@ -208,6 +209,45 @@ def test_table_of_a_body_that_is_not_added(env):
     body = RaveCreateKinBody(env, "")
     body.InitFromBoxes(np.array([[0, 0, 0, 1, 1, 1]]))
     assert re.search("<b></b> \\(body, 0 DOF\\)<details>", body._repr_html_())
+
+
+def in_ipython(thing) -> str:
+    return PlainTextFormatter()(thing)
+
+
+def test_ipython_prints_tables_without_a_notebook(env):
+    robot = env.GetRobots()[0]
+    robot.SetDOFValues([0.5, 0.125])
+    title, *rows = in_ipython(robot).splitlines()
+    assert re.fullmatch(r"arm \(robot, 2 DOF, 3 links, [\d.]+ kg\)", title)
+    assert rows == [
+        "DOF  joint  value  limits    unit",
+        "0    turn   0.5    -1 … 2    rad",
+        "1    slide  0.125  0 … 0.25  m",
+    ]
+    assert in_ipython(robot.GetJoint("slide")).splitlines() == [
+        "slide (Slider, joint of arm)",
+        "DOF  joint  value  limits    unit",
+        "1    slide  0.125  0 … 0.25  m",
+    ]
+    title, heading, row, *_ = in_ipython(env).splitlines()
+    assert title.startswith(f"environment {env!r}: ")
+    assert heading.split() == ["name", "kind", "DOF", "links"]
+    assert row.startswith("arm   robot  2    3 links, ")
+    assert in_ipython(ravemj.Environment()).endswith(": no bodies")
+
+
+def test_lists_in_ipython_and_repr_elsewhere_name_things(env):
+    robot = env.GetRobots()[0]
+    assert in_ipython([robot]) == f"[{robot!r}]" == str([robot])
+    assert in_ipython({"a": robot.GetJoints()[0]}) == f"{{'a': {robot.GetJoints()[0]!r}}}"
+    assert repr(robot).endswith(".GetRobot('arm')")
+    body = hostile_body(env)
+    assert HOSTILE in in_ipython(body)
+    env.Remove(robot)
+    assert "0    turn   ?" in in_ipython(robot)
+    env.Destroy()
+    in_ipython(env)
 
 
 def test_contexts_show_only_the_arm_or_what_it_carries():

@@ -3,6 +3,7 @@
 from typing import ClassVar, NoReturn
 
 from ravemj.compat.refusal import lacking
+from ravemj.core.signatures import show_as_written
 from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.rave.environment import Environment
 from ravemj.rave.robot import Robot
@@ -30,6 +31,10 @@ class DatabaseGenerator:
 
     capability: ClassVar[str] = _BUILDING
     """What ravemj lacks to compute it."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        show_as_written(cls)
 
     def __init__(self, robot: Robot, *arguments: object, **named: object) -> None:
         del arguments, named

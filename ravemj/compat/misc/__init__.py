@@ -12,6 +12,7 @@ from ravemj.compat.misc.scripts import (
     mkdir_recursive,
     myproduct,
 )
+from ravemj.core.signatures import show_as_written
 from ravemj.geometry_functions.solids import TSP, ComputeBoxMesh, ComputeCylinderYMesh, ComputeGeodesicSphereMesh
 
 __all__ = [
@@ -36,3 +37,6 @@ __all__ = [
     "myproduct",
     "sequence_cross_product",
 ]
+
+for _name in __all__:
+    show_as_written(globals()[_name])

@@ -34,6 +34,7 @@ from ravemj.compat.planningutils.retiming import (
     SmoothAffineTrajectory,
     SmoothTrajectory,
 )
+from ravemj.core.signatures import show_as_written
 
 __all__ = [
     "ActiveDOFTrajectoryRetimer",
@@ -64,3 +65,6 @@ __all__ = [
     "SmoothTrajectory",
     "VerifyTrajectory",
 ]
+
+for _name in __all__:
+    show_as_written(globals()[_name])

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.signatures import show_as_written
 from ravemj.core.transforms import Pose, Vec3, pose_of
 from ravemj.errors import ArgumentError
 from ravemj.model.scene import Parameters
@@ -63,6 +64,7 @@ def info_class(cls: type[T]) -> type[T]:
     made._entries = tuple(entry._replace(field=name) for name, entry in entries if entry.key)
     if "_called" not in vars(cls):
         made._called = cls.__name__
+    show_as_written(made)
     return made
 
 
