@@ -203,7 +203,7 @@ def _add_check(commands: Commands) -> None:
     parser = command(
         commands,
         "check.check",
-        "find what is wrong in models, and what OpenRAVE passes over in silence",
+        "find what is wrong in models, what OpenRAVE passes over in silence, and files outside of the model's folder",
         "ravemj check env.xml",
         "ravemj check --strict models/*.xml",
         "ravemj check --json robot.xml      # a list of file, line, code, severity, message, hint, included_from",
