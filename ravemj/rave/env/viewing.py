@@ -73,6 +73,7 @@ class Viewing(EnvironmentPart):
         viewer = open_viewer(self._simulation, self._renderer, name, show)
         if viewer is not None:
             self._attach(viewer)
+            viewer.announce()
         return viewer
 
     def serve_viewer(self, host: str = "127.0.0.1", port: int = 0, token: str | None = None) -> "WebViewer":
@@ -261,6 +262,6 @@ class Viewing(EnvironmentPart):
 
     def _repr_png_(self) -> bytes:
         """Return the picture that notebooks show for an environment."""
-        from ravemj.graphics.video import png_bytes  # noqa: PLC0415 - only notebooks want it
+        from ravemj.graphics.video import picture_bytes  # noqa: PLC0415 - only notebooks want it
 
-        return png_bytes(self.render(480, 360))
+        return picture_bytes(self.render(480, 360))
