@@ -177,14 +177,19 @@ def test_a_saved_notebook_shows_the_page_while_its_server_answers_and_a_picture_
 ):
     monkeypatch.delenv("DISPLAY", raising=False)
     (data,) = shown(env, "web")
-    page = browser.new_page()
-    page.set_content(data["text/html"])
+
+    def opened():
+        page = browser.new_page()
+        page.route("http://127.0.0.1/", lambda route: route.fulfill(body=data["text/html"], content_type="text/html"))
+        page.goto("http://127.0.0.1/")
+        return page
+
+    page = opened()
     page.wait_for_function("window.frames.length === 1")
     page.frames[1].wait_for_selector("[data-crisp=true]")
     assert not page.locator("img").is_visible()
     env.SetViewer("")
-    page = browser.new_page()
-    page.set_content(data["text/html"])
+    page = opened()
     page.locator("img").wait_for(state="visible")
     assert page.evaluate("document.querySelector('img').naturalWidth") == 640
     page.close()
