@@ -2,6 +2,8 @@
 
 import base64
 import contextlib
+import functools
+import http.server
 import io
 import re
 import socket
@@ -169,30 +171,35 @@ def test_the_page_works_behind_the_notebooks_server(proxied, env, browser):
         proxy.shutdown()
 
 
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
 @NEEDS_A_BROWSER[0]
 @NEEDS_A_BROWSER[1]
 @NEEDS_A_BROWSER[2]
 def test_a_saved_notebook_shows_the_page_while_its_server_answers_and_a_picture_afterwards(
-    kernel, env, browser, monkeypatch
+    kernel, env, browser, tmp_path, monkeypatch
 ):
     monkeypatch.delenv("DISPLAY", raising=False)
     (data,) = shown(env, "web")
 
-    def opened():
+    (tmp_path / "saved.html").write_text(data["text/html"])
+    handler = functools.partial(Quiet, directory=tmp_path)
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
         page = browser.new_page()
-        page.route("http://127.0.0.1/", lambda route: route.fulfill(body=data["text/html"], content_type="text/html"))
-        page.goto("http://127.0.0.1/")
-        return page
-
-    page = opened()
-    page.wait_for_function("window.frames.length === 1")
-    page.frames[1].wait_for_selector("[data-crisp=true]")
-    assert not page.locator("img").is_visible()
-    env.SetViewer("")
-    page = opened()
-    page.locator("img").wait_for(state="visible")
-    assert page.evaluate("document.querySelector('img').naturalWidth") == 640
-    page.close()
+        page.goto(f"http://127.0.0.1:{server.server_port}/saved.html")
+        page.wait_for_function("window.frames.length === 1")
+        page.frames[1].wait_for_selector("[data-crisp=true]")
+        assert not page.locator("img").is_visible()
+        env.SetViewer("")
+        page.reload()
+        page.locator("img").wait_for(state="visible")
+        assert page.evaluate("document.querySelector('img').naturalWidth") == 640
+        page.close()
+        server.shutdown()
 
 
 @pytest.mark.parametrize("variable", REMOTE)
