@@ -130,10 +130,10 @@ def write_picture(path: AnyPath, frame: Frame) -> Path:
     return Path(path)
 
 
-def png_bytes(frame: Frame) -> bytes:
-    """Return the content of a PNG file with a frame, uint8 of shape (height, width, 3)."""
+def picture_bytes(frame: Frame, suffix: str = ".png") -> bytes:
+    """Return the content of the file of a picture, uint8 of shape (height, width, 3); suffixes as ``write_picture``."""
     content = io.BytesIO()
-    _imwrite(content, frame, extension=".png")
+    _imwrite(content, frame, extension=suffix, **_STILL_FORMATS[suffix])
     return content.getvalue()
 
 

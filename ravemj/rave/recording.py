@@ -13,6 +13,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.errors import Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera, three_quarter_view
 from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.shown_path import ShownPath
 from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.trajectories.body_motion import BodyMotion
 from ravemj.trajectories.motion_arguments import MotionLike, body_motion
@@ -66,7 +67,7 @@ def record(  # noqa: PLR0913 - keyword arguments
         on_frame: Called with the number of frames drawn so far.
 
     Returns:
-        The path of the video.
+        The path of the video; notebooks show it as the video.
 
     Raises:
         ArgumentError: an argument is wrong, or there is no robot.
@@ -88,7 +89,7 @@ def record(  # noqa: PLR0913 - keyword arguments
         form,
         fps,
     )
-    return write_frames(path, draw_frames(env, followed, shot), fps, on_frame=on_frame)
+    return ShownPath(write_frames(path, draw_frames(env, followed, shot), fps, on_frame=on_frame))
 
 
 def followed_motion(env: "Environment", motion: MotionLike, robot: "KinBody | None" = None) -> BodyMotion:

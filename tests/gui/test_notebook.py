@@ -1,18 +1,25 @@
 """Viewers in notebooks: the page in the cell, also through the notebook's server."""
 
+import base64
 import contextlib
+import functools
+import http.server
+import io
 import re
 import socket
 import socketserver
 import sys
 import threading
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
+import numpy as np
 import pytest
 from browsers import NEEDS_A_BROWSER
 from conftest import MODELS
+from IPython.core.formatters import HTMLFormatter
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
+from PIL import Image
 from waiting import PATIENCE
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
@@ -21,10 +28,14 @@ import ravemj
 from ravemj.gui.viewers import notebook
 from ravemj.gui.viewers.web import WebViewer
 
+REMOTE = ["SSH_CONNECTION", "JUPYTERHUB_SERVICE_PREFIX", "CODESPACES", "VSCODE_IPC_HOOK_CLI", "KAGGLE_KERNEL_RUN_TYPE"]
+
 
 @pytest.fixture
 def kernel(monkeypatch):
-    """IPython as notebooks have it."""
+    """IPython as notebooks have it, on the machine of the browser."""
+    for variable in REMOTE:
+        monkeypatch.delenv(variable, raising=False)
     shell = InteractiveShell.instance()
     monkeypatch.setattr(shell, "kernel", SimpleNamespace(), raising=False)
     yield shell
@@ -61,7 +72,10 @@ def test_the_page_is_shown_in_the_cell(kernel, env, name, monkeypatch):
     (data,) = shown(env, name)
     viewer = env.GetViewer(name)
     assert isinstance(viewer, WebViewer)
-    assert f'<iframe src="{viewer.url}"' in data["text/html"]
+    assert f'<object data="{viewer.url}" type="text/html"' in data["text/html"]
+    assert '<img src="data:image/webp;base64,' in data["text/html"].partition("</object>")[0]
+    png = Image.open(io.BytesIO(base64.b64decode(data["image/png"])))
+    assert np.array_equal(np.asarray(png), viewer.render())
     assert data["text/plain"] == f"<viewer:{name}>"
 
 
@@ -82,7 +96,7 @@ def test_no_cell_without_a_kernel(env, monkeypatch):
 def test_the_notebooks_server_leads_to_the_page(proxied, env):
     (data,) = shown(env, "web")
     server = env.GetViewer().server
-    source = re.search(r'<iframe src="([^"]*)"', data["text/html"])[1]
+    source = re.search(r'<object data="([^"]*)"', data["text/html"])[1]
     assert source == f"/user/maria/proxy/{server.port}/{server.token}/"
 
 
@@ -145,7 +159,7 @@ class Proxy(socketserver.ThreadingTCPServer):
 @NEEDS_A_BROWSER[2]
 def test_the_page_works_behind_the_notebooks_server(proxied, env, browser):
     (data,) = shown(env, "web")
-    source = re.search(r'<iframe src="([^"]*)"', data["text/html"])[1]
+    source = re.search(r'<object data="([^"]*)"', data["text/html"])[1]
     with Proxy() as proxy:
         threading.Thread(target=proxy.serve_forever, daemon=True).start()
         page = browser.new_page()
@@ -155,3 +169,93 @@ def test_the_page_works_behind_the_notebooks_server(proxied, env, browser):
         page.wait_for_selector("[data-mode=interaction]")
         page.close()
         proxy.shutdown()
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+@NEEDS_A_BROWSER[0]
+@NEEDS_A_BROWSER[1]
+@NEEDS_A_BROWSER[2]
+def test_a_saved_notebook_shows_the_page_while_its_server_answers_and_a_picture_afterwards(
+    kernel, env, browser, tmp_path, monkeypatch
+):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    (data,) = shown(env, "web")
+
+    (tmp_path / "saved.html").write_text(data["text/html"])
+    handler = functools.partial(Quiet, directory=tmp_path)
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        page = browser.new_page()
+        page.goto(f"http://127.0.0.1:{server.server_port}/saved.html")
+        page.wait_for_function("window.frames.length === 1")
+        page.frames[1].wait_for_selector("[data-crisp=true]")
+        assert not page.locator("img").is_visible()
+        env.SetViewer("")
+        page.reload()
+        page.locator("img").wait_for(state="visible")
+        assert page.evaluate("document.querySelector('img').naturalWidth") == 640
+        page.close()
+        server.shutdown()
+
+
+@pytest.mark.parametrize("variable", REMOTE)
+def test_where_no_port_reaches_the_browser_the_scene_draws_itself(kernel, env, monkeypatch, variable):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setenv(variable, "/user/maria/")
+    (data,) = shown(env, "qtcoin")
+    viewer = env.GetViewer()
+    assert f'<object data="{viewer.url}"' in data["text/html"], "a port may be forwarded"
+    instead = data["text/html"].partition("</object>")[0]
+    assert '<iframe srcdoc="' in instead
+    assert instead.count("No port of this machine reaches the browser") == 1
+    assert f"ssh -L {viewer.server.port}:127.0.0.1:{viewer.server.port}" in instead
+    assert "image/png" in data
+
+
+def test_colab_shows_the_page_with_its_own_helper(kernel, env, monkeypatch):
+    """With a stand-in for Colab's module; nobody has tried it in Colab."""
+    calls = []
+    output = SimpleNamespace(serve_kernel_port_as_iframe=lambda *given, **named: calls.append((given, named)))
+    colab = ModuleType("google.colab")
+    colab.output = output
+    monkeypatch.setitem(sys.modules, "google", ModuleType("google"))
+    monkeypatch.setitem(sys.modules, "google.colab", colab)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    (data,) = shown(env, "qtcoin")
+    server = env.GetViewer().server
+    assert calls == [((server.port,), {"path": f"/{server.token}/", "height": "480"})]
+    assert "text/html" not in data
+    with socket.create_connection(("127.0.0.1", server.port)) as sock:
+        sock.sendall(f"GET /{server.token}/ HTTP/1.1\r\nHost: abc-{server.port}-colab.example\r\n\r\n".encode())
+        assert sock.recv(100).startswith(b"HTTP/1.1 200"), "browsers come by another name"
+
+
+def test_without_a_picture_the_page_is_shown_all_the_same(kernel, env, monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+
+    def cannot(*_: object) -> None:
+        raise ravemj.RenderingError("nothing can draw here")
+
+    monkeypatch.setattr(WebViewer, "render", cannot)
+    (data,) = shown(env, "web")
+    assert "image/png" not in data
+    assert "<object data=" in data["text/html"]
+
+
+@pytest.mark.parametrize(("name", "kind"), [("a.webp", "img"), ("a.gif", "img"), ("a.mp4", "video"), ("a.avi", None)])
+def test_the_path_of_a_video_shows_the_video(env, tmp_path, name, kind):
+    path = ravemj.record(env, tmp_path / name, [(0, [0, 0]), (0.1, [1, 0])], width=64, height=48, fps=10)
+    assert path == tmp_path / name
+    assert repr(path) == repr(tmp_path / name)
+    text = HTMLFormatter()(path)
+    assert (text is None) == (kind is None)
+    if kind is not None:
+        tag, data = re.match(r'<(\w+) src="data:[a-z]+/[a-z0-9]+;base64,([^"]+)"', text).groups()
+        assert tag == kind
+        assert base64.b64decode(data) == path.read_bytes()
+        path.unlink()
+        assert HTMLFormatter()(path) is None

@@ -74,9 +74,4 @@ def _choice(name: str) -> tuple[str, str]:
 def _open_page(simulation: Simulation, renderer: SimulationRenderer, name: str) -> Viewer:
     from ravemj.gui.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
-    viewer = WebViewer(simulation, renderer, name, any_name=notebook.is_proxied())
-    if notebook.in_notebook():
-        notebook.show(viewer)
-    else:
-        _LOG.warning("the viewer is at %s", viewer.url)
-    return viewer
+    return WebViewer(simulation, renderer, name, any_name=notebook.is_proxied())

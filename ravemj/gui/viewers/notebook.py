@@ -1,15 +1,28 @@
-"""Viewers in the cells of notebooks."""
+"""Viewers in the cells of notebooks: live where their server answers, else as what they looked like."""
 
 import html
 import importlib.util
 import os
 import sys
+from base64 import b64encode
+from collections.abc import Callable
 from typing import Any
+
+from ravemj.graphics.simulation_renderer import Frame
+from ravemj.graphics.video import picture_bytes
 
 _HEIGHT = 480
 _PROXY = "jupyter_server_proxy"
 _PREFIX = "JUPYTERHUB_SERVICE_PREFIX"
 """The variable that says where JupyterHub has a user's server."""
+
+_ELSEWHERE = (_PREFIX, "SSH_CONNECTION", "VSCODE_IPC_HOOK_CLI", "CODESPACES", "KAGGLE_KERNEL_RUN_TYPE")
+"""Variables that tell that the browser runs on another machine, and comes to no port of this one."""
+
+_ALONE = (
+    "No port of this machine reaches the browser, so this page draws what was there when the cell ran. "
+    "<code>pip install jupyter-server-proxy</code>, or <code>ssh -L {port}:127.0.0.1:{port}</code>, makes it live."
+)
 
 
 def in_notebook() -> bool:
@@ -19,20 +32,50 @@ def in_notebook() -> bool:
 
 
 def is_proxied() -> bool:
-    """Return whether browsers come through the notebook's server, which ``jupyter-server-proxy`` lets them."""
-    return in_notebook() and importlib.util.find_spec(_PROXY) is not None
+    """Return whether browsers come through the notebook's server: ``jupyter-server-proxy`` or Colab lets them."""
+    return in_notebook() and (_in_colab() or importlib.util.find_spec(_PROXY) is not None)
 
 
-def frame(url: str, path: str) -> str:
-    """Return the HTML that shows a page in a cell: its URL, or behind a proxy its port and path, ``8080/secret/``."""
+def _in_colab() -> bool:
+    return "google.colab" in sys.modules
+
+
+def mimebundle(url: str, picture: Frame | None, still: Callable[[], str]) -> dict[str, str]:
+    """Return what notebooks show for a viewer, by type.
+
+    The HTML is the page where its server answers, and a picture elsewhere, as in a notebook that was saved or sent. In
+    Colab, its own helper shows the page.
+
+    Args:
+        url: The page.
+        picture: What the viewer shows now; None if nothing can draw here.
+        still: Returns the HTML of the scene that draws itself, for browsers that come to no port of this machine.
+    """
+    port, path = url.split("/", 3)[2].rpartition(":")[2], url.split("/", 3)[3]
+    if _in_colab():
+        from google.colab import output  # noqa: PLC0415 # pyright: ignore - only there
+
+        output.serve_kernel_port_as_iframe(int(port), path=f"/{path}", height=str(_HEIGHT))  # pyright: ignore
+        return {}
+    instead = "" if picture is None else _image(picture)
     if is_proxied():
-        url = f"{os.environ.get(_PREFIX, '/')}proxy/{path}"
+        url = f"{os.environ.get(_PREFIX, '/')}proxy/{port}/{path}"
+    elif any(map(os.environ.get, _ELSEWHERE)):
+        instead = f"{still()}<div>{_ALONE.format(port=port)}</div>"
     address = html.escape(url)
-    return (
-        f'<iframe src="{address}" title="ravemj viewer" style="width: 100%; height: {_HEIGHT}px; border: 0" '
-        f'allow="fullscreen"></iframe><div><a href="{address}" target="_blank" rel="noopener">in a tab of its own</a>'
-        "</div>"
+    live = (
+        f'<object data="{address}" type="text/html" aria-label="ravemj viewer" '
+        f'style="width: 100%; height: {_HEIGHT}px">{instead}</object>'
+        f'<div><a href="{address}" target="_blank" rel="noopener">in a tab of its own</a></div>'
     )
+    png = {} if picture is None else {"image/png": b64encode(picture_bytes(picture)).decode()}
+    return {"text/html": live, **png}
+
+
+def _image(picture: Frame) -> str:
+    data = b64encode(picture_bytes(picture, ".webp")).decode()
+    style = f"max-width: 100%; max-height: {_HEIGHT}px"
+    return f'<img src="data:image/webp;base64,{data}" alt="what the viewer showed" style="{style}">'
 
 
 def show(viewer: object) -> None:

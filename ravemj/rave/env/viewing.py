@@ -74,6 +74,7 @@ class Viewing(EnvironmentPart):
         viewer = open_viewer(self._simulation, self._renderer, name, show)
         if viewer is not None:
             self._attach(viewer)
+            viewer.announce()
         return viewer
 
     def serve_viewer(
@@ -269,6 +270,6 @@ class Viewing(EnvironmentPart):
 
     def _repr_png_(self) -> bytes:
         """Return the picture that notebooks show for an environment."""
-        from ravemj.graphics.video import png_bytes  # noqa: PLC0415 - only notebooks want it
+        from ravemj.graphics.video import picture_bytes  # noqa: PLC0415 - only notebooks want it
 
-        return png_bytes(self.render(480, 360))
+        return picture_bytes(self.render(480, 360))

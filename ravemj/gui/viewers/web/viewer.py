@@ -18,7 +18,7 @@ from ravemj.errors import RavemjError
 from ravemj.graphics.rendering.style import AS_IT_IS
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.interaction import Interaction, Request
-from ravemj.gui.viewers.notebook import frame
+from ravemj.gui.viewers.notebook import in_notebook, mimebundle, show
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.viewer import Viewer
 from ravemj.gui.viewers.web.client import Client, PageStyle, receive
@@ -42,7 +42,7 @@ class WebViewer(Viewer):
         server: Listens for pages.
     """
 
-    _internal = ("attend", "dismiss", "first_scene", "server", "welcome")
+    _internal = ("announce", "attend", "dismiss", "first_scene", "server", "welcome")
 
     def __init__(
         self,
@@ -120,9 +120,21 @@ class WebViewer(Viewer):
         self._end()
         super().close()
 
-    def _repr_html_(self) -> str:
-        """Return what notebooks show for a viewer: its page."""
-        return frame(self.url, f"{self.server.port}/{self.server.token}/")
+    def announce(self) -> None:
+        """Show the page below the cell of a notebook; elsewhere, log its address."""
+        if in_notebook():
+            show(self)
+        else:
+            _LOG.warning("the viewer is at %s", self.url)
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """Return what notebooks show for a viewer: its page where the server answers, and a picture."""
+        try:
+            picture = self.render()
+        except RavemjError:  # nothing can draw here, or MuJoCo refuses a body
+            picture = None
+        bundle = mimebundle(self.url, picture, lambda: self.GetEnv().animation()._repr_html_())
+        return {"text/plain": repr(self), **bundle}
 
     def first_scene(self) -> str:
         """Return the name of the surfaces that a new page will draw; empty where somebody has the environment."""
