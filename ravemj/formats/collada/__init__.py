@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats.collada.documents import Documents
 
 if TYPE_CHECKING:
     from ravemj.formats.collada.library import Library
@@ -27,6 +28,7 @@ def read_file(
     files: list[str],
     included_from: Source | None = None,
     scale: float = 1.0,
+    documents: Documents | None = None,
 ) -> "Content":
     """Read a ``.dae`` or ``.zae`` file.
 
@@ -36,6 +38,7 @@ def read_file(
         files: Takes the paths of the files that are read.
         included_from: The element that names the file, or None.
         scale: What all lengths are multiplied by.
+        documents: The COLLADA documents of the model that names the file; None if the file is all of it.
 
     Raises:
         SourceError: The file is broken, or something in it is impossible.
@@ -43,7 +46,7 @@ def read_file(
     from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
 
     path, wanted = split_uri(uri)
-    library = Library(diagnostics, files, included_from, scale)
+    library = Library(diagnostics, files, included_from, scale, documents)
     return _read(library, path, lambda: library.open_file(path), wanted)
 
 
@@ -81,7 +84,7 @@ def _read(library: "Library", path: str, opened: "Callable[[], ColladaDocument]"
         with np.errstate(all="ignore"):  # what is not finite in the end is refused
             return read_document(library, opened(), wanted)
     except (RecursionError, MemoryError, OverflowError) as error:
-        message = f"the file is too large or nested too deep ({type(error).__name__})"
+        message = f"the file is too large or nested too deep ({error or type(error).__name__})"
         raise SourceError(message, Source(path)) from error
     except ArithmeticError as error:
         raise SourceError("a number in the file is too large to compute with", Source(path)) from error

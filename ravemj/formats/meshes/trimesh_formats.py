@@ -9,6 +9,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
+from ravemj.formats.meshes.declared_counts import check_counts
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
 from ravemj.formats.meshes.parts import BLACK, WHITE, MeshPart, rgb, welded
@@ -68,11 +69,14 @@ def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | Non
         data = header.decode("ascii", "replace").encode("ascii", "replace") + end + rest
     trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
     try:
+        check_counts(data, kind, file.source)
         scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=_References(file), process=False)
         order = {name: number for number, name in enumerate(scene.geometry)}
         nodes: list[Any] = sorted(map(scene.graph.get, scene.graph.nodes_geometry), key=lambda node: order[node[1]])
         placed = [(scene.geometry[name], matrix) for matrix, name in nodes]
         return [_placed(geometry, matrix) for geometry, matrix in placed if hasattr(geometry, "faces")]
+    except SourceError:
+        raise
     except Exception as error:  # trimesh raises all kinds at malformed files
         raise SourceError(f"trimesh cannot read it: {type(error).__name__}: {error}", file.source) from error
 
