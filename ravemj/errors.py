@@ -4,6 +4,7 @@
 
     RavemjError                 also called openrave_exception
     ├── SourceError             .source .hint: a file that cannot be read as a model
+    │   ├── LimitError          the model is too large to be read
     │   └── CompileError        MuJoCo refuses the translated model
     ├── ArgumentError           a wrong argument of a call
     ├── OutputError             also an OSError: a file that cannot be written
@@ -133,6 +134,10 @@ class SourceError(RavemjError):
         here = self.source[:2]
         explaining = (finding for finding in self.diagnostics if finding.code in _CAUSES)
         return next((finding for finding in explaining if here in _places(finding.source)), None)
+
+
+class LimitError(SourceError):
+    """A model is larger than what ravemj reads; the message says how large, and what the limit is."""
 
 
 class UnnamedError(SourceError):

@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike
 from ravemj.cli.argument_parser import did_you_mean
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Source, SourceError
+from ravemj.formats.limits import json_bytes
 from ravemj.geometry_functions import matrixFromPose
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.rave import (
@@ -82,7 +82,7 @@ def start_values(path: str, robot: Robot) -> list[float]:
     """
     hint = "a list with a value for each DOF, or an object with names of joints and their values"
     try:
-        content: Any = json.loads(Path(path).read_text(encoding="utf-8"))
+        content: Any = json.loads(json_bytes(path))
     except OSError as error:
         raise SourceError(f"cannot read the file: {(error.strerror or str(error)).lower()}", Source(path)) from None
     except (RecursionError, ValueError) as error:

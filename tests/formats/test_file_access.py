@@ -311,12 +311,12 @@ def test_pictures_are_not_read(places, picture, suffix, caplog):
 
 
 def test_the_error_names_both_files_the_reason_and_what_to_do(places):
-    mesh = places.write("glTF", "{out}/{}")
+    mesh = places.write("glTF", "../{}")
     model = places.inside / "k.xml"
     model.write_text(geom("data")("a.gltf"))
     (finding,) = findings(str(model))[2].diagnostics
     assert str(finding) == (
-        f"{mesh}:1: error[refused-file]: '{places.outside}/s.bin' is not read: it is raw data outside of the folder "
+        f"{mesh}:1: error[refused-file]: '../s.bin' is not read: it is raw data outside of the folder "
         f"of the mesh; copy it into that folder (included from {model}:2)"
     )
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from waiting import time_limit
 
 from ravemj.errors import SourceError
-from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
+from ravemj.formats.meshes import MESH_SUFFIXES, read_mesh
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.reading import read_content, reader_of
 
@@ -110,13 +110,14 @@ def test_text_of_random_words(header, words):
 
 
 def test_compressed_bombs(refused, monkeypatch):
-    monkeypatch.setattr(files, "MAX_BYTES", 1 << 20)
-    refused("bomb.wrl", gzip.compress(b"#VRML V2.0 utf8\n" + b" " * (2 << 20)), "unpacks to more")
+    refused("bomb.wrl", gzip.compress(b"#VRML V2.0 utf8\n" + b" " * (2 << 20)), "over 200 times its own")
+    monkeypatch.setenv("RAVEMJ_MOST_BYTES", "10000")
+    refused("bomb.wrl", gzip.compress(b"#VRML V2.0 utf8\n" + b" " * 10_000), "it unpacks to 10,001 bytes or more")
 
 
 def test_files_that_are_too_large(refused, monkeypatch):
-    monkeypatch.setattr(files, "MAX_BYTES", 1000)
-    refused("large.stl", bytes(1001), "larger than")
+    monkeypatch.setenv("RAVEMJ_MOST_BYTES", "1000")
+    refused("large.stl", bytes(1001), "1,001 bytes or more, and 1,000 are read")
 
 
 def test_repeated_nodes(refused):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj.errors import Source, SourceError
+from ravemj.formats.collada.documents import Documents
 from ravemj.formats.file_access import FileAccess
 
 if TYPE_CHECKING:
@@ -22,7 +23,13 @@ SUFFIXES = (".dae", ".zae")
 """Ends of the names of the files, in lower case."""
 
 
-def read_file(uri: str, access: FileAccess, included_from: Source | None = None, scale: float = 1.0) -> "Content":
+def read_file(
+    uri: str,
+    access: FileAccess,
+    included_from: Source | None = None,
+    scale: float = 1.0,
+    documents: Documents | None = None,
+) -> "Content":
     """Read a ``.dae`` or ``.zae`` file.
 
     Args:
@@ -30,6 +37,7 @@ def read_file(uri: str, access: FileAccess, included_from: Source | None = None,
         access: The files that may be read; takes every finding.
         included_from: The element that names the file, or None.
         scale: What all lengths are multiplied by.
+        documents: The COLLADA documents of the model that names the file; None if the file is all of it.
 
     Raises:
         SourceError: The file is broken, or something in it is impossible.
@@ -37,7 +45,7 @@ def read_file(uri: str, access: FileAccess, included_from: Source | None = None,
     from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
 
     path, wanted = split_uri(uri)
-    library = Library(access, included_from, scale)
+    library = Library(access, included_from, scale, documents)
     return _read(library, path, lambda: library.open_file(path), wanted)
 
 
@@ -74,7 +82,7 @@ def _read(library: "Library", path: str, opened: "Callable[[], ColladaDocument]"
         with np.errstate(all="ignore"):  # what is not finite in the end is refused
             return read_document(library, opened(), wanted)
     except (RecursionError, MemoryError, OverflowError) as error:
-        message = f"the file is too large or nested too deep ({type(error).__name__})"
+        message = f"the file is too large or nested too deep ({error or type(error).__name__})"
         raise SourceError(message, Source(path)) from error
     except ArithmeticError as error:
         raise SourceError("a number in the file is too large to compute with", Source(path)) from error

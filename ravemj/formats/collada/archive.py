@@ -6,13 +6,16 @@ import zipfile
 import zlib
 from urllib.parse import unquote
 
-from lxml import etree
-
 from ravemj.errors import Source, SourceError
-from ravemj.formats.meshes.collada.document import words
-from ravemj.formats.meshes.files import MAX_BYTES, read_bytes
+from ravemj.formats.limits import MOST_FILES, Budget, check_count, check_unpacked, most_unpacked
+from ravemj.formats.meshes.collada.document import parse_tree, words
+from ravemj.formats.meshes.files import read_bytes
 
-_MOST_MEMBERS = 10_000
+_METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
+"""Methods of compression that OpenRAVE unpacks. Python unpacks others without a bound on their size."""
+_ENTRY = b"PK\1\2"  # begins an entry of the directory
+_DAMAGES = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError)
+"""Exceptions of ``zipfile`` about damaged or encrypted archives, which it does not document."""
 
 
 class Archive:
@@ -29,13 +32,14 @@ class Archive:
             SourceError: It is missing, too large, or no zip file.
         """
         self.path = path
+        data = read_bytes(path)
+        check_count(data.count(_ENTRY), MOST_FILES, "files in the archive", Source(path))
         try:
-            self._zip = zipfile.ZipFile(io.BytesIO(read_bytes(path)))
-        except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
+            self._zip = zipfile.ZipFile(io.BytesIO(data))
+        except _DAMAGES as error:
             raise SourceError(f"this is not a zip archive: {error}", Source(path)) from error
-        if len(self._zip.infolist()) > _MOST_MEMBERS:
-            raise SourceError(f"the archive has more than {_MOST_MEMBERS} files", Source(path))
-        self._bytes_left = MAX_BYTES
+        self._members = {posixpath.normpath(name): name for name in reversed(self._zip.namelist())}
+        self._packed, self._unpacked = len(data), 0
 
     def root(self) -> str:
         """Return the name of the document to start with.
@@ -57,24 +61,24 @@ class Archive:
 
     def member(self, name: str, folder: str = "") -> str | None:
         """Return the full name of a file in the archive, given relative to a folder in it; None if it is not there."""
-        full = posixpath.normpath(posixpath.join(folder, name))
-        return next((known for known in self._zip.namelist() if posixpath.normpath(known) == full), None)
+        return self._members.get(posixpath.normpath(posixpath.join(folder, name)))
 
     def read(self, name: str) -> bytes:
         """Return the content of a file.
 
         Raises:
-            SourceError: It is damaged or encrypted, or the archive unpacks to more than ``MAX_BYTES`` in all.
+            SourceError: It is damaged or encrypted, or what the archive unpacks to is too large in all.
         """
         source = Source(self.place(name))
+        if self._zip.getinfo(name).compress_type not in _METHODS:
+            raise SourceError("it is not compressed by deflate, as OpenRAVE expects", source, "pack the archive anew")
         try:
             with self._zip.open(name) as file:
-                data = file.read(self._bytes_left + 1)
-        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+                data = file.read(max(most_unpacked(self._packed) - self._unpacked, 0))
+        except _DAMAGES as error:
             raise SourceError(f"the archive is damaged or encrypted: {error}", source) from error
-        self._bytes_left -= len(data)
-        if self._bytes_left < 0:
-            raise SourceError(f"the archive unpacks to more than {MAX_BYTES >> 20} MiB", source)
+        self._unpacked += len(data)
+        check_unpacked(self._unpacked, self._packed, Source(self.path))
         return data
 
     def place(self, name: str) -> str:
@@ -84,11 +88,9 @@ class Archive:
     def _named_by_manifest(self, manifest: Source) -> str | None:
         if self.member("manifest.xml") is None:
             return None
-        parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-        try:
-            root = etree.fromstring(self.read("manifest.xml"), parser)
-        except etree.XMLSyntaxError as error:
-            raise SourceError(f"not well-formed XML: {error.msg}", manifest) from error
+        content = self.read("manifest.xml")
+        Budget().add_document(content, manifest)
+        root = parse_tree(content, manifest.file)
         elements = [] if root is None else [*root.iter("{*}dae_root")]
         name = unquote("".join(words(elements[0])).partition("#")[0]) if elements else ""
         if name.startswith("/") or ":" in name or ".." in name.split("/"):

@@ -9,9 +9,11 @@ from urllib.parse import unquote
 
 from lxml import etree
 
-from ravemj.errors import Source, SourceError
+from ravemj.errors import LimitError, Source, SourceError
 from ravemj.formats.collada.archive import Archive
+from ravemj.formats.collada.documents import Documents
 from ravemj.formats.file_access import FileAccess
+from ravemj.formats.limits import MOST_FILES, check_count
 from ravemj.formats.meshes.collada.document import (
     ColladaDocument,
     Element,
@@ -25,8 +27,6 @@ from ravemj.formats.meshes.collada.document import (
 from ravemj.formats.meshes.files import read_bytes
 
 ARCHIVE_SUFFIX = ".zae"
-_MOST_DOCUMENTS = 1000
-_MOST_ELEMENTS = 200_000
 _LONGEST_CHAIN = 20
 
 _MODELS = {
@@ -58,14 +58,19 @@ class Library:
         diagnostics: Takes every finding.
     """
 
-    def __init__(self, access: FileAccess, included_from: Source | None = None, scale: float = 1.0) -> None:
+    def __init__(
+        self,
+        access: FileAccess,
+        included_from: Source | None = None,
+        scale: float = 1.0,
+        documents: Documents | None = None,
+    ) -> None:
         self.diagnostics = access.diagnostics
         self._access = access
         self._scale = scale
         self._included_from = included_from
-        self._archives: dict[str, Archive] = {}
-        self._documents: dict[str, ColladaDocument] = {}
-        self._places: dict[str, tuple[Archive | None, str]] = {}
+        self._documents = documents or Documents()
+        self._opened_here: dict[str, ColladaDocument] = {}
         self._of_root: dict[Element, ColladaDocument] = {}
         self._units: dict[Element, float] = {}
         self._reported: set[tuple[Element, str]] = set()
@@ -80,9 +85,9 @@ class Library:
         self._access.files.setdefault(path, named_by or self._included_from)
         if not path.lower().endswith(ARCHIVE_SUFFIX):
             return self._opened(path, None, path)
-        archive = self._archives.get(path)
+        archive = self._documents.archives.get(path)
         if archive is None:
-            archive = self._archives[path] = Archive(path)
+            archive = self._documents.archives[path] = Archive(path)
         return self._member(archive, archive.root())
 
     def open_text(self, data: bytes, name: str) -> ColladaDocument:
@@ -135,7 +140,7 @@ class Library:
 
     def _document(self, here: ColladaDocument, uri: str, element: Element) -> ColladaDocument | None:
         """Return the document that a URI names in another one; a file that is missing or broken is reported."""
-        archive, name = self._places[here.path]
+        archive, name = self._documents.places[here.path]
         plain = unquote(uri.partition(":")[2].lstrip("/") if uri.startswith("openrave:") else uri.removeprefix("file:"))
         plain = plain.removeprefix("./")  # so that a file has one name
         try:
@@ -153,6 +158,8 @@ class Library:
                 report(uri, self.source(element))
             else:
                 self.warn("missing-file", f"there is no file {uri}", element, "put it there, or set OPENRAVE_DATA")
+        except LimitError:
+            raise
         except SourceError as error:
             self.warn("broken-file", f"{error.source}: {error.message}", element)
         return None
@@ -161,16 +168,23 @@ class Library:
         return self._opened(archive.place(name), archive, name)
 
     def _opened(self, path: str, archive: Archive | None, name: str) -> ColladaDocument:
-        if path not in self._documents:
-            if len(self._documents) >= _MOST_DOCUMENTS:
-                raise SourceError(f"the model has more than {_MOST_DOCUMENTS} files", Source(path))
+        if path in self._opened_here:
+            return self._opened_here[path]
+        known = self._documents.parsed.get(path)
+        if known is None:
             return self._parsed(read_bytes(path) if archive is None else archive.read(name), path, archive, name)
-        return self._documents[path]
+        self._documents.budget.add_elements(known.elements, Source(path))
+        return self._registered(known)
 
     def _parsed(self, data: bytes, path: str, archive: Archive | None, name: str) -> ColladaDocument:
-        document = ColladaDocument(data, path)
-        self._documents[path] = document
-        self._places[path] = (archive, name)
+        document = ColladaDocument(data, path, self._documents.budget)
+        check_count(len(self._documents.parsed), MOST_FILES, "files in the model", Source(path))
+        self._documents.parsed[path] = document
+        self._documents.places[path] = (archive, name)
+        return self._registered(document)
+
+    def _registered(self, document: ColladaDocument) -> ColladaDocument:
+        self._opened_here[document.path] = document
         self._of_root[document.root] = document
         return document
 
@@ -230,7 +244,7 @@ class Library:
         names = self._scopes[element] = {}
         queue: deque[Found] = deque([Found(element)])
         entered = {element}
-        while queue and len(entered) < _MOST_ELEMENTS:
+        while queue:
             around, through = queue.popleft()
             target = self._target(around)
             if target is not None and target not in entered:

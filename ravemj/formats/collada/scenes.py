@@ -12,11 +12,13 @@ from ravemj.formats.collada.robot import ExtraReader, interface_kind
 from ravemj.formats.collada.sensor import read_loose
 from ravemj.formats.collada.supplement import SupplementReader
 from ravemj.formats.collada.visual import Node, expand, rigid_part
+from ravemj.formats.limits import check_count
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
 from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import AttachedSensor
 
 _MAX_DEPTH = 20
+_MOST_SYSTEMS = 1000
 
 
 class Content(NamedTuple):
@@ -145,6 +147,7 @@ def _take_apart(
     system = scene.library.follow(instance)
     if system is None or depth > _MAX_DEPTH:
         return
+    check_count(len(parts.systems), _MOST_SYSTEMS, "articulated systems in a body", scene.library.source(instance))
     parts.systems.append(system)
     motion, kinematics = child(system, "motion"), child(system, "kinematics")
     if motion is not None:

@@ -9,11 +9,11 @@ import numpy as np
 from ravemj.core.transforms import Floats, Pose, pose_of
 from ravemj.errors import Source, SourceError
 from ravemj.formats.collada.library import Library
+from ravemj.formats.limits import MOST_NODES
 from ravemj.formats.meshes.collada.document import Element, children, local_name, words
 from ravemj.formats.meshes.collada.node_transforms import LENGTHS, local_transform
 
 _MAX_DEPTH = 150
-_MAX_NODES = 100_000
 _TRANSFORMS = (*LENGTHS, "skew")
 
 
@@ -106,7 +106,7 @@ def expand(library: Library, scene: Element) -> Node:
     def fill(node: Node, depth: int, suffix: str) -> None:
         nonlocal count
         count += 1
-        if depth > _MAX_DEPTH or count > _MAX_NODES:
+        if depth > _MAX_DEPTH or count > MOST_NODES:
             raise library.error("the nodes are nested too deep or repeated too often", node.element)
         for element in children(node.element, "node", "instance_node"):
             target: Element | None = element

@@ -9,9 +9,7 @@ from urllib.parse import unquote
 
 from ravemj.errors import Source, SourceError
 from ravemj.formats.file_access import FileAccess
-
-MAX_BYTES = 256 << 20
-"""Larger files are refused, and so are compressed ones that unpack to more."""
+from ravemj.formats.limits import check_bytes, check_unpacked, most_bytes, most_unpacked
 
 _MAX_REFERENCES = 1000
 
@@ -30,7 +28,7 @@ class ReferencedFiles:
     stamps: dict[str, str] = field(default_factory=dict[str, str])
     refused: SourceError | None = None
     _contents: dict[str, bytes] = field(default_factory=dict[str, bytes])
-    _bytes_left: int = MAX_BYTES
+    _bytes_left: int = field(default_factory=most_bytes)
 
     def read(self, path: str) -> bytes | None:
         """Return a file's decompressed content, or None if it cannot be read or all files together get too large."""
@@ -131,16 +129,16 @@ def read_bytes(path: str) -> bytes:
     """Read a whole file.
 
     Raises:
-        SourceError: It is missing, unreadable, no regular file, empty, or larger than ``MAX_BYTES``.
+        SourceError: It is missing, unreadable, no regular file, empty, or too large.
     """
     source = Source(path)
     try:
         if not os.path.isfile(path):
             raise SourceError("no such mesh file", source)
-        if os.path.getsize(path) > MAX_BYTES:
-            raise SourceError(f"the file is larger than {MAX_BYTES >> 20} MiB", source)
+        size = os.path.getsize(path)
+        check_bytes(size, "the file has", source)
         with open(path, "rb") as file:
-            data = file.read(MAX_BYTES)
+            data = file.read(size)
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise SourceError(f"cannot read the file: {reason}", source) from error
@@ -153,17 +151,16 @@ def unpacked(data: bytes, path: str) -> bytes:
     """Return data decompressed if gzip compressed it, within bounds.
 
     Raises:
-        SourceError: The data is damaged or unpacks to more than ``MAX_BYTES``.
+        SourceError: The data is damaged, or what it unpacks to is too large.
     """
     if not data.startswith(b"\x1f\x8b"):
         return data
     stream = zlib.decompressobj(wbits=31)
     try:
-        plain = stream.decompress(data, MAX_BYTES)
+        plain = stream.decompress(data, most_unpacked(len(data)))
     except zlib.error as error:
         raise SourceError(f"the compressed file is damaged: {error}", Source(path)) from error
-    if stream.unconsumed_tail:
-        raise SourceError(f"the compressed file unpacks to more than {MAX_BYTES >> 20} MiB", Source(path))
+    check_unpacked(len(plain), len(data), Source(path))
     if not stream.eof:
         raise SourceError("the compressed file is cut short", Source(path))
     return plain

@@ -1,5 +1,6 @@
 """The reader of Wavefront OBJ with its materials, and the writer of OBJ for MuJoCo."""
 
+import io
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,8 @@ from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.parts import BLACK, MeshPart, check_finite, check_size, rgb, welded
 from ravemj.model.scene import Mesh, Rgb
+
+_LONGEST_LINE = 1_000_000  # of OBJ
 
 GRAY = rgb((0.6, 0.6, 0.6))
 """What OpenRAVE's importer gives where there is no material or no colour in it."""
@@ -29,6 +32,7 @@ class _Reading:
 
     def __init__(self, file: FileContent) -> None:
         self.file = file
+        self._triangles = 0
         self.points: list[tuple[float, ...]] = []
         self.materials = {"": _Material()}
         self.current = self.materials[""]
@@ -56,6 +60,8 @@ class _Reading:
             raise ValueError("a face with a vertex that is not there")
         self.current.sizes.append(len(index))
         self.current.index.extend(index)
+        self._triangles += len(index) - 2
+        check_size(self._triangles, self.file.source)
 
     def _library(self, name: str) -> None:
         """Read materials; the last one is in force until the first ``usemtl``, as in OpenRAVE's importer."""
@@ -77,9 +83,11 @@ def read_obj(file: FileContent) -> tuple[MeshPart, ...]:
         SourceError: A line is malformed, or a face has a vertex that is not there.
     """
     reading = _Reading(file)
-    lines = file.data.decode("latin-1").replace("\\\n", " ").splitlines()
+    lines = io.StringIO(file.data.decode("latin-1").replace("\\\n", " "), newline=None)
     for number, line in enumerate(lines, start=1):
         try:
+            if len(line) > _LONGEST_LINE:
+                raise ValueError(f"it has {len(line):,} characters, and at most {_LONGEST_LINE:,} are read")
             reading.line(line.split())
         except ValueError as error:
             raise SourceError(f"malformed line: {error}", Source(file.path, number)) from error

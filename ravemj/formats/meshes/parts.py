@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import Source, SourceError
+from ravemj.formats.limits import MOST_TRIANGLES, check_count
 from ravemj.model.scene import Mesh, Rgb
 
 READERS = {
@@ -20,9 +21,6 @@ READERS = {
 
 MESH_SUFFIXES = tuple(READERS)
 """Ends of the names of files that can be read, in lower case."""
-
-MAX_TRIANGLES = 5_000_000
-"""More triangles than this in one file are refused; a few hundred bytes of USE or instances can ask for billions."""
 
 WHITE: Rgb = (1.0, 1.0, 1.0)
 BLACK: Rgb = (0.0, 0.0, 0.0)
@@ -99,10 +97,9 @@ def check_size(triangles: int, source: Source) -> None:
     """Refuse a file with far more triangles than any model has.
 
     Raises:
-        SourceError: There are more than ``MAX_TRIANGLES``.
+        SourceError: There are more than ``MOST_TRIANGLES``.
     """
-    if triangles > MAX_TRIANGLES:
-        raise SourceError(f"the mesh has more than {MAX_TRIANGLES} triangles", source)
+    check_count(triangles, MOST_TRIANGLES, "triangles in the mesh", source)
 
 
 def check_finite(corners: Floats, source: Source) -> None:

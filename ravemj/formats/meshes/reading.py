@@ -68,7 +68,9 @@ def read_content(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ..
         with np.errstate(all="ignore"):  # what is not finite in the end is refused
             return reader(file), file.references
     except (RecursionError, MemoryError, OverflowError) as error:
-        raise SourceError(f"the file is too large or nested too deep ({type(error).__name__})", file.source) from error
+        raise SourceError(
+            f"the file is too large or nested too deep ({error or type(error).__name__})", file.source
+        ) from error
 
 
 def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:

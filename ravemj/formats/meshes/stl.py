@@ -7,7 +7,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
 from ravemj.formats.meshes.files import FileContent
-from ravemj.formats.meshes.parts import WHITE, MeshPart, corners_of, rgb, welded
+from ravemj.formats.meshes.parts import WHITE, MeshPart, check_size, corners_of, rgb, welded
 from ravemj.model.scene import Mesh
 
 AMBIENT = rgb((0.05, 0.05, 0.05))
@@ -44,13 +44,15 @@ def read_stl(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 def _text_corners(file: FileContent) -> Floats:
-    words = _VERTEX.findall(file.data)
-    if not words or len(words) % 3:
-        raise SourceError("a facet without three vertices", file.source)
+    check_size(file.data.count(b"vertex") // 3, file.source)
+    vertices = (vertex.groups() for vertex in _VERTEX.finditer(file.data))
     try:
-        return np.array([[float(word) for word in vertex] for vertex in words]).reshape(-1, 3, 3)
+        numbers = np.fromiter((float(word) for vertex in vertices for word in vertex), np.float64)
     except ValueError as error:
         raise SourceError(f"a coordinate that is not a number: {error}", file.source) from error
+    if not len(numbers) or len(numbers) % 9:
+        raise SourceError("a facet without three vertices", file.source)
+    return numbers.reshape(-1, 3, 3)
 
 
 def write_stl(mesh: Mesh) -> bytes:

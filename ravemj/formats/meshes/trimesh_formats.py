@@ -11,6 +11,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
+from ravemj.formats.meshes.declared_counts import check_counts
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
 from ravemj.formats.meshes.parts import BLACK, WHITE, MeshPart, rgb, welded
@@ -77,11 +78,14 @@ def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | Non
     options = {"resolver": _References(file), "process": False, "skip_materials": kind == "ply"}  # those are pictures
     trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
     try:
+        check_counts(data, kind, file.source)
         scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind, **options)
         order = {name: number for number, name in enumerate(scene.geometry)}
         nodes: list[Any] = sorted(map(scene.graph.get, scene.graph.nodes_geometry), key=lambda node: order[node[1]])
         placed = [(scene.geometry[name], matrix) for matrix, name in nodes]
         return [_placed(geometry, matrix) for geometry, matrix in placed if hasattr(geometry, "faces")]
+    except SourceError:
+        raise
     except Exception as error:  # trimesh raises all kinds at malformed files
         if file.references.refused is not None:
             raise file.references.refused from error

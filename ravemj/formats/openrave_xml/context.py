@@ -6,10 +6,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from ravemj.core.transforms import UNSCALED, Vec3
-from ravemj.errors import Source, SourceError
+from ravemj.errors import LimitError, Source, SourceError
 from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
+from ravemj.formats.collada.documents import Documents
 from ravemj.formats.data_folders import data_folders
 from ravemj.formats.file_access import FileAccess
+from ravemj.formats.limits import MOST_FILES, MOST_MODEL_TRIANGLES, check_count
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.tags import Tag, Target_contra
 from ravemj.formats.openrave_xml.tree import Document, Element, parse_file
@@ -17,8 +19,6 @@ from ravemj.formats.openrave_xml.values import Placement, is_false, is_true
 from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
-MOST_FILES = 10_000
-"""Files that include others twice, which include others twice, would keep the reader busy for years."""
 _MOST_ABOVE = 4
 """Folders above a file in which what it names is looked for: robots in repositories lie no deeper."""
 FLAGS = {"enable", "circular", "render", "modifiable", "selfcollision", "skipgeometry"}
@@ -39,12 +39,15 @@ class Context:
     Attributes:
         access: The files that may be read, and those that were.
         diagnostics: Takes every finding.
+        documents: The COLLADA documents of the model, and the budget of all its documents.
     """
 
     def __init__(self, access: FileAccess) -> None:
         self.access = access
         self.diagnostics = access.diagnostics
+        self.documents = Documents()
         self._inclusions = 0
+        self._triangles = 0
         self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
         self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
@@ -139,11 +142,12 @@ class Context:
 
     def _included(self, path: str, source: Source) -> Element | None:
         self._inclusions += 1
-        if self._inclusions > MOST_FILES:
-            raise SourceError(f"the model has more than {MOST_FILES} files", source)
+        check_count(self._inclusions, MOST_FILES, "files in the model", source)
         self.access.files.setdefault(path, source)
         try:
-            document = parse_file(path, source)
+            document = parse_file(path, source, self.documents.budget)
+        except LimitError:
+            raise
         except SourceError as error:
             self.diagnostics.error("broken-file", error.message, error.source)
             return None
@@ -221,6 +225,8 @@ class Context:
         parts = self._meshes.get((path, scale))
         if parts is None:
             parts = self._meshes[path, scale] = self._read_mesh(path, source, scale)
+            self._triangles += sum(len(part.mesh.triangles) for part in parts)
+            check_count(self._triangles, MOST_MODEL_TRIANGLES, "triangles in the meshes of the model", source)
         return parts
 
     def _read_mesh(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:

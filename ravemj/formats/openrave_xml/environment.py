@@ -12,7 +12,7 @@ from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
 from ravemj.formats.openrave_xml.kinbody import read_body
 from ravemj.formats.openrave_xml.sensor import read_sensor
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag
-from ravemj.formats.openrave_xml.tree import Element, parse, parse_file
+from ravemj.formats.openrave_xml.tree import Element, content_of, parse
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.model.scene import AttachedSensor, KinBody, Scene, View
 
@@ -89,7 +89,7 @@ def read(
     document = _Document(context)
     failure = None
     try:
-        parsed = parse_file(path) if content is None else parse(content, path)
+        parsed = parse(content_of(path) if content is None else content, path, None, context.documents.budget)
         failure = parsed.error
         context.check_end(parsed)
         document.read(with_given(parsed.root, given, context))

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ravemj.core.transforms import Pose, Vec3
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Diagnostics, LimitError, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.meshes import MESH_SUFFIXES
 from ravemj.formats.openrave_xml.context import Context
@@ -33,7 +33,8 @@ def add_collada(
         return
     path = f"{found_path}#{wanted}" if wanted else found_path
     try:
-        content = collada.read_file(path, context.access, source, uniform(scale, source, context))
+        factor = uniform(scale, source, context)
+        content = collada.read_file(path, context.access, source, factor, context.documents)
         found = next(iter((*content.bodies, *content.others)), None)
         if found is None:
             raise SourceError("there is no body in it", Source(found_path, included_from=source))
@@ -41,6 +42,8 @@ def add_collada(
             raise SourceError("it holds a robot, and OpenRAVE takes no robot for a KinBody", source, "write <Robot>")
         found.joint_values = None  # those of the file hold only where it is loaded by itself (gap-51)
         placed = found.freeze(Diagnostics())
+    except LimitError:
+        raise
     except SourceError as error:
         context.diagnostics.error("broken-file", error.message, error.source)
         return

@@ -11,6 +11,7 @@ from typing import NamedTuple, NoReturn
 from xml.parsers import expat
 
 from ravemj.errors import Source, SourceError
+from ravemj.formats.limits import Budget, check_bytes
 
 DEEPEST = 200
 """More elements inside one another are no model."""
@@ -55,41 +56,45 @@ class Document(NamedTuple):
     unread: Source | None
 
 
-def parse_file(path: str, included_from: Source | None = None) -> Document:
+def parse_file(path: str, included_from: Source | None = None, budget: Budget | None = None) -> Document:
     """Parse a file.
 
     Args:
         path: The file.
         included_from: The element that includes it, for messages.
+        budget: Counts what the model has read; None if this file is all of it.
 
     Raises:
-        SourceError: the file cannot be read, or has no root element.
+        SourceError: the file cannot be read, is too large, or has no root element.
     """
-    return parse(content_of(path, included_from), path, included_from)
+    return parse(content_of(path, included_from), path, included_from, budget)
 
 
 def content_of(path: str, included_from: Source | None = None) -> bytes:
     """Return the bytes of a file; arguments and errors are those of ``parse_file``."""
     try:
         with open(path, "rb", buffering=0) as file:
+            check_bytes(os.fstat(file.fileno()).st_size, "the file has", Source(path, 0, included_from))
             return file.read()
     except OSError as error:
         raise SourceError(f"cannot read the file: {os_reason(error)}", Source(path, 0, included_from)) from None
 
 
-def parse(content: bytes, path: str, included_from: Source | None = None) -> Document:
+def parse(content: bytes, path: str, included_from: Source | None = None, budget: Budget | None = None) -> Document:
     """Parse the content of a file.
 
     Args:
         content: The bytes.
         path: What to call it in messages.
         included_from: The element that includes it, for messages.
+        budget: Counts what the model has read; None if this is all of it.
 
     Raises:
-        SourceError: there is no root element.
+        SourceError: there is no root element, or the content is too large.
     """
     if not content.strip():
         raise SourceError("the file is empty", Source(path, 0, included_from))
+    (budget or Budget()).add_document(content, Source(path, 0, included_from))
     parser = _Parser(path, included_from)
     error = parser.parse(content)
     if parser.root is None:

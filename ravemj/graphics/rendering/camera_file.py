@@ -1,10 +1,12 @@
 """Cameras in files, as ``--camera view.json`` reads them."""
 
 import json
+import os
 from pathlib import Path
 from typing import Any, cast
 
 from ravemj.errors import ArgumentError, Source, SourceError
+from ravemj.formats.limits import json_bytes
 from ravemj.graphics.rendering.camera import DEFAULT_FOVY, Camera
 
 _EXPECTED = "expected a 4x4 matrix as JSON, as a Python list or as rows of numbers"
@@ -23,7 +25,7 @@ def read_camera(path: str | Path) -> Camera:
     """
     source = Source(str(path))
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = json_bytes(os.fspath(path)).decode()
     except OSError as error:
         raise SourceError(f"cannot read the camera: {str(error.strerror).lower()}", source, "check the path") from None
     except UnicodeDecodeError:

@@ -14,6 +14,7 @@ import numpy as np
 from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
 from ravemj.formats.data_folders import existing
+from ravemj.formats.limits import json_bytes
 from ravemj.model import scene
 from ravemj.model.scene import View
 from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
@@ -89,8 +90,7 @@ def read_json(path: str) -> tuple[str, dict[str, Any]]:
 def _parsed(path: str) -> dict[str, Any]:
     """Return the JSON object in a file, which has a list of bodies."""
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            content = json.load(file, parse_constant=_refuse)
+        content = json.loads(json_bytes(path).decode("utf-8-sig"), parse_constant=_refuse)
     except json.JSONDecodeError as error:
         raise SourceError(f"not well-formed JSON: {error.msg}", Source(path, error.lineno)) from error
     except RecursionError as error:

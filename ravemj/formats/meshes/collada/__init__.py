@@ -8,6 +8,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
+from ravemj.formats.limits import MOST_NODES
 from ravemj.formats.meshes.collada.document import (
     ColladaDocument,
     Element,
@@ -26,7 +27,6 @@ from ravemj.model.scene import Rgb
 
 _AMBIENT = rgb((0.1, 0.1, 0.1))  # where the file gives other colours alone, in OpenRAVE's importer
 _MAX_DEPTH = 150
-_MAX_NODES = 100_000
 
 _Y_UP_FROM = {
     "X_UP": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
@@ -77,7 +77,7 @@ class _Flattening:
 
     def __init__(self, document: ColladaDocument) -> None:
         self._document = document
-        self._nodes_left = _MAX_NODES
+        self._nodes_left = MOST_NODES
         self._count = 0
         self._groups: dict[Element, list[tuple[Element, Floats]]] = {}
         library = (item for each in children(document.root, "library_materials") for item in children(each, "material"))

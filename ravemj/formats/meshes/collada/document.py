@@ -6,11 +6,13 @@ import math
 import re
 from collections.abc import Iterator
 
-import numpy as np
 from lxml import etree
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import Source, SourceError
+from ravemj.formats.limits import Budget
+from ravemj.formats.meshes.number_lists import parse_list
+from ravemj.formats.meshes.parts import MeshPart
 
 Element = etree._Element  # pyright: ignore[reportPrivateUsage] - lxml's name for the type
 
@@ -22,22 +24,25 @@ class ColladaDocument:
         path: Where the file lies.
         root: The outermost element.
         digest: A name for the content: the same for the same bytes.
+        elements: The number of elements, or a little more.
+        meshes: Triangles that were read, by what they depend on.
     """
 
-    def __init__(self, data: bytes, path: str) -> None:
+    def __init__(self, data: bytes, path: str, budget: Budget | None = None) -> None:
         """Parse a file.
 
+        Args:
+            data: Its content.
+            path: Where it lies.
+            budget: Counts what the model has read; None if this file is all of it.
+
         Raises:
-            SourceError: It is not well-formed XML, or its root is not COLLADA.
+            SourceError: It is not well-formed XML, its root is not COLLADA, or it is too large.
         """
         self.path = path
         self.digest = hashlib.sha256(data).hexdigest()
-        parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
-        try:
-            root = etree.fromstring(data, parser)
-        except etree.XMLSyntaxError as error:
-            reason = error.msg.partition(", line ")[0]  # the source says it already
-            raise SourceError(f"not well-formed XML: {reason}", Source(path, error.lineno or 0)) from error
+        self.elements = (budget or Budget()).add_document(data, Source(path))
+        root = parse_tree(data, path)
         if root is None or local_name(root) != "COLLADA":
             raise SourceError("the root element is not COLLADA", Source(path, 1))
         self.root = root
@@ -48,6 +53,7 @@ class ColladaDocument:
                 self._by_id.setdefault((local_name(element), name), element)
         self._of_any_kind: dict[str, list[Element]] = {}
         self._places: dict[Element, int] = {}
+        self.meshes: dict[str, tuple[MeshPart, ...]] = {}
 
     def source(self, element: Element) -> Source:
         """Return the place of an element, for messages."""
@@ -72,6 +78,34 @@ class ColladaDocument:
             for (_, known), element in self._by_id.items():
                 self._of_any_kind.setdefault(known, []).append(element)
         return self._of_any_kind.get(name, [])
+
+
+_HEAD = 1 << 16  # bytes in which the XML declaration ends
+_ENCODING = re.compile(rb"<\?xml\s[^>]*?encoding\s*=\s*[\"']([^\"']*)")
+_COUNTABLE = re.compile(
+    rb"utf-?(8|16|32)(le|be)?|ucs-?[24]|(us-?)?ascii|iso-?8859-?\d+|latin-?\d+|(windows-?|cp)125\d|gb\w+|big5"
+    rb"|shift_?jis|euc-?\w+|koi8-?\w",
+    re.IGNORECASE,
+)
+"""Encodings in which ``<`` is the byte that it is in ASCII, so that elements can be counted before parsing."""
+
+
+def parse_tree(data: bytes, path: str) -> Element | None:
+    """Parse XML with lxml, entities left alone.
+
+    Raises:
+        SourceError: It is not well-formed, or has an unusual encoding.
+    """
+    start, _, rest = data[:_HEAD].replace(b"\0", b"").partition(b"?>")  # UTF-16 has zeros
+    declared = _ENCODING.search(start) if rest else None
+    if b"<" not in start or (declared and not _COUNTABLE.fullmatch(declared[1])):
+        raise SourceError("not well-formed XML in one of the usual encodings", Source(path, 1), "save it as UTF-8")
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
+    try:
+        return etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as error:
+        reason = error.msg.partition(", line ")[0]  # the source says it already
+        raise SourceError(f"not well-formed XML: {reason}", Source(path, error.lineno or 0)) from error
 
 
 def local_name(element: Element) -> str:
@@ -109,12 +143,16 @@ _LEADING_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 def numbers(element: Element | None) -> Floats:
     """Return the numbers in an element's text; what is no number is 0, as OpenRAVE's reader has it."""
-    text = words(element)
+    text = "" if element is None else element.text or ""
     try:
-        return np.array(list(map(float, text)))
+        return parse_list(text, float)
     except ValueError:
-        found = (_LEADING_NUMBER.match(word) for word in text)
-        return np.array([float(match[0]) if match else 0.0 for match in found])
+        return parse_list(text, _leading_number)
+
+
+def _leading_number(word: str) -> float:
+    found = _LEADING_NUMBER.match(word)
+    return float(found[0]) if found else 0.0
 
 
 def attribute_number(element: Element | None, name: str, default: float) -> float:

@@ -3,7 +3,6 @@
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
-from ravemj.errors import SourceError
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.cache import cached
 from ravemj.formats.meshes.collada.document import (
@@ -13,10 +12,10 @@ from ravemj.formats.meshes.collada.document import (
     child,
     children,
     local_name,
-    words,
 )
 from ravemj.formats.meshes.collada.document import numbers as numbers_of
-from ravemj.formats.meshes.parts import MAX_TRIANGLES, MeshPart, check_finite, weld
+from ravemj.formats.meshes.number_lists import parse_list
+from ravemj.formats.meshes.parts import MeshPart, check_finite, check_size, weld
 from ravemj.model.scene import Mesh
 
 _OF_ROBOTS = ("triangles", "trifans", "tristrips", "polylist")
@@ -50,8 +49,7 @@ def primitive_groups(
     groups: list[tuple[Element, Floats]] = []
     for element in _by_kind(mesh) if of_robots else children(mesh, *_OF_ROBOTS, "polygons"):
         sizes, index = _polygons(element, local_name(element))
-        if int(np.maximum(sizes - 2, 0).sum()) > MAX_TRIANGLES:
-            raise SourceError(f"the mesh has more than {MAX_TRIANGLES} triangles", document.source(element))
+        check_size(int(np.maximum(sizes - 2, 0).sum()), document.source(element))
         groups.append((element, triangulation.triangles(points, sizes, index, concave=not of_robots)))
     return groups
 
@@ -78,7 +76,9 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
         return tuple(MeshPart(weld(item)) for item in corners)
 
     key = f"{document.digest} {document.place(geometry)} {metres!r}"
-    parts = cached(key.encode(), "geometry", read)
+    parts = document.meshes.get(key)
+    if parts is None:
+        parts = document.meshes[key] = cached(key.encode(), "geometry", read)
     return [(element, part.mesh) for element, part in zip(_by_kind(_mesh(geometry)), parts, strict=True)]
 
 
@@ -159,7 +159,7 @@ def _index_lists(element: Element) -> list[Element]:
 
 def _indices(element: Element, width: int, offset: int) -> Ints:
     try:
-        every = np.array(list(map(int, words(element))), np.int_)
+        every = parse_list(element.text or "", int).astype(np.int_)
     except (ValueError, OverflowError):
         every = np.nan_to_num(numbers_of(element), nan=-1).clip(-1, 2**53).astype(np.int_)
     return every[: len(every) // width * width][offset::width]

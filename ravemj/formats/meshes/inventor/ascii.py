@@ -8,9 +8,9 @@ hundreds of field types is needed. Arrays of numbers are found by one regular ex
 import re
 from typing import NoReturn
 
+from ravemj.formats.limits import MOST_NODES
 from ravemj.formats.meshes.inventor.nodes import (
     MAX_DEPTH,
-    MAX_NODES,
     InventorDocument,
     Is,
     Node,
@@ -47,7 +47,7 @@ class _Parser:
         self._text = document.text
         self._at = 0
         self._depth = 0
-        self._nodes_left = MAX_NODES
+        self._nodes_left = MOST_NODES
         self._named: dict[str, Node] = {}
         self._prototypes: dict[str, Prototype] = {}
         vrml97 = self._text.startswith("#VRML V2")

@@ -13,7 +13,8 @@ from typing import NoReturn
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, MAX_NODES, InventorDocument, Node, Value
+from ravemj.formats.limits import MOST_NODES
+from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, InventorDocument, Node, Value
 
 _IS_GROUP = 2  # in the flags of a node
 _GROUPS_OF_2_0 = frozenset(
@@ -44,7 +45,7 @@ class _Reader:
         self._flagged = flagged
         self._at = 0
         self._depth = 0
-        self._nodes_left = MAX_NODES
+        self._nodes_left = MOST_NODES
         self._named: dict[str, Node] = {}
 
     def nodes(self) -> list[Node]:

@@ -8,12 +8,10 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import Source, SourceError
+from ravemj.formats.meshes.number_lists import parse_list
 
 MAX_DEPTH = 100
 """Nodes nested deeper are refused."""
-
-MAX_NODES = 200_000
-"""More nodes, counting those that USE repeats, are refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,8 +200,8 @@ def parse_numbers(text: str) -> Floats:
     """
     if "#" in text:
         text = "\n".join(line.partition("#")[0] for line in text.splitlines())
-    words = text.replace(",", " ").split()
+    text = text.replace(",", " ")
     try:
-        return np.array(list(map(float, words)))
+        return parse_list(text, float)
     except ValueError:
-        return np.array([float(int(word, 0)) if "x" in word.lower() else float(word) for word in words])
+        return parse_list(text, lambda word: float(int(word, 0)) if "x" in word.lower() else float(word))

@@ -8,12 +8,13 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import SourceError
+from ravemj.formats.limits import MOST_NODES, MOST_TRIANGLES
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.inventor import primitives
-from ravemj.formats.meshes.inventor.nodes import MAX_NODES, Node
+from ravemj.formats.meshes.inventor.nodes import Node
 from ravemj.formats.meshes.matrices import rotation, translation
-from ravemj.formats.meshes.parts import BLACK, MAX_TRIANGLES, WHITE
+from ravemj.formats.meshes.parts import BLACK, WHITE
 from ravemj.model.scene import Rgb
 
 _log = logging.getLogger(__name__)
@@ -66,7 +67,7 @@ class Traversal:
         self._handlers: dict[str, Handler] = {}
         self._pieces: list[Floats] = []
         self._count = 0
-        self._corners_left = 5 * MAX_TRIANGLES
+        self._corners_left = 5 * MOST_TRIANGLES
         self._visits = 0
         self._levels = 0
         self._materials_count = True
@@ -86,7 +87,7 @@ class Traversal:
         self._levels += 1
         for node in nodes:
             self._visits += 1
-            if self._levels > _MAX_LEVELS or self._visits > MAX_NODES:
+            if self._levels > _MAX_LEVELS or self._visits > MOST_NODES:
                 node.fail("the nodes are nested too deep or repeated too often")
             handler = self._handlers.get(node.kind)
             state = handler(self, node, state) if handler else self.visit(node.children, state)
@@ -104,8 +105,8 @@ class Traversal:
         if not self._shapes_count:
             return state
         self._count += len(corners)
-        if self._count > MAX_TRIANGLES:
-            node.fail(f"the mesh has more than {MAX_TRIANGLES} triangles")
+        if self._count > MOST_TRIANGLES:
+            node.fail(f"there are {self._count:,} triangles in the mesh, and at most {MOST_TRIANGLES:,} are read")
         self._pieces.append(corners @ state.matrix[:3, :3].T + state.matrix[:3, 3])
         return state
 

@@ -1,0 +1,27 @@
+"""The COLLADA documents of one model, which several of its elements may name."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from ravemj.formats.limits import Budget
+
+if TYPE_CHECKING:  # lxml is slow to import
+    from ravemj.formats.collada.archive import Archive
+    from ravemj.formats.meshes.collada.document import ColladaDocument
+
+
+@dataclass(slots=True)
+class Documents:
+    """Parsed documents and opened archives, so that each file is read once.
+
+    Attributes:
+        budget: Counts all XML documents of the model, those of other formats included.
+        parsed: Documents by path.
+        archives: Archives by path.
+        places: For each document the archive that it lies in, or None, and its name there.
+    """
+
+    budget: Budget = field(default_factory=Budget)
+    parsed: "dict[str, ColladaDocument]" = field(default_factory=dict[str, "ColladaDocument"])
+    archives: "dict[str, Archive]" = field(default_factory=dict[str, "Archive"])
+    places: "dict[str, tuple[Archive | None, str]]" = field(default_factory=dict[str, "tuple[Archive | None, str]"])

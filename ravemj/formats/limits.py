@@ -1,0 +1,161 @@
+"""Limits of what a model may hold, for all readers: a small file must neither fill the memory nor occupy a processor.
+
+Documents are counted before a parser builds a tree of them, archives while they are unpacked, and counts that files
+declare before anything of that size is allocated.
+"""
+
+import os
+
+from ravemj.errors import ArgumentError, LimitError, Source
+
+VARIABLE = "RAVEMJ_MOST_BYTES"
+"""Environment variable with another number of bytes for ``most_bytes``."""
+
+MOST_RATIO = 200
+"""Largest ratio of the size of unpacked content to that of the archive. Meshes and XML reach about 20."""
+
+MOST_ELEMENTS = 1_000_000
+"""Largest number of XML elements in a model, where an included file counts each time, and of JSON objects and lists."""
+
+MOST_ATTRIBUTES = 2 * MOST_ELEMENTS
+"""Largest number of XML attributes, and of names and texts in JSON."""
+
+MOST_NUMBERS = 50_000_000
+"""Largest number of numbers in one list."""
+
+MOST_TRIANGLES = 5_000_000
+"""Largest number of triangles in a mesh file; a few hundred bytes of USE or instances can ask for billions."""
+
+MOST_MODEL_TRIANGLES = 4 * MOST_TRIANGLES
+"""Largest number of triangles in all mesh files of a model; each scale of a file counts."""
+
+MOST_NODES = 200_000
+"""Largest number of nodes in a mesh file, and of copies of nodes in a COLLADA scene."""
+
+MOST_FILES = 10_000
+"""Largest number of files in an archive or in a model, which may include a file again and again."""
+
+_DEFAULT = 256 << 20
+
+
+def most_bytes() -> int:
+    """Return the largest size of a file, unpacked if it is compressed, and of all XML documents of a model together.
+
+    Raises:
+        ArgumentError: The environment variable ``RAVEMJ_MOST_BYTES`` is no whole number above 0.
+    """
+    text = os.environ.get(VARIABLE) or str(_DEFAULT)
+    if not (text.isascii() and text.isdecimal() and len(text) < 20 and int(text)):
+        raise ArgumentError(f"{VARIABLE} is '{text}'; write a number of bytes, for instance {4 * _DEFAULT}")
+    return int(text)
+
+
+def check_bytes(count: int, what: str, source: Source) -> None:
+    """Refuse content that is too large.
+
+    Args:
+        count: Its size, or a lower bound of it.
+        what: What is said of it, for instance "the file has".
+        source: The file.
+
+    Raises:
+        LimitError: It has more than ``most_bytes()`` bytes.
+    """
+    most = most_bytes()
+    if count > most:
+        message = f"{what} {count:,} bytes or more, and {most:,} are read"
+        raise LimitError(message, source, f"{VARIABLE} in the environment raises the limit")
+
+
+def check_unpacked(count: int, packed: int, source: Source) -> None:
+    """Refuse the unpacked content of an archive or compressed file that is too large, given the sizes of both.
+
+    Raises:
+        LimitError: It has more than ``most_bytes()`` bytes, or is more than ``MOST_RATIO`` times as large.
+    """
+    check_bytes(count, "it unpacks to", source)
+    if count > MOST_RATIO * packed:
+        message = f"it unpacks to {count:,} bytes or more, over {MOST_RATIO} times its own {packed:,}"
+        raise LimitError(message, source, "unpack it yourself if you trust it")
+
+
+def most_unpacked(packed: int) -> int:
+    """Return how much of the unpacked content has to be read to see whether it is too large."""
+    return min(most_bytes(), MOST_RATIO * packed) + 1
+
+
+def json_bytes(path: str) -> bytes:
+    """Return the content of a JSON file.
+
+    Raises:
+        LimitError: It is too large or has too many values.
+        OSError: It cannot be read.
+    """
+    with open(path, "rb") as file:
+        check_bytes(os.fstat(file.fileno()).st_size, "the file has", Source(path))
+        content = file.read()
+    check_json(content, Source(path))
+    return content
+
+
+def check_json(content: bytes, source: Source) -> None:
+    """Refuse a JSON text with too many values, before it is parsed.
+
+    Raises:
+        LimitError: There are too many.
+    """
+    for count, most, what in (
+        (content.count(b"{") + content.count(b"["), MOST_ELEMENTS, "objects and lists"),
+        (content.count(b'"') // 2, MOST_ATTRIBUTES, "names and texts"),
+        (content.count(b","), MOST_NUMBERS, "values"),
+    ):
+        check_count(count, most, what, source)
+
+
+def check_count(count: int, most: int, what: str, source: Source) -> None:
+    """Refuse more things than a limit allows; ``what`` is the noun for them.
+
+    Raises:
+        LimitError: There are too many.
+    """
+    if count > most:
+        raise LimitError(f"there are {count:,} {what}, and at most {most:,} are read", source)
+
+
+class Budget:
+    """The XML documents that one model has read, against the limits.
+
+    A document that is used several times counts its elements at each use, and its bytes as often as it is parsed.
+    """
+
+    def __init__(self) -> None:
+        """Begin with nothing read.
+
+        Raises:
+            ArgumentError: The environment variable ``RAVEMJ_MOST_BYTES`` is wrong.
+        """
+        most_bytes()
+        self._bytes = self._elements = self._attributes = 0
+
+    def add_document(self, content: bytes, source: Source) -> int:
+        """Count a document that is about to be parsed; return the number of its elements, or a little more.
+
+        Raises:
+            LimitError: The model becomes too large.
+        """
+        self._bytes += len(content)
+        check_bytes(self._bytes, "the files of the model have", source)
+        self._attributes += content.count(b"=")
+        check_count(self._attributes, MOST_ATTRIBUTES, "attributes in the model", source)
+        elements = content.count(b"<") - content.count(b"</")
+        self.add_elements(elements, source)
+        return elements
+
+    def add_elements(self, count: int, source: Source) -> None:
+        """Count elements.
+
+        Raises:
+            LimitError: The model has too many.
+        """
+        self._elements += count
+        check_count(self._elements, MOST_ELEMENTS, "elements in the model", source)
