@@ -180,7 +180,10 @@ class Renderer {
     this.remake(name, () => this.groups.set(name, {
       strokes: [lines, points].filter(Boolean).map((batch) => this.stroke(batch, array)),
       figures: [...(spheres ? this.ballsOf(spheres, array) : []), ...(triangles ? this.facetsOf(triangles, array) : [])],
-      marks: [lines, points, spheres, triangles].filter(Boolean).map(({ corners }) => array(corners)),
+      marks: [lines, points, spheres, triangles].filter(Boolean).map((batch) => ({
+        places: array(batch.corners),
+        reach: batch === spheres ? array(batch.sizes).reduce((most, size) => Math.max(most, size), 0) : 0.1,
+      })),
     }));
   }
 
@@ -417,11 +420,11 @@ class Renderer {
       near = Math.min(near, middle - reach);
       far = Math.max(far, middle + reach);
     }
-    for (const places of [...this.groups.values()].flatMap(({ marks }) => marks)) {
+    for (const { places, reach } of [...this.groups.values()].flatMap(({ marks }) => marks)) {
       for (let i = 0; i < places.length; i += 3) {
         const middle = depth(places[i], places[i + 1], places[i + 2]);
-        nearest = Math.min(nearest, middle - 0.1);
-        far = Math.max(far, middle + 0.1);
+        nearest = Math.min(nearest, middle - reach);
+        far = Math.max(far, middle + reach);
       }
     }
     far = Math.max(1.01 * far, 1e-3);
