@@ -400,8 +400,8 @@ class Renderer {
 
   /** Bring shapes to their bodies, and find between which depths they and the drawings are. */
   prepare(view) {
-    const forward = view.axis(2);
-    const depth = (x, y, z) => [x, y, z].reduce((sum, part, i) => sum + (part - view.position[i]) * forward[i], 0);
+    const [px, py, pz] = view.position, [fx, fy, fz] = view.axis(2);
+    const depth = (x, y, z) => (x - px) * fx + (y - py) * fy + (z - pz) * fz;
     let near = Infinity, nearest = Infinity, far = 0;
     for (const shape of this.shapes) {
       const a = this.poses[shape.body], b = shape.rows, to = shape.world, { low, half } = shape.mesh;
@@ -413,7 +413,7 @@ class Renderer {
       }
       let middle = depth(to[3], to[7], to[11]), reach = 0;  // of the box that holds the mesh
       for (let axis = 0; axis < 3; axis++) {
-        const slope = forward[0] * to[axis] + forward[1] * to[4 + axis] + forward[2] * to[8 + axis];
+        const slope = fx * to[axis] + fy * to[4 + axis] + fz * to[8 + axis];
         middle += slope * (low[axis] + half[axis]);
         reach += Math.abs(slope) * half[axis];
       }
