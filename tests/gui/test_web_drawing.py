@@ -431,6 +431,14 @@ class TestWhatIsSeen:
         desk.await_picture()
         del shown
 
+    def test_nothing_is_cut_off_a_ball(self, desk):
+        desk.viewer.SetCamera([[0, 0, -1, 4], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+        ball = desk.env.plot3([[1, 0, 0]], 2, [0, 1, 1], 1)  # around the robot, and far in front of it
+        await_that(lambda: desk.page.evaluate("(drawing.renderer.groups.get('drawings') || {marks: []}).marks.length"))
+        await_that(lambda: desk.page.evaluate("drawing.serverView.position[0]") == 4)
+        await_that(lambda: desk.page.evaluate("drawing.renderer.depths[0] <= 1 && drawing.renderer.depths[1] >= 5"))
+        del ball
+
     def test_styles_look_as_the_servers(self, desk):
         for key in ("v", "t", "w"):  # what collides, transparent, and edges only
             desk.page.keyboard.press(key)

@@ -244,6 +244,19 @@ class TestInABrowser:
                 await_that(lambda: len(viewer._clients) == 2)
                 page.reload()
 
+    def test_a_script_moves_the_views_of_duplicated_tabs(self, page, viewer):
+        page.goto(viewer.url)
+        page.wait_for_selector("[data-crisp]")
+        with page.expect_popup() as opened:
+            page.evaluate("open(location.href)")  # it has a copy of what the tab stores, as duplicates have
+        other = opened.value
+        other.wait_for_selector("[data-crisp]")
+        assert other.evaluate("sessionStorage.ravemj") == page.evaluate("sessionStorage.ravemj")
+        viewer.SetCamera(FAR)
+        for tab in (page, other):
+            await_that(lambda tab=tab: self.position(tab) == 3, "elsewhere")
+        other.close()
+
     def position(self, frame) -> float:
         return frame.evaluate("drawing && drawing.serverView ? drawing.serverView.position[0] : null")
 
@@ -305,18 +318,19 @@ class TestInABrowser:
         page.wait_for_selector("[data-crisp]")
         names = page.evaluate(
             "['機械 1.xml', 'ä'.repeat(300) + '.stl', '機'.repeat(300) + '.dae', '../a.xml',"
-            "'.bashrc', 'a/b', ' x', '💡.xml']"
+            "'.bashrc', 'a/b', ' x', '💡.xml', 'u\\u0308.stl']"
             ".map(fileName)"
         )
         assert names == [
             "機械 1.xml",
             96 * "ä" + ".stl",
-            83 * "機" + ".dae",
+            96 * "機" + ".dae",
             "_._a.xml",
             "_bashrc",
             "a_b",
             "_x",
             "_.xml",
+            "ü.stl",
         ]
         box = '<KinBody name="box"><Body><Geom type="box"><extents>1 1 1</extents></Geom></Body></KinBody>'
         page.evaluate("content => upload([new File([content], '机器人'.repeat(80) + '.xml')])", box)

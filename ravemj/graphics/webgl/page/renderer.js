@@ -180,7 +180,10 @@ class Renderer {
     this.remake(name, () => this.groups.set(name, {
       strokes: [lines, points].filter(Boolean).map((batch) => this.stroke(batch, array)),
       figures: [...(spheres ? this.ballsOf(spheres, array) : []), ...(triangles ? this.facetsOf(triangles, array) : [])],
-      marks: [lines, points, spheres, triangles].filter(Boolean).map(({ corners }) => array(corners)),
+      marks: [lines, points, spheres, triangles].filter(Boolean).map((batch) => ({
+        places: array(batch.corners),
+        reach: batch === spheres ? array(batch.sizes).reduce((most, size) => Math.max(most, size), 0) : 0.1,
+      })),
     }));
   }
 
@@ -397,8 +400,8 @@ class Renderer {
 
   /** Bring shapes to their bodies, and find between which depths they and the drawings are. */
   prepare(view) {
-    const forward = view.axis(2);
-    const depth = (x, y, z) => [x, y, z].reduce((sum, part, i) => sum + (part - view.position[i]) * forward[i], 0);
+    const [px, py, pz] = view.position, [fx, fy, fz] = view.axis(2);
+    const depth = (x, y, z) => (x - px) * fx + (y - py) * fy + (z - pz) * fz;
     let near = Infinity, nearest = Infinity, far = 0;
     for (const shape of this.shapes) {
       const a = this.poses[shape.body], b = shape.rows, to = shape.world, { low, half } = shape.mesh;
@@ -410,18 +413,18 @@ class Renderer {
       }
       let middle = depth(to[3], to[7], to[11]), reach = 0;  // of the box that holds the mesh
       for (let axis = 0; axis < 3; axis++) {
-        const slope = forward[0] * to[axis] + forward[1] * to[4 + axis] + forward[2] * to[8 + axis];
+        const slope = fx * to[axis] + fy * to[4 + axis] + fz * to[8 + axis];
         middle += slope * (low[axis] + half[axis]);
         reach += Math.abs(slope) * half[axis];
       }
       near = Math.min(near, middle - reach);
       far = Math.max(far, middle + reach);
     }
-    for (const places of [...this.groups.values()].flatMap(({ marks }) => marks)) {
+    for (const { places, reach } of [...this.groups.values()].flatMap(({ marks }) => marks)) {
       for (let i = 0; i < places.length; i += 3) {
         const middle = depth(places[i], places[i + 1], places[i + 2]);
-        nearest = Math.min(nearest, middle - 0.1);
-        far = Math.max(far, middle + 0.1);
+        nearest = Math.min(nearest, middle - reach);
+        far = Math.max(far, middle + reach);
       }
     }
     far = Math.max(1.01 * far, 1e-3);

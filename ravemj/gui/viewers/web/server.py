@@ -279,7 +279,7 @@ def _bracketed(name: str) -> str:
 def _is_refused(connection: socket.socket) -> bool:
     """Wait for the method of a request; refuse it, and close the connection, if it is not GET.
 
-    ``websockets`` closes the connection without an answer, or did so in earlier versions.
+    ``websockets`` would close the connection without an answer, at least if the request has a body.
     """
     try:
         connection.settimeout(_HANDSHAKE)
