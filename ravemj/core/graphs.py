@@ -1,10 +1,9 @@
 """Topological orders, connected components and shortest paths of graphs."""
 
-from collections.abc import Callable, Iterable, Sequence
-
-import numpy as np
-
-from ravemj.core.transforms import Ints
+import itertools
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 Pair = tuple[int, int]
 
@@ -52,72 +51,144 @@ def connected_components(count: int, edges: Iterable[Pair]) -> list[int]:
     return [root(node) for node in range(count)]
 
 
-class ShortestPaths:
-    """The shortest paths between all nodes of an undirected graph (Floyd and Warshall).
-
-    Among several shortest paths it takes the one whose largest inner node is smallest, as OpenRAVE does.
+class DepthFirst(NamedTuple):
+    """The tree of a depth-first search in an undirected graph, which tells what single nodes cut off.
 
     Attributes:
-        lengths: The number of edges on each, shape (count, count); ``count`` where there is none.
+        number: For each node that was reached its place in the order of the search.
+        above: For each of them but the first the node before it on the way there.
+        highest: For each node the smallest number next to it or to a node behind it in the tree. A node cuts off the
+            branch of a node that hangs on it unless the branch has a smaller number than itself here.
+    """
+
+    number: dict[int, int]
+    above: dict[int, int]
+    highest: dict[int, int]
+
+
+def depth_first(neighbours: Sequence[Iterable[int]], start: int) -> DepthFirst:
+    """Search an undirected graph depth-first, given the neighbours of each node."""
+    tree = DepthFirst({start: 0}, {}, {start: 0})
+    number, above, highest = tree
+    path = [(start, iter(neighbours[start]))]
+    while path:
+        node, rest = path[-1]
+        for other in rest:
+            if other in number:
+                highest[node] = min(highest[node], number[other])
+            else:
+                highest[other] = number[other] = len(number)
+                above[other] = node
+                path.append((other, iter(neighbours[other])))
+                break
+        else:
+            path.pop()
+            if path:
+                highest[path[-1][0]] = min(highest[path[-1][0]], highest[node])
+    return tree
+
+
+class ShortestPaths:
+    """The shortest paths in an undirected graph.
+
+    Among several shortest paths between two nodes it takes the one whose largest inner node is smallest, as OpenRAVE
+    does. Of several edges between two nodes the last one counts.
     """
 
     def __init__(self, count: int, edges: Sequence[Pair]) -> None:
-        """Find the paths. Of several edges between two nodes the last one counts."""
-        self._edges = edges
-        self.lengths: Ints = np.full((count, count), count)
-        np.fill_diagonal(self.lengths, 0)
-        self._edge = np.full((count, count), -1)  # [end, start]: the first edge on the path from start to end
+        """Take the edges between ``count`` nodes."""
+        self._edge: list[dict[int, int]] = [{} for _ in range(count)]  # to each neighbour
         for index, (first, second) in enumerate(edges):
-            self.lengths[first, second] = self.lengths[second, first] = 1
-            self._edge[first, second] = self._edge[second, first] = index
-        for node in range(count):
-            through = self.lengths[:, node, None] + self.lengths[node]
-            shorter = through < self.lengths
-            np.copyto(self.lengths, through, where=shorter)
-            np.copyto(self._edge, self._edge[node], where=shorter)
+            if first != second:
+                self._edge[first][second] = self._edge[second][first] = index
+        self._found: dict[Pair, list[int]] = {}
 
     def path(self, start: int, end: int) -> list[int]:
         """Return the edges of the path between two nodes; none if there is no path, or if the nodes are the same."""
-        path: list[int] = []
-        while start != end and self._edge[end, start] >= 0:
-            path.append(int(self._edge[end, start]))
-            start = sum(self._edges[path[-1]]) - start
-        return path
+        path = self._found.get((start, end))
+        if path is None:
+            path = self._found[start, end] = list(self._steps(start, end))
+        return [*path]
 
-    def totals(self, weights: Sequence[int]) -> Ints:
-        """Return the sum of the weights of the edges on each path, shape (count, count); 0 where there is none."""
-        totals: Ints = np.zeros_like(self.lengths)
-        count = len(self.lengths)
-        of_edge = np.array(weights, dtype=int)
-        both_ends = np.array([first + second for first, second in self._edges], dtype=int)
-        for length in range(1, count):
-            ends, starts = np.nonzero(self.lengths == length)
-            if not len(ends):
-                break
-            first = self._edge[ends, starts]
-            totals[ends, starts] = of_edge[first] + totals[ends, both_ends[first] - starts]
-        return totals
+    def _steps(self, start: int, end: int) -> Iterator[int]:
+        distance = self._distances(end, start)
+        while start != end and start in distance:
+            step = self._step(start, end, distance)
+            yield self._edge[start][step]
+            start = step
+
+    def _step(self, start: int, end: int, distance: dict[int, int]) -> int:
+        """Return the next node on the path, given the distances of nodes from its end."""
+        nearer = self._nearer(start, distance)
+        while len(nearer) > 1:  # on the way to the largest inner node, and so on
+            end = self._largest_inner(start, end, distance)
+            distance = self._distances(end, start)
+            nearer = self._nearer(start, distance)
+        return nearer[0]
+
+    def _largest_inner(self, start: int, end: int, distance: dict[int, int]) -> int:
+        """Return the largest inner node of the path, which is the smallest of all shortest paths."""
+        layers = [{start}]
+        while end not in layers[-1]:
+            layers.append({near for node in layers[-1] for near in self._nearer(node, distance)})
+        largest = {end: -1}
+        for layer in reversed(layers[:-1]):
+            for node in layer:
+                ways = (max(largest[near], near if near != end else -1) for near in self._nearer(node, distance))
+                largest[node] = min(ways)
+        return largest[start]
+
+    def _nearer(self, node: int, distance: dict[int, int]) -> list[int]:
+        """Return the neighbours of a node that are nearer to where the distances are measured from."""
+        return [other for other in self._edge[node] if distance.get(other, len(self._edge)) < distance[node]]
+
+    def _distances(self, origin: int, wanted: int) -> dict[int, int]:
+        """Return the distances of nodes from an origin, as far as that of a wanted node."""
+        distance = {origin: 0}
+        queue = deque([origin])
+        while queue and wanted not in distance:
+            node = queue.popleft()
+            for other in self._edge[node]:
+                if other not in distance:
+                    distance[other] = distance[node] + 1
+                    queue.append(other)
+        return distance
+
+    def light_pairs(self, is_heavy: Sequence[bool]) -> Iterator[Pair]:
+        """Yield the pairs of different nodes, the smaller one first, with at most one heavy edge on their path."""
+        joined = [(index, (node, other)) for node, near in enumerate(self._edge) for other, index in near.items()]
+        count = len(self._edge)
+        part = connected_components(count, (pair for index, pair in joined if not is_heavy[index]))
+        members: dict[int, list[int]] = {}
+        for node, label in enumerate(part):
+            members.setdefault(label, []).append(node)
+        whole = connected_components(count, (pair for _, pair in joined))
+        sizes, lines = Counter(whole), Counter(whole[pair[0]] for _, pair in joined)
+        near_parts = {(label, label) for label in members}
+        near_parts |= {ordered_pair(part[first], part[second]) for _, (first, second) in joined}
+        for one, other in near_parts:
+            is_tree = lines[whole[one]] == 2 * (sizes[whole[one]] - 1)  # each edge stands in there twice
+            for first, second in itertools.product(members[one], members[other]):
+                if first < second or (first > second and one != other):
+                    if is_tree or sum(is_heavy[index] for index in self.path(first, second)) <= 1:
+                        yield ordered_pair(first, second)
 
 
-def lies_between(edges: Sequence[Pair], edge: Pair, start: int, end: int) -> bool:
-    """Return whether an edge lies on a simple path between two nodes, which visits no node twice.
+def nodes_between(edges: Iterable[Pair], count: int, start: int, end: int) -> set[int]:
+    """Return the nodes on simple paths between two nodes, which visit no node twice; none if these are the same.
 
-    It does if no single node cuts its two ends off from these nodes (Menger).
+    An edge lies on such a path if both of its nodes do. They are in one block with an edge from the start to the end.
     """
-    neighbours: dict[int, list[int]] = {}
+    neighbours: list[list[int]] = [[] for _ in range(count)]
     for first, second in edges:
-        neighbours.setdefault(first, []).append(second)
-        neighbours.setdefault(second, []).append(first)
-
-    def reaches_without(node: int | None) -> bool:
-        reached, pending = {start, end, node}, [one for one in (start, end) if one != node]
-        while pending:
-            current = pending.pop()
-            if current in edge:
-                return True
-            news = [other for other in neighbours.get(current, ()) if other not in reached]
-            reached.update(news)
-            pending += news
-        return False
-
-    return start != end and all(reaches_without(node) for node in (None, *neighbours))
+        neighbours[first].append(second)
+        neighbours[second].append(first)
+    neighbours[start].insert(0, end)
+    neighbours[end].append(start)
+    number, above, highest = depth_first(neighbours, start)
+    block = {start, end} if start != end else set[int]()
+    for node in list(number)[2:]:
+        parent = above[node]
+        if parent != start and parent in block and highest[node] < number[parent]:
+            block.add(node)
+    return block

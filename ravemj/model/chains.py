@@ -6,8 +6,6 @@ Joints are counted as in a body's list: active ones, then passive ones.
 import itertools
 from functools import cached_property
 
-import numpy as np
-
 from ravemj.core.graphs import Pair, ShortestPaths, connected_components, ordered_pair
 from ravemj.model.scene import KinBody, Manipulator
 
@@ -42,9 +40,13 @@ class Connections:
     @cached_property
     def close_pairs(self) -> frozenset[Pair]:
         """Pairs of links that a joint joins, or between which at most one joint moves on the shortest path."""
-        moving = self.paths.totals([not joint.static for joint in self.joints])
-        apart = ((i, j) for i, j in np.argwhere(moving <= 1).tolist() if i < j)
-        return frozenset(itertools.starmap(ordered_pair, self.ends)).union(apart)
+        near = self.paths.light_pairs([not joint.static for joint in self.joints])
+        return frozenset(itertools.starmap(ordered_pair, self.ends)).union(near)
+
+    @cached_property
+    def parts(self) -> list[int]:
+        """For each link the first one of those that joints connect it with, directly or not."""
+        return connected_components(self._count, self.ends)
 
     @cached_property
     def _placing(self) -> dict[int, int]:
@@ -194,6 +196,18 @@ def independent_links(body: KinBody, manipulator: Manipulator) -> list[int]:
     return [link for link in range(len(body.links)) if not dofs_moving(body, link) & own]
 
 
+def separate_pairs(body: KinBody) -> list[Pair]:
+    """Return the pairs of links that are not adjacent, sorted, the smaller index first; see ``adjacent_pairs``."""
+    known = connections(body)
+    groups: dict[int, list[int]] = {}
+    for link, one in enumerate(body.links):
+        if one.geometries:
+            groups.setdefault(known.parts[link] if body.joined_links_adjacent else 0, []).append(link)
+    left_out = {*body.adjacent, *(known.close_pairs if body.joined_links_adjacent else ())}
+    pairs = (pair for group in groups.values() for pair in itertools.combinations(group, 2))
+    return sorted(pair for pair in pairs if pair not in left_out)
+
+
 def adjacent_pairs(body: KinBody) -> frozenset[Pair]:
     """Return the pairs of adjacent links, which OpenRAVE's self-collision test leaves out.
 
@@ -204,9 +218,5 @@ def adjacent_pairs(body: KinBody) -> frozenset[Pair]:
     Returns:
         Pairs of link indices, the smaller one first.
     """
-    if len(body.links) < 2:
-        return frozenset()
-    links = range(len(body.links))
-    joined = connections(body).close_pairs if body.joined_links_adjacent else frozenset[Pair]()
-    empty = {ordered_pair(i, j) for i in links if not body.links[i].geometries for j in links if i != j}
-    return joined | empty | set(body.adjacent)
+    pairs = frozenset(itertools.combinations(range(len(body.links)), 2))
+    return pairs.difference(separate_pairs(body)).union(body.adjacent if pairs else ())

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats, Pose
-from ravemj.model.chains import adjacent_pairs
+from ravemj.model.chains import adjacent_pairs, separate_pairs
 from ravemj.model.inertia import principal_frame
 from ravemj.model.joints import poses_at
 from ravemj.model.mimic import MimicJoints
@@ -90,15 +90,14 @@ class _Comparison:
         yield from self._same(
             part, "has an active manipulator", first.has_active_manipulator, second.has_active_manipulator
         )
-        pairs = [sorted(adjacent_pairs(body)) for body in (first, second)]
         structure = [
             *self._same(part, "links", _names(first.links), _names(second.links)),
             *self._same(part, "joints", _names(first.joints), _names(second.joints)),
             *self._same(part, "passive joints", _names(first.passive_joints), _names(second.passive_joints)),
         ]
         yield from structure
-        if len(first.links) == len(second.links):
-            yield from self._same(part, "adjacent links", *pairs)
+        if len(first.links) == len(second.links) and separate_pairs(first) != separate_pairs(second):
+            yield from self._same(part, "adjacent links", *(sorted(adjacent_pairs(body)) for body in (first, second)))
         for one, other in zip(first.links, second.links, strict=False):
             yield from self._links(f"{part} link '{one.name}'", one, other)
         for one, other in zip(first.all_joints, second.all_joints, strict=False):

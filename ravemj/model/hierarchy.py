@@ -6,12 +6,14 @@ in order of depth, and the first one to reach a link places it. Later ones close
 that a fixed joint always places its child.
 """
 
+import bisect
+import heapq
 import sys
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from ravemj.core.graphs import topological_order
+from ravemj.core.graphs import depth_first, topological_order
 
 _UNREACHED = -1
 """The depth of a link that no path joins to link 0; OpenRAVE compares it with others."""
@@ -59,12 +61,14 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
     levels = [tuple(sorted(depths[link] for link in links)) for links in ends]
     grounded = [static_links[first] or static_links[second] for first, second in ends]
     placed_by: dict[int, int] = {}
+    carriers: set[int] = set()
     order = topological_order(_acting_order(levels, grounded), lambda index: edges[index].follows)
     for index in order:
         parent, child = ends[index]
         free = child != 0 and child not in placed_by
-        if (free or edges[index].fixed) and child not in _ancestors(parent, placed_by, ends):  # none hangs on itself
+        if (free or edges[index].fixed) and not _hangs_on(parent, child, placed_by, ends, carriers):
             placed_by[child] = index
+            carriers.add(parent)
     return Hierarchy(swapped, _parents_first(set(placed_by.values()), ends, order))
 
 
@@ -75,16 +79,22 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
     levels, but one at a static link not for others at static links. Those that wait no longer queue up in the order of
     the file.
     """
-    queue, order = deque[int](), list[int]()
-    waiting = list(range(len(levels)))
-    while waiting or queue:
-        unfinished = [*queue, *waiting]
-        lowest = min(levels[index] for index in unfinished)
-        lowest_free = min((levels[index] for index in unfinished if not grounded[index]), default=_HIGHEST)
-        ready = [index for index in waiting if levels[index] <= (lowest_free if grounded[index] else lowest)]
-        queue.extend(ready)
-        waiting = [index for index in waiting if index not in set(ready)] if ready else waiting
+    by_level = sorted(range(len(levels)), key=lambda index: levels[index])
+    unfinished, free = deque(by_level), deque(index for index in by_level if not grounded[index])
+    waiting_free, waiting_grounded = deque(free), deque(index for index in by_level if grounded[index])
+    queue, order, finished = deque[int](), list[int](), set[int]()
+    while unfinished:
+        ready: list[int] = []
+        for waiting, bound in ((waiting_free, unfinished), (waiting_grounded, free)):
+            lowest = levels[bound[0]] if bound else _HIGHEST
+            while waiting and levels[waiting[0]] <= lowest:
+                ready.append(waiting.popleft())
+        queue.extend(sorted(ready))
         order.append(queue.popleft())
+        finished.add(order[-1])
+        for items in (unfinished, free):
+            while items and items[0] in finished:
+                items.popleft()
     return order
 
 
@@ -111,29 +121,43 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
         neighbours[first].append(second)
         neighbours[second].append(first)
     depths = [0 if index == 0 or static else _UNREACHED for index, static in enumerate(static_links)]
-    waiting = {link: _parents(link, neighbours) for link, depth in enumerate(depths) if depth == _UNREACHED}
-    settled = True
-    while settled:
-        settled = False
-        for link in list(waiting):
-            known = [depths[parent] for parent in waiting[link] if depths[parent] != _UNREACHED]
-            if known:
-                depths[link] = 1 + min(known)
-                del waiting[link]
-                settled = True
+    parents = _parents(neighbours)
+    children: list[list[int]] = [[] for _ in static_links]
+    for link, found in enumerate(parents):
+        for parent in found:
+            children[parent].append(link)
+    # Round after round, each link in the order of the file gets its depth once that of a parent is known.
+    turns = [(1, child) for link, depth in enumerate(depths) if depth != _UNREACHED for child in children[link]]
+    heapq.heapify(turns)
+    while turns:
+        turn, link = heapq.heappop(turns)
+        if depths[link] == _UNREACHED:
+            depths[link] = 1 + min(depths[parent] for parent in parents[link] if depths[parent] != _UNREACHED)
+            for child in children[link]:
+                heapq.heappush(turns, (turn if child > link else turn + 1, child))
     return depths
 
 
-def _parents(link: int, neighbours: Sequence[Sequence[int]]) -> list[int]:
-    """Return the neighbours of a link that a path from link 0 reaches without that link."""
-    reached = {0, link}
-    pending = [0]
-    while pending:
-        for neighbour in neighbours[pending.pop()]:
-            if neighbour not in reached:
-                reached.add(neighbour)
-                pending.append(neighbour)
-    return [neighbour for neighbour in neighbours[link] if neighbour in reached]
+def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Return for each link the neighbours that a path from link 0 reaches without that link.
+
+    In the tree of a depth-first search from link 0, neighbours are above or below a link. Those above are reached
+    without it, and those below if it does not cut their branch off.
+    """
+    number, above, highest = depth_first(neighbours, 0)
+    branches: list[list[int]] = [[] for _ in neighbours]
+    for branch, link in above.items():
+        branches[link].append(branch)
+
+    def is_reached(link: int, other: int) -> bool:
+        if other not in number or other == link:
+            return False
+        if number[other] < number[link]:
+            return True
+        place = bisect.bisect_right(branches[link], number[other], key=lambda branch: number[branch])
+        return highest[branches[link][place - 1]] < number[link]
+
+    return [[other for other in near if is_reached(link, other)] for link, near in enumerate(neighbours)]
 
 
 def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int], *, has_dofs: bool) -> bool:
@@ -146,9 +170,10 @@ def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Se
     return depths[second] < depths[first]
 
 
-def _ancestors(link: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]]) -> Iterator[int]:
-    """Yield a link and the links that it hangs on."""
-    yield link
-    while link in placed_by:
+def _hangs_on(
+    link: int, other: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]], carriers: set[int]
+) -> bool:
+    """Return whether a link is another one or hangs on it, given the links that carry others."""
+    while link != other and other in carriers and link in placed_by:
         link = ends[placed_by[link]][0]
-        yield link
+    return link == other

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from ravemj.core.graphs import lies_between
+from ravemj.core.graphs import nodes_between
 from ravemj.core.transforms import Pose, Vec3, dot, scale
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.model import chains, scene
@@ -72,13 +72,14 @@ def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
     if effector is None:
         return
     edges = [(joint.parent, joint.child) for joint in body.all_joints]
+    between = nodes_between(edges, len(body.links), 0, effector)
     for dof in manipulator.arm_dofs:
         joint = body.joint_of_dof(dof)
         moved = [
             joint,
             *(other for other in body.passive_joints if other.mimic is not None and dof in other.mimic.dofs),
         ]
-        if not any(lies_between(edges, (one.parent, one.child), 0, effector) for one in moved):
+        if not any(one.parent in between and one.child in between for one in moved):
             message = f"manipulator '{manipulator.name}': joint '{joint.name}' does not move its effector"
             link = body.links[effector].name
             hint = f"name as base a link between '{body.links[0].name}' and '{link}'"

@@ -15,7 +15,7 @@ from ravemj.core.transforms import Floats, Ints, inverse
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.world import CollisionWorld, cross, joined
 from ravemj.engine.simulation import BodyState
-from ravemj.model.chains import adjacent_pairs, dofs_moving
+from ravemj.model.chains import dofs_moving, separate_pairs
 from ravemj.model.scene import KinBody
 
 
@@ -128,18 +128,15 @@ def tested_pairs(world: CollisionWorld, body: BodyState) -> list[Pair]:
     known = _touching_at_rest.get(body)
     if known is None or known[0] is not body.rest_poses:
         _touching_at_rest[body] = known = body.rest_poses, _find_touching(world, body)
-    left_out = adjacent_pairs(body.scene) | known[1]
-    links = range(len(body.scene.links))
-    return [pair for pair in combinations(links, 2) if pair not in left_out]
+    return [pair for pair in separate_pairs(body.scene) if pair not in known[1]]
 
 
 def _find_touching(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
     if body.rest_poses is None:
         return frozenset()
     links = range(len(body.scene.links))
-    candidates = sorted(set(combinations(links, 2)) - adjacent_pairs(body.scene))
     geoms = [world.geoms_of_link(body, link, enabled_only=False) for link in links]
-    pairs = world.make_pairs(*joined(cross(geoms[first], geoms[second]) for first, second in candidates))
+    pairs = world.make_pairs(*joined(cross(geoms[first], geoms[second]) for first, second in separate_pairs(body.scene)))
     motions = {
         (body, link): rest @ inverse(now)
         for link, (rest, now) in enumerate(zip(body.rest_poses, body.link_transforms(), strict=True))
