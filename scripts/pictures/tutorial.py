@@ -2,6 +2,8 @@
 
 Blocks of the pages are cells: ``python`` and ``ipython`` code, ``sh`` commands; one with a file name beside
 its language is saved as that file. ``text`` after one of them is what it prints. All other text is Markdown.
+
+Notebooks hold all their pictures: those that a cell makes are its output, others are attached to their text.
 """
 
 import json
@@ -9,17 +11,24 @@ import re
 import shutil
 import sys
 import tempfile
+from base64 import b64encode
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from ravemj.graphics.shown_path import ShownPath
 
 PAGES = ("tutorial", "tip", "obstacle")
 """Names of the tutorials in ``docs/``; the pictures of each begin with its name."""
 
 _BLOCK = re.compile(r"^```(python|ipython|sh|xml (?=\S)|text) *(\S*)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 _COLOUR = re.compile(r"\x1b\[[\d;]*m|\r")
-_LINK = re.compile(r"\]\((?!https?:|#)(?=[^)]+\))")
+_LINK = re.compile(r"\]\((?!https?:|#|pictures/)(?=[^)]+\))")
 _FRAME = re.compile(r"^<iframe .*</iframe>\n*", re.MULTILINE)  # notebooks show none
+
+_PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([\w.-]+)\)\n*")
+_MAKES = r'(?:\.save\(|ravemj\.record\(.*)"{}"'  # a line that makes a picture
+_SAVES = re.compile(r'^(.*)\.save\("[\w-]+\.png"\)$|^\w+ = (ravemj\.record\(.*\))$', re.MULTILINE)
 
 Cell = dict[str, Any]
 
@@ -28,24 +37,69 @@ def main(folder: Path) -> None:
     """Write the notebooks, run them, and keep the pictures that they save."""
     (folder / "notebooks").mkdir(exist_ok=True)
     for name in PAGES:
-        text = notebook((folder / f"{name}.md").read_text())
-        (folder / "notebooks" / f"{name}.ipynb").write_text(text)
+        page = (folder / f"{name}.md").read_text()
         with tempfile.TemporaryDirectory() as place:
-            outputs(text, Path(place))
+            outputs(as_json(cells_of(page)), Path(place))
             for picture in Path(place).glob(f"{name}-*.*"):
                 shutil.copy(picture, folder / ("motions" if picture.suffix == ".html" else "pictures"))
+        (folder / "notebooks" / f"{name}.ipynb").write_text(notebook(page, folder / "pictures"))
 
 
-def notebook(page: str) -> str:
-    """Return the notebook that a page makes, as JSON."""
-    cells = [{**cell, "id": f"cell-{number:02}"} for number, cell in enumerate(_cells(page), 1)]
+def notebook(page: str, pictures: Path) -> str:
+    """Return the notebook that a page makes, as JSON, with the pictures of a folder."""
+    cells = cells_of(page)
+    for name in [match[1] for match in _PICTURE.finditer(page)]:
+        makers = [cell for cell in cells if re.search(_MAKES.format(re.escape(name)), cell["source"], re.MULTILINE)]
+        for cell in cells if not makers else ():
+            _attach(cell, pictures / name)
+        for cell in makers:
+            _add_output(cell, pictures / name)
+    for cell in cells:
+        cell["source"] = _PICTURE.sub("", cell["source"]).strip()
+        if cell["cell_type"] == "code":
+            cell["source"] = _SAVES.sub(r"display(\1\2)", cell["source"])
+    return as_json([cell for cell in cells if cell["source"]])
+
+
+def _attach(cell: Cell, picture: Path) -> None:
+    """Put a picture into a cell whose text shows it."""
+    if f"pictures/{picture.name}" in cell["source"]:
+        cell["source"] = cell["source"].replace(f"pictures/{picture.name}", f"attachment:{picture.name}")
+        cell.setdefault("attachments", {})[picture.name] = {_kind(picture): _base64(picture)}
+
+
+def _add_output(cell: Cell, picture: Path) -> None:
+    """Give a cell a picture as its output, before or behind what it prints."""
+    content = {_kind(picture): _base64(picture)}
+    if picture.suffix != ".png":
+        content = {"text/html": ShownPath(picture)._repr_html_()}
+    is_last = f'"{picture.name}"' in cell["source"].split("\n")[-1]
+    shown = {"data": content, "metadata": {}, "output_type": "display_data"}
+    cell["outputs"].insert(len(cell["outputs"]) if is_last else 0, shown)
+
+
+def _kind(picture: Path) -> str:
+    return f"image/{picture.suffix[1:]}"
+
+
+def _base64(picture: Path) -> str:
+    return b64encode(picture.read_bytes()).decode()
+
+
+def as_json(cells: list[Cell]) -> str:
+    """Return the notebook of some cells."""
+    cells = [{**cell, "id": f"cell-{number:02}"} for number, cell in enumerate(cells, 1)]
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
     content = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
+def cells_of(page: str) -> list[Cell]:
+    """Return the cells of a page without numbers; what a block prints belongs to the cell before it."""
+    return list(_cells(page))
+
+
 def _cells(page: str) -> Iterator[Cell]:
-    """Yield cells without numbers; what a block prints belongs to the cell before it."""
     code: Cell | None = None
     end = 0
     for block in _BLOCK.finditer(page):

@@ -1,16 +1,20 @@
 """The tutorials: every block runs, says what the page says and draws the page's pictures; they are notebooks, too."""
 
+import base64
+import io
 import json
 import re
 import shlex
 import sys
 from pathlib import Path
 
+import nbformat
 import numpy as np
 import pytest
 import tutorial
 from command_line import note_on_rays, ravemj_command
 from conftest import REPOSITORY
+from nbclient import NotebookClient
 from PIL import Image
 
 import ravemj
@@ -51,11 +55,24 @@ def pictures_are_those_of_the_page(name: str, folder: Path) -> None:
 @pytest.mark.stress
 @pytest.mark.filterwarnings("ignore")  # Jupyter's own
 def test_the_first_tutorial_runs_in_a_notebook(folder):
-    blocks = tutorial.outputs(tutorial.notebook(PAGES["tutorial"]), folder)
+    blocks = tutorial.outputs(tutorial.as_json(tutorial.cells_of(PAGES["tutorial"])), folder)
     assert len(blocks) > 20
     for printed, said in blocks:
         assert printed.replace(note_on_rays(), "") == said
     pictures_are_those_of_the_page("tutorial", folder)
+
+
+@pytest.mark.stress
+@pytest.mark.filterwarnings("ignore")  # Jupyter's own
+@pytest.mark.parametrize("name", tutorial.PAGES)
+def test_the_cells_of_a_notebook_show_what_is_stored_in_them(name, folder):
+    kept, run = (nbformat.read(DOCS / "notebooks" / f"{name}.ipynb", as_version=4) for _ in range(2))
+    NotebookClient(run, timeout=300, resources={"metadata": {"path": str(folder)}}).execute()
+    pairs = [(now, then) for now, then in zip(run.cells, kept.cells, strict=True) if "SetViewer" not in now.source]
+    for cells in pairs:
+        shown, stored = ([sorted(one.data) for one in cell.get("outputs", []) if "data" in one] for cell in cells)
+        kinds = [[kind for kind in data if kind not in {"text/plain", "image/jpeg"}] for data in shown]  # Pillow's JPEG
+        assert [data for data in kinds if data] == stored, cells[0].source
 
 
 @pytest.mark.parametrize("name", [name for name in tutorial.PAGES if name != "tutorial"])
@@ -63,7 +80,7 @@ def test_the_other_tutorials_run(name, folder, monkeypatch, capsys):
     """As scripts, which is quicker."""
     monkeypatch.chdir(folder)
     session: dict[str, object] = {"__name__": "__main__"}
-    for cell in json.loads(tutorial.notebook(PAGES[name]))["cells"]:
+    for cell in tutorial.cells_of(PAGES[name]):
         first, _, rest = (source := cell["source"]).partition("\n")
         if cell["cell_type"] != "code":
             continue
@@ -85,8 +102,26 @@ def test_the_other_tutorials_run(name, folder, monkeypatch, capsys):
 
 @pytest.mark.parametrize("name", tutorial.PAGES)
 def test_the_notebook_is_the_page(name):
-    made = tutorial.notebook(PAGES[name])
+    made = tutorial.notebook(PAGES[name], DOCS / "pictures")
     assert (DOCS / "notebooks" / f"{name}.ipynb").read_text() == made, "run scripts/docs"
+
+
+@pytest.mark.parametrize("name", tutorial.PAGES)
+def test_the_notebook_holds_all_pictures_of_the_page_and_is_small(name):
+    path = DOCS / "notebooks" / f"{name}.ipynb"
+    text = path.read_text()
+    assert path.stat().st_size <= 300_000
+    assert "pictures/" not in text
+    assert not re.search(r"\.save\(|^video = ", text, re.MULTILINE), "cells show their pictures"
+    cells = json.loads(text)["cells"]
+    attached = [file for cell in cells for file in cell.get("attachments", {})]
+    shown = [output["data"] for cell in cells for output in cell.get("outputs", []) if "data" in output]
+    assert len(attached) + len(shown) == len(re.findall(r"!\[.*\]\(pictures/", PAGES[name]))
+    for data in [*shown, *(data for cell in cells for data in cell.get("attachments", {}).values())]:
+        ((kind, content),) = data.items()
+        source = content if kind != "text/html" else re.search(r'src="data:image/webp;base64,([^"]+)"', content)[1]
+        with Image.open(io.BytesIO(base64.b64decode(source))) as picture:
+            assert f"image/{picture.format.lower()}" == kind or picture.is_animated
 
 
 @pytest.mark.parametrize("name", tutorial.PAGES)
@@ -95,7 +130,7 @@ def test_links_of_the_notebook_lead_somewhere(name):
     cells = json.loads(path.read_text())["cells"]
     prose = "\n".join(cell["source"] for cell in cells if cell["cell_type"] == "markdown")
     for target in re.findall(r"\]\(([^)#]+)", prose):
-        assert "://" in target or (path.parent / target).exists(), target
+        assert target.startswith("attachment:") or "://" in target or (path.parent / target).exists(), target
 
 
 def test_both_sides_of_the_law_of_cosines_agree():
