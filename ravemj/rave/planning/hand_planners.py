@@ -9,6 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import matrixFromPose, matrixFromPoses
+from ravemj.manipulation.processing import flag
 from ravemj.planning.edges import Edges
 from ravemj.planning.projection import descend
 from ravemj.planning.rrt import Budget, End, Search
@@ -18,7 +19,6 @@ from ravemj.rave.planning.parameter_text import CHAIN
 from ravemj.rave.planning.path_planners import PathPlanner, Query
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import post_process
-from ravemj.rave.planning.retimers import flag
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Hand, Values, hand_of
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
@@ -124,7 +124,7 @@ class WorkspaceTrajectoryTracker(Planner):
         if check:
             found = list(filter(values.conditions.allowed(), found))
         found.sort(key=lambda one: values.space().distance(one, near))
-        return found[:1] if flag(values, "greedysearch") else found
+        return found[:1] if flag(values.tags, "greedysearch") else found
 
     def _connection(self, values: Values, hand: Hand, times: Floats) -> Callable[[int, Floats, Floats], bool]:
         """Return a test of the joint-space line between two consecutive solutions.
@@ -136,7 +136,7 @@ class WorkspaceTrajectoryTracker(Planner):
             Edges(values.space(), values.conditions.allowed()),
             values.tag("maxdeviationangle", 0.15 * np.pi),
         )
-        fastest = values.limits().velocity if flag(values, "maintaintiming") else np.full(hand.tool.dof, np.inf)
+        fastest = values.limits().velocity if flag(values.tags, "maintaintiming") else np.full(hand.tool.dof, np.inf)
 
         def connects(number: int, before: Floats, after: Floats) -> bool:
             step = edges.space.difference(after, before)
@@ -153,7 +153,7 @@ class WorkspaceTrajectoryTracker(Planner):
     def _timed(self, values: Values, traj: Trajectory, path: Floats, times: Floats) -> PlannerStatus:
         """Write a path into a trajectory, and retime it."""
         spec = ConfigurationSpecification.of(values.groups)
-        keeps = flag(values, "maintaintiming")
+        keeps = flag(values.tags, "maintaintiming")
         if keeps or values.postprocessing == CHAIN:
             values = values.copied()
             values.postprocessing = "LinearTrajectoryRetimer", "<hastimestamps>1</hastimestamps>" if keeps else ""
