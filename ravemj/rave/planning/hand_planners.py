@@ -11,12 +11,13 @@ from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import matrixFromPose, matrixFromPoses
 from ravemj.manipulation.processing import flag
 from ravemj.planning.edges import Edges
+from ravemj.planning.problem import Problem
 from ravemj.planning.projection import descend
 from ravemj.planning.rrt import Budget, End, Search
 from ravemj.planning.tracking import track
 from ravemj.rave.enums import PlannerStatusCode
 from ravemj.rave.planning.parameter_text import CHAIN
-from ravemj.rave.planning.path_planners import PathPlanner, Query
+from ravemj.rave.planning.path_planners import PathPlanner
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import post_process
 from ravemj.rave.planning.status import PlannerStatus
@@ -197,16 +198,12 @@ class GraspGradient(PathPlanner):
 
     _defaults: ClassVar[Mapping[str, str]] = {"graspdistthresh": "1.4", "numgradsamples": "5", "visgraspthresh": "0"}
 
-    def _needs_goal(self, values: Values) -> bool:
-        return False
+    _needs_goal: ClassVar[bool] = False
 
-    def _prepare(self, values: Values) -> PlannerStatus | None:
-        try:
-            hand_of(self._env, values)
-            self._grasps(values)
-        except ArgumentError as error:
-            return self._failed(error.message)
-        return super()._prepare(values)
+    def _check(self, values: Values) -> None:
+        hand_of(self._env, values)
+        self._grasps(values)
+        super()._check(values)
 
     def _grasps(self, values: Values) -> list[Floats]:
         """Return ``T_world_tool`` of each grasp."""
@@ -223,8 +220,8 @@ class GraspGradient(PathPlanner):
         T_world_target = target.GetTransform()
         return [T_world_target @ T_target_tool for T_target_tool in matrixFromPoses(np.reshape(numbers, (-1, 7)))]
 
-    def _search(self, query: Query) -> Search:
-        values, start = query.values, query.starts[0]
+    def _search(self, problem: Problem, values: Values) -> Search:
+        start = problem.starts[0]
         hand = hand_of(self._env, values)
         errors = [hand.tool.to_pose(grasp) for grasp in self._grasps(values)]
         far = [float(np.linalg.norm(error(start)[0])) for error in errors]
@@ -232,5 +229,5 @@ class GraspGradient(PathPlanner):
         near = [place for place in order if far[place] <= values.tag("graspdistthresh", 1.4)]
         tries = int(values.tag("numgradsamples", 5))
         wanted = [errors[place] for place in near]
-        found = descend(query.edges, start, wanted, _REACHED, query.budget, query.random, tries)
+        found = descend(problem.edges, start, wanted, _REACHED, problem.budget, problem.random, tries)
         return replace(found, goal=near[found.goal] if found.path is not None else -1)
