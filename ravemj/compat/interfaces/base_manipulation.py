@@ -92,7 +92,7 @@ class BaseManipulation(Helper):
         wanted, starts = _rows("goal", goal, goals, dof), _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
         search = search_options(_effort(maxiter, maxtries, jitter), SearchOptions())
-        traj = self._base.move_active_joints(wanted, search, starts=starts, postprocessing=post)
+        traj = self._base.move_joints(wanted, search, starts=starts, postprocessing=post)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveManipulator(

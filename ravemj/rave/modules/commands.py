@@ -95,7 +95,7 @@ def _move_active_joints(base: BaseManipulation, arguments: str) -> str:
     goals, starts = [*options.get("goal", ()), *options.get("goals", ())], options.get("initialconfigs", ())
     post = (options["postprocessingplanner"], "") if "postprocessingplanner" in options else None
     search = search_options(options, SearchOptions())
-    return _reply(base, base.move_active_joints(goals, search, starts=starts, postprocessing=post), options)
+    return _reply(base, base.move_joints(goals, search, starts=starts, postprocessing=post), options)
 
 
 def _move_manipulator(base: BaseManipulation, arguments: str) -> str:

@@ -177,14 +177,14 @@ def _more_goals(values: Values) -> MoreGoals | None:
     """Return the goal sampler of the parameters, without goals that are not allowed."""
     if values.goal_sampler is None:
         return None
-    sample, probability = values.goal_sampler
+    sampler = values.goal_sampler
 
     def next_goal() -> Floats | None:
-        goal = sample()
+        goal = sampler.sample()
         allowed = goal is not None and refusal(values.conditions, values.space(), goal, "goal") is None
         return goal if allowed else None
 
-    return MoreGoals(next_goal, probability)
+    return MoreGoals(next_goal, sampler.probability)
 
 
 def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
