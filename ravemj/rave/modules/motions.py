@@ -1,8 +1,10 @@
 """Plans and executes motions of a robot."""
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, NamedTuple
+from operator import is_not
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -32,6 +34,8 @@ _SAME = 1e-9
 """The tolerance within which two configurations are equal [rad or m]."""
 
 Postprocessing = tuple[str, str]
+Options = Mapping[str, Any]
+"""Options of a command, by their names."""
 
 
 class SearchOptions(NamedTuple):
@@ -50,6 +54,26 @@ class SearchOptions(NamedTuple):
     maxiter: int = 4000
     jitter: float = 0.04
     constraint: ToolConstraint | None = None
+
+    def changed(self, options: Options) -> "SearchOptions":
+        """Return the effort with some options of a command in place of those here."""
+        given = {name: options[name] for name in ("maxiter", "maxtries", "jitter") if name in options}
+        return self._replace(**given, constraint=_tool_constraint(options))
+
+
+def _tool_constraint(options: Options) -> ToolConstraint | None:
+    """Return the constraint of the tool that options of a motion ask for; None where they leave it free."""
+    given = [name for name in options if name.startswith("constraint")]
+    if given and "constraintfreedoms" not in given:
+        raise ArgumentError(f"{given[0]} needs constraintfreedoms, which say what the constraint holds")
+    return constraint_of(options) if given and np.any(options["constraintfreedoms"]) else None
+
+
+def constraint_of(options: Options) -> ToolConstraint:
+    """Return the constraint of the tool that options of a command describe."""
+    frame = options.get("constraintmatrix", options.get("constraintpose", np.eye(4)))
+    point = options.get("constrainttaskmatrix", options.get("constrainttaskpose"))
+    return ToolConstraint(frame, point, options["constraintfreedoms"], options.get("constrainterrorthresh", 1e-3))
 
 
 class Manipulation:
@@ -93,7 +117,7 @@ class Manipulation:
         """Return the layout of some joints of the robot, or of what is active."""
         if dofs is None:
             return self.robot.GetActiveConfigurationSpecification().GetGroups()
-        return body_groups(self.robot.GetName(), dofs, 0, "")
+        return body_groups(self.robot.simulation_state.scene.name, dofs, 0, "")
 
     def bodies_of(self, dofs: Sequence[int]) -> Bodies:
         """Return some joints of the robot as what moves."""
@@ -146,7 +170,8 @@ class Manipulation:
             traj = Trajectory(self.env, "")
             status = needed_planner(self.env, self.planner).run(values, traj)
             if status:
-                self._join(traj, groups, wanted, moved)
+                if any(map(is_not, itertools.chain(*moved), itertools.chain(*wanted))):
+                    self._join(traj, groups, wanted, moved)
                 return traj
         raise PlanningError(status.description)
 
@@ -157,7 +182,7 @@ class Manipulation:
         wanted: Sequence[Sequence[Floats]],
         moved: Sequence[Sequence[Floats]],
     ) -> None:
-        """Extend a motion to the original start and goal, if the planner used jittered ones."""
+        """Extend a motion to the original start and goal, in place of which the planner used jittered ones."""
         spec = ConfigurationSpecification.of(groups)
         for end, (asked, used) in enumerate(zip(wanted, moved, strict=True)):
             place = traj.GetNumWaypoints() if end else 0

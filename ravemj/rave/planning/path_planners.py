@@ -52,46 +52,48 @@ class PathPlanner(Planner):
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
         with values.conditions.kept():
-            ends = self._allowed_ends(values)
-        return ends if isinstance(ends, PlannerStatus) else None
+            problem = self._stated(values)
+        return problem if isinstance(problem, PlannerStatus) else None
 
     def _check(self, values: Values) -> None:
         """Check the parameters; starts and goals come later."""
         values.check()
 
-    def _allowed_ends(self, values: Values) -> tuple[list[Floats], list[Floats]] | PlannerStatus:
-        """Return the starts and goals that are allowed, or why there are none. Use it within ``conditions.kept``."""
+    def _stated(self, values: Values) -> Problem | PlannerStatus:
+        """Return the problem, or why no start or goal is allowed. Use it within ``conditions.kept``."""
         try:
             self._check(values)
             starts, goals = values.configurations("_vinitialconfig"), values.configurations("_vgoalconfig")
         except ArgumentError as error:
             return self._failed(error.message)
         needs_goal = self._needs_goal and not (self._samples_goals and values.goal_sampler is not None)
+        edges = values.conditions.edges(values.space())
         try:
-            return allowed_ends(values.conditions, values.space(), list(starts), list(goals), needs_goal=needs_goal)
+            ends = allowed_ends(values.conditions, edges, list(starts), list(goals), needs_goal=needs_goal)
         except RefusedError as error:
             status = self._failed(str(error))
             status.jointValues = error.values
             if error.findings is not None:
                 status.report = self._env.GetCollisionChecker().report(error.findings)
             return status
+        iterations = int(values.numbers["_nmaxiterations"]) or _ITERATIONS
+        budget = Budget(iterations, values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
+        return Problem(edges, *ends, budget, values.random(), _more_goals(values, edges))
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Find a path, and process it."""
-        self._action, numbers = 0, values.numbers
+        self._action = 0
         with values.conditions.kept():
-            ends = self._allowed_ends(values)
-            if isinstance(ends, PlannerStatus):
-                return ends
-            iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
-            budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
-            edges = values.conditions.edges(values.space())
-            problem = Problem(edges, *ends, budget, values.random(), _more_goals(values))
+            problem = self._stated(values)
+            if isinstance(problem, PlannerStatus):
+                return problem
             search = find_path(problem, lambda problem: self._search(problem, values))
         self._search_made = search
         if search.path is None:
             return self._ended(search)
-        spaced = search.path if values.postprocessing[0] else _spaced(edges, search.path, numbers["_fsteplength"])
+        spaced = search.path
+        if not values.postprocessing[0]:
+            spaced = _spaced(problem.edges, spaced, values.numbers["_fsteplength"])
         traj.set_waypoints(Waypoints(values.groups, spaced))
         return self._processed(values, traj, search)
 
@@ -173,7 +175,7 @@ class ExplorationRrt(PathPlanner):
         return self._solved(f"{traj.GetNumWaypoints()} configurations")
 
 
-def _more_goals(values: Values) -> MoreGoals | None:
+def _more_goals(values: Values, edges: Edges) -> MoreGoals | None:
     """Return the goal sampler of the parameters, without goals that are not allowed."""
     if values.goal_sampler is None:
         return None
@@ -181,7 +183,7 @@ def _more_goals(values: Values) -> MoreGoals | None:
 
     def next_goal() -> Floats | None:
         goal = sampler.sample()
-        allowed = goal is not None and refusal(values.conditions, values.space(), goal, "goal") is None
+        allowed = goal is not None and refusal(values.conditions, edges, goal, "goal") is None
         return goal if allowed else None
 
     return MoreGoals(next_goal, sampler.probability)
