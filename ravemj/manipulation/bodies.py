@@ -1,7 +1,7 @@
 """The bodies that a motion moves, as one configuration: its limits, and whether it is free of collisions."""
 
 from collections.abc import Callable, Generator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -251,6 +251,10 @@ class Conditions:
     bodies: Bodies | None = None
     constraints: list[Constraint] = field(default_factory=lambda: [])
     manifold: Manifold | None = None
+
+    def kept(self) -> AbstractContextManager[None]:
+        """Hold the lock; on leaving, restore the configurations of the bodies and of the bodies that they hold."""
+        return nullcontext() if self.bodies is None else self.bodies.kept()
 
     def allowed(self) -> Allowed:
         """Return the test of single configurations. Use it within ``bodies.kept``, since it may move the bodies."""

@@ -43,7 +43,7 @@ class Trajectory(Interface):
     """
 
     _interface_type = InterfaceType.trajectory
-    _internal = ("waypoints",)
+    _internal = ("set_waypoints", "waypoints")
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         super().__init__(env, xmlid)
@@ -70,6 +70,10 @@ class Trajectory(Interface):
         if self._waypoints is None:
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints
+
+    def set_waypoints(self, waypoints: Waypoints) -> None:
+        """Replace layout and waypoints."""
+        self._waypoints = waypoints
 
     def GetConfigurationSpecification(self) -> ConfigurationSpecification:
         """Return the specification of the waypoints; a copy."""

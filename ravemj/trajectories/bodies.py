@@ -14,6 +14,8 @@ from ravemj.trajectories.layout import packed
 def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolation: str) -> list[Group]:
     """Return the layout of some joints of a body, then of parts of its pose (``DOFAffine``), without empty groups."""
     joints = Group(" ".join([JOINTS[0], name, *map(str, indices)]), 0, len(indices), interpolation)
+    if not affinedofs:
+        return [joints] if joints.dof else []
     affine = Group(f"{AFFINE[0]} {name} {int(affinedofs)}", 0, RaveGetAffineDOF(affinedofs), interpolation)
     return packed([group for group in (joints, affine) if group.dof])
 

@@ -15,7 +15,6 @@ from ravemj.core.arrays import checked_numbers, checked_transform, checked_vecto
 from ravemj.core.transforms import Floats
 from ravemj.rave.modules import base_module
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH
-from ravemj.rave.modules.commands import search_options
 from ravemj.rave.modules.motions import SearchOptions
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
@@ -91,8 +90,8 @@ class BaseManipulation(Helper):
         dof = self.robot.GetActiveDOF()
         wanted, starts = _rows("goal", goal, goals, dof), _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
-        search = search_options(_effort(maxiter, maxtries, jitter), SearchOptions())
-        traj = self._base.move_active_joints(wanted, search, starts=starts, postprocessing=post)
+        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter))
+        traj = self._base.move_joints(wanted, search, starts=starts, postprocessing=post)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveManipulator(
@@ -125,8 +124,8 @@ class BaseManipulation(Helper):
             AssertionError: a goal has not as many values as the arm has joints.
         """
         del steplength, releasegil
-        wanted = _rows("goal", goal, goals, self._base.arm().GetArmDOF())
-        search = search_options(_effort(maxiter, maxtries, jitter), SearchOptions())
+        wanted = _rows("goal", goal, goals, len(self._base.arm().description.arm_dofs))
+        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter))
         return self._done(self._base.move_manipulator(wanted, search), execute, outputtraj, outputtrajobj)
 
     def MoveToHandPosition(
@@ -223,10 +222,10 @@ class BaseManipulation(Helper):
         counts = whole_numbers(seedik=seedik, goalsamples=goalsamples or goalmaxsamples)
         traj = self._base.move_to_hand_position(
             goals,
-            search_options(options, HAND_SEARCH),
+            HAND_SEARCH.changed(options),
             **counts,
             **numbers(goalsampleprob=goalsampleprob),
-            starts=_rows("initialconfigs", None, initialconfigs, self._base.arm().GetArmDOF()),
+            starts=_rows("initialconfigs", None, initialconfigs, len(self._base.arm().description.arm_dofs)),
             postprocessing=postprocessing,
         )
         return self._done(traj, execute, outputtraj, outputtrajobj, "1")

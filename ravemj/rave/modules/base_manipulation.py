@@ -14,8 +14,8 @@ from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.motions import Manipulation, Postprocessing, SearchOptions
 from ravemj.rave.planning.names import is_planner
-from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.values import Values
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
@@ -35,9 +35,7 @@ class BaseManipulation(Manipulation):
         Raises:
             PlanningError: no motion was found.
         """
-        with self.keeping_active():
-            self.robot.SetActiveDOFs(self.arm().GetArmIndices())
-            return self.move_active_joints(goals, search)
+        return self.move_joints(goals, search, dofs=self.arm().description.arm_dofs)
 
     def arm(self) -> Manipulator:
         """Return the active manipulator.
@@ -87,9 +85,8 @@ class BaseManipulation(Manipulation):
             raise PlanningError("inverse kinematics (IK) has no solution without collisions for any of the goals")
         rest = islice(stream, goalsamples - len(found))
         more = MoreGoals(lambda: next(rest, None), goalsampleprob)
-        with self.keeping_active():
-            self.robot.SetActiveDOFs(manip.GetArmIndices())
-            return self.move_active_joints(found, search, starts=starts, postprocessing=postprocessing, more=more)
+        dofs = manip.description.arm_dofs
+        return self.move_joints(found, search, dofs=dofs, starts=starts, postprocessing=postprocessing, more=more)
 
     def _solvable(self) -> Manipulator:
         manip = self.arm()
@@ -126,7 +123,7 @@ class BaseManipulation(Manipulation):
         manip = self._solvable()
         T_world_tool = manip.GetTransform() if starteematrix is None else starteematrix
         reached, check = 0, ignorefirstcollision < 0
-        with self.keeping_active(), self.bodies_of(manip.GetArmIndices()).kept():
+        with self.keeping_active(), self.bodies_of(manip.description.arm_dofs).kept():
             present = manip.GetArmDOFValues()
             self.robot.SetActiveDOFs(manip.GetArmIndices())
             is_here = starteematrix is None
@@ -192,11 +189,8 @@ class BaseManipulation(Manipulation):
         if not np.isfinite(hand).all() or maxdivision < 1:
             message = f"jointvalues are {hand.tolist()} in {maxdivision} divisions"
             raise ArgumentError(f"{message}, and should be finite numbers in 1 at least")
-        params = PlannerParameters()
-        params.SetRobotActiveJoints(robot)
-        values, before = params.resolved(), robot.GetDOFValues(indices)
+        values, before = self._stated(), robot.GetDOFValues(indices)
         space, here = values.space(), values.vectors["_vinitialconfig"]
-        assert values.bodies is not None
         moving = self.bodies_of(indices)
         test = values.conditions.allowed()
 
@@ -211,14 +205,14 @@ class BaseManipulation(Manipulation):
 
         farthest = float((space.upper - space.lower).max())
         for attempt in range(maxtries):
-            with values.bodies.kept(), moving.kept():
+            with values.conditions.kept(), moving.kept():
                 random = np.random.default_rng(attempt)
                 goal = nearby(space, here, hand_can_move, 1000, farthest, random)
             if goal is None:
                 continue
             if goal is here:
                 return self.straight(here[None])
-            found = self._by(planner, lambda goal=goal: self.move_active_joints([goal], SearchOptions()))
+            found = self._by(planner, lambda goal=goal: self.move_joints([goal], SearchOptions()))
             if found is not None:
                 return found
         raise PlanningError("there is no place where the joints can move to their values")
@@ -232,18 +226,21 @@ class BaseManipulation(Manipulation):
         finally:
             self.planner = old
 
+    def _stated(self) -> Values:
+        """Return a problem of what is active."""
+        values = Values()
+        values.state(self.env, self.groups())
+        return values
+
     def jitter_active(self, maxiter: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
         """Return a free configuration of the active DOFs within ``jitter`` [rad or m], and the straight motion to it.
 
         Raises:
             PlanningError: none of ``maxiter`` random configurations is free of collisions.
         """
-        params = PlannerParameters()
-        params.SetRobotActiveJoints(self.robot)
-        values = params.resolved()
+        values = self._stated()
         here = values.vectors["_vinitialconfig"]
-        assert values.bodies is not None
-        with values.bodies.kept():
+        with values.conditions.kept():
             random = np.random.default_rng(0)
             found = nearby(values.space(), here, values.conditions.allowed(), maxiter, jitter, random)
         if found is None:

@@ -8,13 +8,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import matrixFromPose
-from ravemj.manipulation.tool import ToolConstraint
 from ravemj.rave.module import Command
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH, BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspQuery
-from ravemj.rave.modules.motions import Manipulation, SearchOptions
+from ravemj.rave.modules.motions import Manipulation, Options, SearchOptions, constraint_of
 from ravemj.rave.modules.task_manipulation import TaskManipulation
 from ravemj.rave.modules.tokens import Reader, Tokens, flag, read_options, switch, text
 from ravemj.rave.planning.status import PlanningError
@@ -23,7 +21,6 @@ from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT
 
 Kind = TypeVar("Kind", bound=Manipulation)
-Options = Mapping[str, Any]
 
 _OUTPUT: Mapping[str, Reader] = {"execute": flag, "outputtraj": switch}
 _SEARCH: Mapping[str, Reader] = {
@@ -63,25 +60,6 @@ def _some(options: Options, *names: str) -> dict[str, Any]:
     return {name: options[name] for name in names if name in options}
 
 
-def search_options(options: Options, default: SearchOptions) -> SearchOptions:
-    """Return the effort of a search that options ask for."""
-    return default._replace(**_some(options, "maxiter", "maxtries", "jitter"), constraint=_tool_constraint(options))
-
-
-def _tool_constraint(options: Options) -> ToolConstraint | None:
-    """Return the constraint of the tool that options of a motion ask for; None where they leave it free."""
-    given = [name for name in options if name in _CONSTRAINT]
-    if given and "constraintfreedoms" not in given:
-        raise ArgumentError(f"{given[0]} needs constraintfreedoms, which say what the constraint holds")
-    return _constraint(options) if given and np.any(options["constraintfreedoms"]) else None
-
-
-def _constraint(options: Options) -> ToolConstraint:
-    frame = options.get("constraintmatrix", options.get("constraintpose", np.eye(4)))
-    point = options.get("constrainttaskmatrix", options.get("constrainttaskpose"))
-    return ToolConstraint(frame, point, options["constraintfreedoms"], options.get("constrainterrorthresh", 1e-3))
-
-
 def _set_robot(manipulation: Manipulation, arguments: str) -> str | None:
     """Chooses the robot by its name."""
     return "" if manipulation.choose(arguments.strip()) else None
@@ -94,15 +72,15 @@ def _move_active_joints(base: BaseManipulation, arguments: str) -> str:
     options = read_options(arguments, readers)
     goals, starts = [*options.get("goal", ()), *options.get("goals", ())], options.get("initialconfigs", ())
     post = (options["postprocessingplanner"], "") if "postprocessingplanner" in options else None
-    search = search_options(options, SearchOptions())
-    return _reply(base, base.move_active_joints(goals, search, starts=starts, postprocessing=post), options)
+    search = SearchOptions().changed(options)
+    return _reply(base, base.move_joints(goals, search, starts=starts, postprocessing=post), options)
 
 
 def _move_manipulator(base: BaseManipulation, arguments: str) -> str:
     """Moves the arm of the active manipulator to one of several goals without collisions."""
     options = read_options(arguments, {**_SEARCH, **_goals(base.arm().GetArmDOF())})
     goals = [*options.get("goal", ()), *options.get("goals", ())]
-    return _reply(base, base.move_manipulator(goals, search_options(options, SearchOptions())), options)
+    return _reply(base, base.move_manipulator(goals, SearchOptions().changed(options)), options)
 
 
 def _move_to_hand_position(base: BaseManipulation, arguments: str) -> str:
@@ -118,7 +96,7 @@ def _move_to_hand_position(base: BaseManipulation, arguments: str) -> str:
     if "goalmaxsamples" in options:
         options.setdefault("goalsamples", options["goalmaxsamples"])
     given = _some(options, "seedik", "goalsamples", "goalsampleprob")
-    starts, search = options.get("initialconfigs", ()), search_options(options, HAND_SEARCH)
+    starts, search = options.get("initialconfigs", ()), HAND_SEARCH.changed(options)
     traj = base.move_to_hand_position(goals, search, starts=starts, **given)
     return _reply(base, traj, options, "1 " if options.get("outputtraj") else "1")
 
@@ -214,7 +192,7 @@ def _evaluate_constraints(task: TaskManipulation, arguments: str) -> str:
     config: Mapping[str, Reader] = {"config": lambda tokens: configurations.append(tokens.numbers(dof))}
     options = {"constraintfreedoms": np.ones(6), "constrainttaskpose": np.eye(4)}
     options |= read_options(arguments, {**_CONSTRAINT, **config})
-    steps, rows = task.evaluate_constraints(_constraint(options), configurations)
+    steps, rows = task.evaluate_constraints(constraint_of(options), configurations)
     return " ".join(map(str, steps)) + " " + "".join(map(_text, rows))
 
 

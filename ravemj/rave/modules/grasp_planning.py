@@ -17,7 +17,7 @@ from ravemj.rave.modules.base_manipulation import BaseManipulation, solutions
 from ravemj.rave.modules.motions import SearchOptions
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.robot import Robot
-from ravemj.rave.specification import IkParameterization
+from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
 _STEP = 0.01
@@ -96,7 +96,7 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
         ArgumentError: the list of grasps has no poses, or the robot holds the target already.
         PlanningError: no grasp can be reached.
     """
-    manip, robot = base.arm(), base.robot
+    manip = base.arm()
     if manip.IsGrabbing(query.target):
         raise ArgumentError(f"manipulator '{manip.GetName()}' holds '{query.target.GetName()}' already")
     if manip.GetIkSolver() is None:
@@ -107,8 +107,7 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
         reachable += len(batch)
         begin = time.perf_counter()
         try:
-            with robot.CreateRobotStateSaver(SaveParameters.ActiveDOF):
-                traj, chosen = _planned(base, manip, batch, query.maxiter)
+            traj, chosen = _planned(base, manip, batch, query.maxiter)
         except PlanningError as error:
             refused = f"{reachable} grasps can be reached, and there is no way to them: {error}"
             continue
@@ -129,11 +128,11 @@ def _planned(
     robot = base.robot
     gripper = manip.GetGripperIndices()
     changed = np.array([one.preshape != robot.GetDOFValues(gripper) for one in batch]).any(axis=0)
-    robot.SetActiveDOFs([*manip.GetArmIndices().tolist(), *gripper[changed].tolist()])
+    dofs = [*manip.description.arm_dofs, *gripper[changed].tolist()]
     owners = [one for one in batch for _ in one.rows]
     goals = [np.append(row, one.preshape[changed]) for one in batch for row in one.rows]
-    traj = base.move_active_joints(goals, SearchOptions(maxtries=1, maxiter=iterations, jitter=0.03))
-    last = traj.GetWaypoint(-1, robot.GetActiveConfigurationSpecification())
+    traj = base.move_joints(goals, SearchOptions(maxtries=1, maxiter=iterations, jitter=0.03), dofs=dofs)
+    last = traj.GetWaypoint(-1, ConfigurationSpecification.of(base.groups(dofs)))
     return traj, owners[int(np.argmin([np.abs(goal - last).max() for goal in goals]))]
 
 

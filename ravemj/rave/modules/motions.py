@@ -1,37 +1,41 @@
 """Plans and executes motions of a robot."""
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, NamedTuple
+from operator import is_not
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.bodies import Bodies
+from ravemj.manipulation.motions import jittered
 from ravemj.manipulation.tool import ToolConstraint
-from ravemj.planning.edges import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
-from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
 from ravemj.rave.planning.values import Values, hand_of
 from ravemj.rave.robot import Robot
+from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.bodies import body_groups
+from ravemj.trajectories.groups import AFFINE, Group
+from ravemj.trajectories.layout import count
+from ravemj.trajectories.waypoints import Waypoints
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
-
-JITTER_TRIES = 1000
-"""The number of random configurations that are tested near a start or goal in collision."""
 
 _SAME = 1e-9
 """The tolerance within which two configurations are equal [rad or m]."""
 
 Postprocessing = tuple[str, str]
+Options = Mapping[str, Any]
+"""Options of a command, by their names."""
 
 
 class SearchOptions(NamedTuple):
@@ -50,6 +54,26 @@ class SearchOptions(NamedTuple):
     maxiter: int = 4000
     jitter: float = 0.04
     constraint: ToolConstraint | None = None
+
+    def changed(self, options: Options) -> "SearchOptions":
+        """Return the effort with some options of a command in place of those here."""
+        given = {name: options[name] for name in ("maxiter", "maxtries", "jitter") if name in options}
+        return self._replace(**given, constraint=_tool_constraint(options))
+
+
+def _tool_constraint(options: Options) -> ToolConstraint | None:
+    """Return the constraint of the tool that options of a motion ask for; None where they leave it free."""
+    given = [name for name in options if name.startswith("constraint")]
+    if given and "constraintfreedoms" not in given:
+        raise ArgumentError(f"{given[0]} needs constraintfreedoms, which say what the constraint holds")
+    return constraint_of(options) if given and np.any(options["constraintfreedoms"]) else None
+
+
+def constraint_of(options: Options) -> ToolConstraint:
+    """Return the constraint of the tool that options of a command describe."""
+    frame = options.get("constraintmatrix", options.get("constraintpose", np.eye(4)))
+    point = options.get("constrainttaskmatrix", options.get("constrainttaskpose"))
+    return ToolConstraint(frame, point, options["constraintfreedoms"], options.get("constrainterrorthresh", 1e-3))
 
 
 class Manipulation:
@@ -89,29 +113,36 @@ class Manipulation:
         """Choose the path planner; an unknown name chooses ``birrt``, as in OpenRAVE."""
         self.planner = name if is_planner(name) else "birrt"
 
-    def bodies_of(self, dofs: ArrayLike) -> Bodies:
+    def groups(self, dofs: Sequence[int] | None = None) -> list[Group]:
+        """Return the layout of some joints of the robot, or of what is active."""
+        if dofs is None:
+            return self.robot.GetActiveConfigurationSpecification().GetGroups()
+        return body_groups(self.robot.simulation_state.scene.name, dofs, 0, "")
+
+    def bodies_of(self, dofs: Sequence[int]) -> Bodies:
         """Return some joints of the robot as what moves."""
-        groups = self.robot.GetConfigurationSpecificationIndices(dofs).GetGroups()
-        return Bodies(self.env.simulation, groups, self.env.GetCollisionChecker)
+        return Bodies(self.env.simulation, self.groups(dofs), self.env.GetCollisionChecker)
 
     def keeping_active(self) -> AbstractContextManager[object]:
         """Restore the active DOFs on leaving."""
         return self.robot.CreateRobotStateSaver(SaveParameters.ActiveDOF)
 
-    def move_active_joints(
+    def move_joints(
         self,
         goals: Sequence[Floats],
         search: SearchOptions,
         *,
+        dofs: Sequence[int] | None = None,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
         more: MoreGoals | None = None,
     ) -> Trajectory:
-        """Return a motion of the active DOFs to one of several goals.
+        """Return a motion of some joints to one of several goals.
 
         Args:
-            goals: The goals, each of shape (active dof,); values outside the limits are set to the limits.
+            goals: The goals, each of shape (n,); values outside the limits are set to the limits.
             search: The effort of the search.
+            dofs: The DOF indices of the joints; None for what is active.
             starts: The possible starts; by default the current configuration.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
             more: A source of further goals while the planner works.
@@ -120,60 +151,39 @@ class Manipulation:
             PlanningError: no motion was found; the message says why.
             ArgumentError: a goal or start has another shape, or is not finite.
         """
-        self._check(goals, starts)
-        params = PlannerParameters()
-        params.SetRobotActiveJoints(self.robot)
-        params.SetMaxIterations(search.maxiter)
-        if postprocessing is not None:
-            params.SetPostProcessing(*postprocessing)
-        if more is not None:
-            params.set_goal_sampler(more.sample, more.probability)
-        jitter = search.jitter
+        groups = self.groups(dofs)
+        _check(goals, starts, count(groups))
+        values, jitter = Values(goal_sampler=more), search.jitter
+        values.state(self.env, groups)
+        values.numbers["_nmaxiterations"] = search.maxiter
         if search.constraint is not None:
-            tool = hand_of(self.env, params.resolved()).tool
-            params.given.conditions.manifold = tool.to_constraint(search.constraint)
-            jitter = 0.0
-            if postprocessing is None:
-                params.SetPostProcessing("LinearTrajectoryRetimer", "")
-        values = params.resolved()
-        space = values.space()
-        froms = list(starts) or [values.vectors["_vinitialconfig"]]
-        wanted = [[space.clamp(one) for one in some] for some in (froms, goals)]
-        moved = [self._jittered(values, some, jitter) for some in wanted]
-        params.SetInitialConfig(np.array(moved[0]).ravel())
-        params.SetGoalConfig(np.array(moved[1]).ravel())
+            values.conditions.manifold = hand_of(self.env, values).tool.to_constraint(search.constraint)
+            values.postprocessing, jitter = ("LinearTrajectoryRetimer", ""), 0.0
+        values.postprocessing = postprocessing or values.postprocessing
+        space, conditions = values.space(), values.conditions
+        wanted = [[space.clamp(one) for one in some] for some in (starts or [values.vectors["_vinitialconfig"]], goals)]
+        moved = [jittered(conditions, space, some, jitter) for some in wanted]
+        values.vectors |= {"_vinitialconfig": np.array(moved[0]).ravel(), "_vgoalconfig": np.array(moved[1]).ravel()}
         status = PlannerStatus("no attempt was allowed; give at least one try")
         for attempt in range(search.maxtries):
-            params.SetRandomGeneratorSeed(attempt)
-            planner = needed_planner(self.env, self.planner)
+            values.numbers["_nrandomgeneratorseed"] = attempt
             traj = Trajectory(self.env, "")
-            planner.InitPlan(self.robot, params)
-            status = planner.PlanPath(traj)
+            status = needed_planner(self.env, self.planner).run(values, traj)
             if status:
-                self._join(traj, wanted, moved)
+                if any(map(is_not, itertools.chain(*moved), itertools.chain(*wanted))):
+                    self._join(traj, groups, wanted, moved)
                 return traj
         raise PlanningError(status.description)
 
-    def _check(self, goals: Sequence[Floats], starts: Sequence[Floats]) -> None:
-        dof = self.robot.GetActiveDOF()
-        if not len(goals):
-            raise PlanningError("there is no goal")
-        for one in [*goals, *starts]:
-            if len(one) != dof or not np.isfinite(one).all():
-                raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
-
-    def _jittered(self, values: Values, configurations: Sequence[Floats], jitter: float) -> list[Floats]:
-        """Return configurations, each one in collision replaced by a free one nearby, if one is found."""
-        assert values.bodies is not None
-        random = np.random.default_rng(0)
-        with values.bodies.kept():
-            test, space = values.conditions.allowed(), values.space()
-            found = [nearby(space, one, test, JITTER_TRIES, jitter, random) for one in configurations]
-        return [old if new is None else new for old, new in zip(configurations, found, strict=True)]
-
-    def _join(self, traj: Trajectory, wanted: Sequence[Sequence[Floats]], moved: Sequence[Sequence[Floats]]) -> None:
-        """Extend a motion to the original start and goal, if the planner used jittered ones."""
-        spec = self.robot.GetActiveConfigurationSpecification()
+    def _join(
+        self,
+        traj: Trajectory,
+        groups: Sequence[Group],
+        wanted: Sequence[Sequence[Floats]],
+        moved: Sequence[Sequence[Floats]],
+    ) -> None:
+        """Extend a motion to the original start and goal, in place of which the planner used jittered ones."""
+        spec = ConfigurationSpecification.of(groups)
         for end, (asked, used) in enumerate(zip(wanted, moved, strict=True)):
             place = traj.GetNumWaypoints() if end else 0
             reached = traj.GetWaypoint(-1 if end else 0, spec)
@@ -182,18 +192,19 @@ class Manipulation:
             if is_it and (asked[nearest] != used[nearest]).any():
                 rest = np.zeros(len(reached))
                 new = EndWaypoint(traj, spec, asked[nearest], rest, place)
-                retimer = "LinearTrajectoryRetimer" if self.robot.GetAffineDOF() else ""  # the only one for poses
+                retimer = (
+                    "LinearTrajectoryRetimer" if any(group.kind == AFFINE[0] for group in groups) else ""
+                )  # the only one for poses
                 new.join(new.retimed((1.0, 1.0), retimer, ""))
 
-    def straight(self, points: Floats) -> Trajectory:
-        """Return the fastest motion of the active DOFs along straight lines through points (m, n).
+    def straight(self, points: Floats, dofs: Sequence[int] | None = None) -> Trajectory:
+        """Return the fastest motion along straight lines through points (m, n) of joints, or of what is active.
 
         Raises:
             PlanningError: the retimer finds no times.
         """
         traj = Trajectory(self.env, "")
-        traj.Init(self.robot.GetActiveConfigurationSpecification("linear"))
-        traj.Insert(0, points.ravel())
+        traj.set_waypoints(Waypoints(self.groups(dofs), points))
         status = retimed(traj, "LinearTrajectoryRetimer", (self.maxvelmult, 1.0))
         if not status:
             raise PlanningError(status.description)
@@ -219,3 +230,11 @@ class Manipulation:
             used, _ = spec.ExtractUsedIndices(robot)
             values[used] = spec.ExtractJointValues(traj.GetWaypoint(0), robot, used)
         controller.SetDesired(values)
+
+
+def _check(goals: Sequence[Floats], starts: Sequence[Floats], dof: int) -> None:
+    if not len(goals):
+        raise PlanningError("there is no goal")
+    for one in [*goals, *starts]:
+        if len(one) != dof or not np.isfinite(one).all():
+            raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")

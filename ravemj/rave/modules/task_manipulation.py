@@ -117,10 +117,7 @@ class TaskManipulation(Manipulation):
         return dofs, np.asarray(manip.GetChuckingDirection(), dtype=float)
 
     def _motion(self, dofs: Sequence[int], final: Floats) -> Trajectory:
-        with self.keeping_active():
-            self.robot.SetActiveDOFs(dofs)
-            here = self.robot.GetDOFValues(dofs)
-            return self.straight(np.stack([here, final]))
+        return self.straight(np.stack([self.robot.GetDOFValues(dofs), final]), dofs)
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
         """Return the values at which joints stop: each moves until its links touch something new, or to its limit.

@@ -9,16 +9,17 @@ import numpy as np
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import matrixFromPose, matrixFromPoses
+from ravemj.manipulation.processing import flag
 from ravemj.planning.edges import Edges
+from ravemj.planning.problem import Problem
 from ravemj.planning.projection import descend
 from ravemj.planning.rrt import Budget, End, Search
 from ravemj.planning.tracking import track
 from ravemj.rave.enums import PlannerStatusCode
 from ravemj.rave.planning.parameter_text import CHAIN
-from ravemj.rave.planning.path_planners import PathPlanner, Query
+from ravemj.rave.planning.path_planners import PathPlanner
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import post_process
-from ravemj.rave.planning.retimers import flag
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Hand, Values, hand_of
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
@@ -124,7 +125,7 @@ class WorkspaceTrajectoryTracker(Planner):
         if check:
             found = list(filter(values.conditions.allowed(), found))
         found.sort(key=lambda one: values.space().distance(one, near))
-        return found[:1] if flag(values, "greedysearch") else found
+        return found[:1] if flag(values.tags, "greedysearch") else found
 
     def _connection(self, values: Values, hand: Hand, times: Floats) -> Callable[[int, Floats, Floats], bool]:
         """Return a test of the joint-space line between two consecutive solutions.
@@ -136,7 +137,7 @@ class WorkspaceTrajectoryTracker(Planner):
             Edges(values.space(), values.conditions.allowed()),
             values.tag("maxdeviationangle", 0.15 * np.pi),
         )
-        fastest = values.limits().velocity if flag(values, "maintaintiming") else np.full(hand.tool.dof, np.inf)
+        fastest = values.limits().velocity if flag(values.tags, "maintaintiming") else np.full(hand.tool.dof, np.inf)
 
         def connects(number: int, before: Floats, after: Floats) -> bool:
             step = edges.space.difference(after, before)
@@ -153,7 +154,7 @@ class WorkspaceTrajectoryTracker(Planner):
     def _timed(self, values: Values, traj: Trajectory, path: Floats, times: Floats) -> PlannerStatus:
         """Write a path into a trajectory, and retime it."""
         spec = ConfigurationSpecification.of(values.groups)
-        keeps = flag(values, "maintaintiming")
+        keeps = flag(values.tags, "maintaintiming")
         if keeps or values.postprocessing == CHAIN:
             values = values.copied()
             values.postprocessing = "LinearTrajectoryRetimer", "<hastimestamps>1</hastimestamps>" if keeps else ""
@@ -197,16 +198,12 @@ class GraspGradient(PathPlanner):
 
     _defaults: ClassVar[Mapping[str, str]] = {"graspdistthresh": "1.4", "numgradsamples": "5", "visgraspthresh": "0"}
 
-    def _needs_goal(self, values: Values) -> bool:
-        return False
+    _needs_goal: ClassVar[bool] = False
 
-    def _prepare(self, values: Values) -> PlannerStatus | None:
-        try:
-            hand_of(self._env, values)
-            self._grasps(values)
-        except ArgumentError as error:
-            return self._failed(error.message)
-        return super()._prepare(values)
+    def _check(self, values: Values) -> None:
+        hand_of(self._env, values)
+        self._grasps(values)
+        super()._check(values)
 
     def _grasps(self, values: Values) -> list[Floats]:
         """Return ``T_world_tool`` of each grasp."""
@@ -223,8 +220,8 @@ class GraspGradient(PathPlanner):
         T_world_target = target.GetTransform()
         return [T_world_target @ T_target_tool for T_target_tool in matrixFromPoses(np.reshape(numbers, (-1, 7)))]
 
-    def _search(self, query: Query) -> Search:
-        values, start = query.values, query.starts[0]
+    def _search(self, problem: Problem, values: Values) -> Search:
+        start = problem.starts[0]
         hand = hand_of(self._env, values)
         errors = [hand.tool.to_pose(grasp) for grasp in self._grasps(values)]
         far = [float(np.linalg.norm(error(start)[0])) for error in errors]
@@ -232,5 +229,5 @@ class GraspGradient(PathPlanner):
         near = [place for place in order if far[place] <= values.tag("graspdistthresh", 1.4)]
         tries = int(values.tag("numgradsamples", 5))
         wanted = [errors[place] for place in near]
-        found = descend(query.edges, start, wanted, _REACHED, query.budget, query.random, tries)
+        found = descend(problem.edges, start, wanted, _REACHED, problem.budget, problem.random, tries)
         return replace(found, goal=near[found.goal] if found.path is not None else -1)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.manipulation.processing import TOPP_RA
 from ravemj.planning.retiming import topp_ra
 from ravemj.rave.interface import asked_for
 from ravemj.rave.planning.hand_planners import GraspGradient, WorkspaceTrajectoryTracker
@@ -14,7 +15,6 @@ from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import TRAJECTORY_PLANNERS
-from ravemj.rave.planning.retimers import TOPP_RA
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory

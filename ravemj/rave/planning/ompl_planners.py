@@ -3,9 +3,11 @@
 import logging
 from dataclasses import replace
 
+from ravemj.errors import ArgumentError
 from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
+from ravemj.planning.problem import Problem
 from ravemj.planning.rrt import Search
-from ravemj.rave.planning.path_planners import PathPlanner, Query
+from ravemj.rave.planning.path_planners import PathPlanner
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Values
 from ravemj.rave.trajectory import Trajectory
@@ -40,20 +42,17 @@ class OmplPlanner(PathPlanner):
         except OmplError as error:
             return self._failed(str(error))
 
-    def _prepare(self, values: Values) -> PlannerStatus | None:
+    def _check(self, values: Values) -> None:
         if values.conditions.manifold is not None:
-            return self._failed(f"{self._xmlid} knows no constraints of the tool; birrt does")
-        return super()._prepare(values)
+            raise ArgumentError(f"{self._xmlid} knows no constraints of the tool; birrt does")
+        super()._check(values)
 
-    def _needs_goal(self, values: Values) -> bool:
-        return True
-
-    def _search(self, query: Query) -> Search:
+    def _search(self, problem: Problem, values: Values) -> Search:
         classes = planner_classes()
         assert classes is not None, "there would be no planner"
         planner = classes[self._xmlid.lower().removeprefix(PREFIX)]
-        budget, tags = query.budget, query.values.tags
+        budget, tags = problem.budget, values.tags
         if "time_limit" in tags:
-            budget = replace(budget, seconds=query.values.tag("time_limit", 0.0))
-        seed = int(query.random.integers(2**31))
-        return search_with_ompl(planner, query.edges, query.starts, query.goals, budget, seed, tags)
+            budget = replace(budget, seconds=values.tag("time_limit", 0.0))
+        seed = int(problem.random.integers(2**31))
+        return search_with_ompl(planner, problem.edges, problem.starts, problem.goals, budget, seed, tags)

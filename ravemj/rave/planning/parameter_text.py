@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -77,6 +78,7 @@ def _number_text(number: float) -> str:
     return str(int(number)) if number == int(number) else repr(float(number))
 
 
+@lru_cache(maxsize=64)
 def read_tags(text: str) -> Tags:
     """Return the content of a text of planner parameters. A text without elements is empty, as in OpenRAVE.
 

@@ -3,7 +3,6 @@
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.collision.findings import Findings
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.manipulation.bodies import ALL, FREE, Bodies, Constraint
-from ravemj.rave.body.affine import affine_numbers, default_kinds
+from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import Interval
 from ravemj.rave.planning.parameter_text import parameters_text
 from ravemj.rave.planning.values import Values
@@ -86,16 +85,8 @@ class PlannerParameters(ApiObject):
             spec: The joint values and poses; other groups are left out.
         """
         checked_kind(spec, ConfigurationSpecification, "SetConfigurationSpecification: spec")
-        groups = spec.GetTimeDerivativeSpecification(0).GetGroups()
         self._env = env
-        bodies, given = Bodies(env.simulation, groups, env.GetCollisionChecker), self.given
-        given.conditions = replace(given.conditions, bodies=bodies)
-        given.groups, given.weights = groups, _setting(env, bodies, "weight")
-        limits = ("lower", "upper", "max_velocity", "max_acceleration", "max_jerk")
-        for name, of_body in zip(("lower", "upper", "velocity", "acceleration", "jerk"), limits, strict=True):
-            given.vectors[f"_vconfig{name}limit"] = _setting(env, bodies, of_body)
-        given.vectors["_vconfigresolution"] = _setting(env, bodies, "resolution")
-        given.vectors["_vinitialconfig"] = bodies.values()
+        self.given.state(env, spec.GetTimeDerivativeSpecification(0).GetGroups())
 
     def GetConfigurationSpecification(self) -> ConfigurationSpecification:
         """Return the layout of a configuration."""
@@ -210,7 +201,7 @@ class PlannerParameters(ApiObject):
                 collision are left out. None removes the function.
             probability: The fraction of the iterations that ask the function. While there is no goal, each one does.
         """
-        self.given.goal_sampler = None if sample is None else (sample, probability)
+        self.given.goal_sampler = None if sample is None else MoreGoals(sample, probability)
 
     def _bodies(self) -> Bodies:
         bodies = self.given.bodies
@@ -347,19 +338,6 @@ class PlannerParameters(ApiObject):
         given = self.given
         text = parameters_text(given.groups, given.vectors, given.numbers, given.postprocessing, self._extra)
         return f'Planner.PlannerParameters("""{text}""")'
-
-
-def _setting(env: "Environment", bodies: Bodies, name: str) -> Floats:
-    """Return one setting of each value of a configuration, shape (n,): a number of joints, or of affine DOFs."""
-    numbers = bodies.numbers(name)
-    for part in bodies.parts:
-        if not part.dofs:
-            body = env.wrap(part.body)
-            kinds = body.affine_kinds if isinstance(body, Robot) else default_kinds()
-            # OpenRAVE has no accelerations and jerks of affine DOFs: its maximum velocities stand for them.
-            names = {"max_acceleration": "max_velocity", "max_jerk": "max_velocity"}
-            numbers[part.columns] = affine_numbers(kinds, part.affine, part.axis, names.get(name, name))
-    return numbers
 
 
 def _whole(value: int, name: str) -> int:

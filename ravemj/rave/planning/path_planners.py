@@ -1,54 +1,40 @@
 """Planners that find a path without collisions."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from itertools import pairwise
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.collision.findings import Findings
 from ravemj.errors import ArgumentError
-from ravemj.manipulation.bodies import USER
-from ravemj.planning.constrained_edges import ConstrainedEdges, bent_path
+from ravemj.manipulation.motions import RefusedError, allowed_ends, find_path, refusal
 from ravemj.planning.edges import Edges
+from ravemj.planning.problem import Problem
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
-from ravemj.planning.shortcuts import shorten
 from ravemj.rave.enums import PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import post_process
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Values
-from ravemj.rave.report import CollisionReport
-from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.waypoints import Waypoints
 
 _ITERATIONS = 10000
 """OpenRAVE's default for the maximum number of iterations."""
-
-_SHORTCUTS = 100
-"""The maximum number of projection steps onto a constraint, as in OpenRAVE."""
 
 _SPACING = 10
 """The largest distance of the waypoints of a path that no planner processes, in step lengths."""
 
 
-class Query(NamedTuple):
-    """What a search takes: the test of lines, the starts and goals without collisions, its limits, and the problem."""
-
-    edges: Edges
-    starts: Sequence[Floats]
-    goals: Sequence[Floats]
-    budget: Budget
-    random: np.random.Generator
-    values: Values
-
-
 class PathPlanner(Planner):
     """A planner that finds a path without collisions from one of several starts to one of several goals."""
+
+    _needs_goal: ClassVar[bool] = True
+    _samples_goals: ClassVar[bool] = False
+    """Whether a goal sampler can take the place of goals."""
 
     def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - passed on
         super().__init__(*arguments)
@@ -65,82 +51,54 @@ class PathPlanner(Planner):
         return self._search_made
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
+        with values.conditions.kept():
+            problem = self._stated(values)
+        return problem if isinstance(problem, PlannerStatus) else None
+
+    def _check(self, values: Values) -> None:
+        """Check the parameters; starts and goals come later."""
+        values.check()
+
+    def _stated(self, values: Values) -> Problem | PlannerStatus:
+        """Return the problem, or why no start or goal is allowed. Use it within ``conditions.kept``."""
         try:
-            values.check()
-            starts, goals = self._starts_and_goals(values)
+            self._check(values)
+            starts, goals = values.configurations("_vinitialconfig"), values.configurations("_vgoalconfig")
         except ArgumentError as error:
             return self._failed(error.message)
-        assert values.bodies is not None, "something moves"
-        endless = np.flatnonzero(~np.isfinite(values.space().lower) | ~np.isfinite(values.space().upper))
-        if len(endless):
-            return self._failed(f"{_described(values, int(endless[0]))} has no limits, and should have some")
-        with values.bodies.kept():
-            for name, candidates in (("start", starts), ("goal", goals)):
-                if not len(candidates) and (name == "start" or self._needs_goal(values)):
-                    return self._failed(f"there is no {name}")
-                wrong = [self._wrong(values, name, one) for one in candidates]
-                if wrong and None not in wrong:
-                    return wrong[0]
-        return None
-
-    def _starts_and_goals(self, values: Values) -> tuple[Floats, Floats]:
-        return values.configurations("_vinitialconfig"), values.configurations("_vgoalconfig")
-
-    def _needs_goal(self, values: Values) -> bool:
-        return values.goal_sampler is None
-
-    def _wrong(self, values: Values, name: str, configuration: Floats) -> PlannerStatus | None:
-        """Return why a start or a goal cannot be used, or None if it can. The bodies are moved."""
-        space, told = values.space(), list[Findings]()
-        if not np.isfinite(configuration).all():
-            status = self._failed(f"{name}: {configuration.tolist()} should be finite numbers")
-        elif (outside := space.outside(configuration)) is not None:
-            limits = f"[{space.lower[outside]:g}, {space.upper[outside]:g}]"
-            described = f"{_described(values, outside)} is {configuration[outside]:.6g}, outside its limits {limits}"
-            status = self._failed(f"{name}: {described}")
-        else:
-            found = values.conditions.violation(configuration, told=told)
-            if not found:
-                return None
-            if found == USER:
-                status = self._failed(f"{name}: {_off(values, configuration)}")
-            else:
-                report = self._env.GetCollisionChecker().report(told[-1])
-                status = self._failed(f"{name}: it collides: {_links(report)}")
-                status.report = report
-        status.jointValues = configuration
-        return status
+        needs_goal = self._needs_goal and not (self._samples_goals and values.goal_sampler is not None)
+        edges = values.conditions.edges(values.space())
+        try:
+            ends = allowed_ends(values.conditions, edges, list(starts), list(goals), needs_goal=needs_goal)
+        except RefusedError as error:
+            status = self._failed(str(error))
+            status.jointValues = error.values
+            if error.findings is not None:
+                status.report = self._env.GetCollisionChecker().report(error.findings)
+            return status
+        iterations = int(values.numbers["_nmaxiterations"]) or _ITERATIONS
+        budget = Budget(iterations, values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
+        return Problem(edges, *ends, budget, values.random(), _more_goals(values, edges))
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Find a path, and process it."""
-        problem = self._prepare(values)
-        if problem is not None:
-            return problem
-        assert values.bodies is not None
         self._action = 0
-        with values.bodies.kept():
-            starts, goals = (
-                [one for one in candidates if self._wrong(values, "", one) is None]
-                for candidates in self._starts_and_goals(values)
-            )
-            edges, numbers = values.conditions.edges(values.space()), values.numbers
-            iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
-            budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
-            random = values.random()
-            search = self._search(Query(edges, starts, goals, budget, random, values))
-            if isinstance(edges, ConstrainedEdges) and search.path is not None:
-                search = _bent(edges, search, search.path, random)
+        with values.conditions.kept():
+            problem = self._stated(values)
+            if isinstance(problem, PlannerStatus):
+                return problem
+            search = find_path(problem, lambda problem: self._search(problem, values))
         self._search_made = search
         if search.path is None:
             return self._ended(search)
-        spaced = search.path if values.postprocessing[0] else _spaced(edges, search.path, numbers["_fsteplength"])
-        spec = ConfigurationSpecification.of(values.groups)
-        traj.Init(spec)
-        traj.Insert(0, spaced.ravel())
+        spaced = search.path
+        if not values.postprocessing[0]:
+            spaced = _spaced(problem.edges, spaced, values.numbers["_fsteplength"])
+        traj.set_waypoints(Waypoints(values.groups, spaced))
         return self._processed(values, traj, search)
 
     @abstractmethod
-    def _search(self, query: Query) -> Search: ...
+    def _search(self, problem: Problem, values: Values) -> Search: ...
 
     def _ended(self, search: Search) -> PlannerStatus:
         size = sum(tree.count for tree in search.trees)
@@ -174,19 +132,12 @@ class BiRrt(PathPlanner):
     """``birrt``: bidirectional RRT-Connect; trees from all starts and all goals grow towards each other."""
 
     _defaults: ClassVar[Mapping[str, str]] = {"minimumgoalpaths": "1"}
+    _samples_goals: ClassVar[bool] = True
 
-    def _search(self, query: Query) -> Search:
-        more, values = None, query.values
-        if values.goal_sampler is not None:
-            sample, probability = values.goal_sampler
-
-            def next_goal() -> Floats | None:
-                goal = sample()
-                allowed = goal is not None and self._wrong(values, "goal", goal) is None
-                return goal if allowed else None
-
-            more = MoreGoals(next_goal, probability)
-        return connect(query.edges, query.starts, query.goals, query.budget, query.random, more)
+    def _search(self, problem: Problem, values: Values) -> Search:
+        del values
+        given = problem.edges, problem.starts, problem.goals, problem.budget, problem.random
+        return connect(*given, problem.more)
 
 
 class BasicRrt(PathPlanner):
@@ -194,22 +145,17 @@ class BasicRrt(PathPlanner):
 
     _defaults: ClassVar[Mapping[str, str]] = {"goalbias": "0.05", "nrrtextenttype": "0", "nminiterations": "0"}
 
-    def _needs_goal(self, values: Values) -> bool:
-        return True
-
-    def _search(self, query: Query) -> Search:
-        bias = query.values.tag("goalbias", 0.05)
-        return single(query.edges, query.starts, query.goals, query.budget, query.random, bias)
+    def _search(self, problem: Problem, values: Values) -> Search:
+        bias = values.tag("goalbias", 0.05)
+        return single(problem.edges, problem.starts, problem.goals, problem.budget, problem.random, bias)
 
 
 class RaStar(PathPlanner):
     """``RA*``: a randomized A* that expands random neighbours, the most promising configuration first."""
 
-    def _needs_goal(self, values: Values) -> bool:
-        return True
-
-    def _search(self, query: Query) -> Search:
-        return search_by_cost(query.edges, query.starts, query.goals, query.budget, query.random)
+    def _search(self, problem: Problem, values: Values) -> Search:
+        del values
+        return search_by_cost(problem.edges, problem.starts, problem.goals, problem.budget, problem.random)
 
 
 class ExplorationRrt(PathPlanner):
@@ -217,12 +163,11 @@ class ExplorationRrt(PathPlanner):
 
     _defaults: ClassVar[Mapping[str, str]] = {"exploreprob": "0", "expectedsize": "100"}
 
-    def _needs_goal(self, values: Values) -> bool:
-        return False
+    _needs_goal: ClassVar[bool] = False
 
-    def _search(self, query: Query) -> Search:
-        size = int(query.values.tag("expectedsize", 100))
-        tree = explore(query.edges, query.starts, size, query.budget, query.random)
+    def _search(self, problem: Problem, values: Values) -> Search:
+        size = int(values.tag("expectedsize", 100))
+        tree = explore(problem.edges, problem.starts, size, problem.budget, problem.random)
         return Search(End.found, tree.nodes(), 0, -1, tree.count, (tree,))
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
@@ -230,10 +175,18 @@ class ExplorationRrt(PathPlanner):
         return self._solved(f"{traj.GetNumWaypoints()} configurations")
 
 
-def _bent(edges: ConstrainedEdges, search: Search, path: Floats, random: np.random.Generator) -> Search:
-    """Return a search with the configurations along its path, after shortcuts: smoothers would leave the constraint."""
-    bent = bent_path(edges, shorten(edges, path, _SHORTCUTS, random))
-    return replace(search, path=bent, end=End.stuck if bent is None else search.end)
+def _more_goals(values: Values, edges: Edges) -> MoreGoals | None:
+    """Return the goal sampler of the parameters, without goals that are not allowed."""
+    if values.goal_sampler is None:
+        return None
+    sampler = values.goal_sampler
+
+    def next_goal() -> Floats | None:
+        goal = sampler.sample()
+        allowed = goal is not None and refusal(values.conditions, edges, goal, "goal") is None
+        return goal if allowed else None
+
+    return MoreGoals(next_goal, sampler.probability)
 
 
 def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
@@ -246,24 +199,3 @@ def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
         parts = np.arange(1, count)[:, None] / count
         rows += [start + parts * space.difference(end, start), end[None]]
     return np.concatenate(rows)
-
-
-def _off(values: Values, configuration: Floats) -> str:
-    """Return which constraint a configuration does not keep."""
-    manifold = values.conditions.manifold
-    if manifold is None or manifold.has(configuration):
-        return "a constraint does not allow it"
-    most = manifold.threshold
-    return f"the tool is {manifold.off(configuration):.3g} off its constraint, and should be {most:g} at most"
-
-
-def _links(report: CollisionReport) -> str:
-    """Return the names of the colliding links, for error messages."""
-    links = [link for link in (report.plink1, report.plink2) if link is not None]
-    return " with ".join(f"link '{link.GetName()}' of '{link.GetParent().GetName()}'" for link in links)
-
-
-def _described(values: Values, index: int) -> str:
-    """Return the name of one value of a configuration, for error messages."""
-    assert values.bodies is not None
-    return values.bodies.described(index)

@@ -1,6 +1,6 @@
 """The numbers of a planning problem, and the bodies that they refer to."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,7 +11,9 @@ from ravemj.errors import ArgumentError
 from ravemj.manipulation.bodies import Bodies, Conditions, space_of
 from ravemj.manipulation.tool import MovedTool
 from ravemj.planning.retiming.segments import Limits
+from ravemj.planning.rrt import MoreGoals
 from ravemj.planning.space import Coordinates, Space
+from ravemj.rave.body.affine import affine_numbers, default_kinds
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.planning.parameter_text import CHAIN, NUMBERS, VECTORS, read_tags
 from ravemj.rave.robot import Robot
@@ -41,8 +43,7 @@ class Values:
         postprocessing: The name of the planner that processes the result, and its parameters as text.
         conditions: The bodies that move, none in problems that are read from text, and the conditions that their
             configurations have to keep.
-        goal_sampler: A function that returns a further goal, or None if it has none now; and the fraction of the
-            iterations that call it.
+        goal_sampler: A source of further goals.
         tags: Further parameters of one kind of planner, as texts.
     """
 
@@ -54,8 +55,23 @@ class Values:
     weights: Floats = field(default_factory=_empty)
     postprocessing: tuple[str, str] = CHAIN
     conditions: Conditions = field(default_factory=Conditions)
-    goal_sampler: tuple[Callable[[], Floats | None], float] | None = None
+    goal_sampler: MoreGoals | None = None
     tags: dict[str, str] = field(default_factory=lambda: {})
+
+    def state(self, env: "Environment", groups: Sequence[Group]) -> None:
+        """Let joints and poses of bodies move, with their current values, limits, weights and resolutions.
+
+        Raises:
+            ArgumentError: a group names a body that is not in the environment, or a DOF that its body does not have.
+        """
+        bodies = Bodies(env.simulation, groups, env.GetCollisionChecker)
+        self.conditions = replace(self.conditions, bodies=bodies)
+        self.groups, self.weights = groups, _setting(env, bodies, "weight")
+        limits = ("lower", "upper", "max_velocity", "max_acceleration", "max_jerk")
+        for name, of_body in zip(("lower", "upper", "velocity", "acceleration", "jerk"), limits, strict=True):
+            self.vectors[f"_vconfig{name}limit"] = _setting(env, bodies, of_body)
+        self.vectors["_vconfigresolution"] = _setting(env, bodies, "resolution")
+        self.vectors["_vinitialconfig"] = bodies.values()
 
     def copied(self) -> "Values":
         """Return an independent copy."""
@@ -144,6 +160,19 @@ class Values:
         if not dof or numbers.size % dof:
             raise ArgumentError(f"{name}: has {numbers.size} numbers, and should have a multiple of {dof}")
         return numbers.reshape(-1, dof)
+
+
+def _setting(env: "Environment", bodies: Bodies, name: str) -> Floats:
+    """Return one setting of each value of a configuration, shape (n,): a number of joints, or of affine DOFs."""
+    numbers = bodies.numbers(name)
+    for part in bodies.parts:
+        if not part.dofs:
+            body = env.wrap(part.body)
+            kinds = body.affine_kinds if isinstance(body, Robot) else default_kinds()
+            # OpenRAVE has no accelerations and jerks of affine DOFs: its maximum velocities stand for them.
+            names = {"max_acceleration": "max_velocity", "max_jerk": "max_velocity"}
+            numbers[part.columns] = affine_numbers(kinds, part.affine, part.axis, names.get(name, name))
+    return numbers
 
 
 class Hand(NamedTuple):

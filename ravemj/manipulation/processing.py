@@ -1,0 +1,203 @@
+"""Smoothers and retimers by OpenRAVE's names: they make timed motions of paths."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.edges import Edges, path_is_allowed
+from ravemj.planning.ramp_shortcuts import Piece, faster, lines
+from ravemj.planning.retiming.jerk_limited import JerkLimited
+from ravemj.planning.retiming.linear import Linear
+from ravemj.planning.retiming.parabolic import Parabolic
+from ravemj.planning.retiming.polynomials import Cubic, Quintic
+from ravemj.planning.retiming.segments import Interpolated, Limits, Profile, RetimingError, Timed, retime
+from ravemj.planning.retiming.topp_ra import ToppRa
+from ravemj.planning.shortcuts import shorten
+from ravemj.trajectories.conversion import FindBody
+from ravemj.trajectories.groups import DELTATIME, Group
+from ravemj.trajectories.layout import (
+    copied,
+    count,
+    derived,
+    find_compatible,
+    find_shifted,
+    with_derivatives,
+    with_group,
+)
+from ravemj.trajectories.waypoints import Waypoints
+
+_TRIES = 100
+"""OpenRAVE's default for the number of attempted shortcuts."""
+
+TOPP_RA = ("toppra", "toppratrajectoryretimer")
+
+
+def flag(options: Mapping[str, str], name: str, *, default: bool = False) -> bool:
+    """Return whether a parameter is on: any text but ``0`` and ``false``."""
+    text = options.get(name, "").strip().lower()
+    return default if not text else text not in {"0", "false"}
+
+
+def _parabolic(options: Mapping[str, str]) -> Parabolic:
+    return Parabolic(with_changes=flag(options, "outputaccelchanges", default=True))
+
+
+RETIMERS: Mapping[str, Callable[[Mapping[str, str]], Profile | ToppRa]] = {
+    "lineartrajectoryretimer": lambda options: Linear(),
+    "parabolictrajectoryretimer": _parabolic,
+    "parabolictrajectoryretimer2": _parabolic,
+    "cubictrajectoryretimer": lambda options: Cubic(),
+    "cubictrajectoryretimer2": lambda options: JerkLimited(),
+    "quintictrajectoryretimer": lambda options: Quintic(),
+    **dict.fromkeys(TOPP_RA, lambda options: ToppRa()),
+}
+"""The velocity profiles of the retimers, by their names in lower case."""
+
+SMOOTHERS: Mapping[str, Callable[[], Profile]] = {
+    "linearsmoother": Linear,
+    "shortcut_linear": Linear,
+    "parabolicsmoother": Parabolic,
+    "parabolicsmoother2": Parabolic,
+    "constraintparabolicsmoother": Parabolic,
+    "cubicsmoother": Cubic,
+    "quinticsmoother": Quintic,
+}
+"""The velocity profiles of the results, by the names of smoothers in lower case. Only parabolic results leave the
+straight lines of the path: they round its corners."""
+
+
+@dataclass(frozen=True)
+class Processor:
+    """A smoother or retimer with its parameters.
+
+    Attributes:
+        name: The name, in lower case.
+        groups: The layout of a configuration.
+        limits: The limits of the motion.
+        options: Further parameters, as texts by their names.
+        time_step: The retimers' step: they round all times up to multiples of it [s]; 0 for none.
+        iterations: The number of attempted shortcuts; 0 for OpenRAVE's.
+        random: The random numbers.
+        edges: Returns the test of lines, for smoothers.
+        proceed: Callback before each attempt; returning False ends them.
+    """
+
+    name: str
+    groups: list[Group]
+    limits: Limits
+    options: Mapping[str, str]
+    time_step: float
+    iterations: int
+    random: np.random.Generator
+    edges: Callable[[], Edges]
+    proceed: Callable[[int], bool] = lambda attempt: True
+
+    def process(self, path: Waypoints, find_body: FindBody) -> Waypoints:
+        """Return a path with times. ``find_body`` finds the bodies, whose present state replaces missing joints.
+
+        Raises:
+            RetimingError: there is no such motion.
+            OutsideLimitsError: a retimer found a waypoint outside of the limits.
+        """
+        run = self._retimed if self.name in RETIMERS else self._smoothed
+        return run(path, lambda groups: path.as_layout(path.data, groups, find_body))
+
+    def _check_layout(self, path: Waypoints) -> None:
+        for group in self.groups:
+            if find_compatible(path.groups, group.name) is None:
+                raise RetimingError(f"the trajectory has no group '{group.name}'")
+
+    # Retimers
+
+    def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> Waypoints:
+        """Give waypoints times within the velocity and acceleration limits. Collisions are ignored."""
+        profile, options, coordinates = RETIMERS[self.name](self.options), self.options, self.limits.coordinates
+        wanted = options.get("interpolation", "")
+        if wanted not in {"", profile.interpolation}:
+            raise RetimingError(f"the interpolation is '{profile.interpolation}', and should be '{wanted}'")
+        if (coordinates.translation or coordinates.rotation) and profile.interpolation != "linear":
+            raise RetimingError("poses of bodies can be retimed by the LinearTrajectoryRetimer only")
+        self._check_layout(path)
+        deltas = None
+        if flag(options, "hastimestamps"):
+            group = find_compatible(path.groups, DELTATIME, exact=True)
+            if group is None:
+                raise RetimingError("the times should be kept, and there are none")
+            deltas = path.data[:, group.offset]
+        velocities = rows(derived(self.groups, 1)) if flag(options, "hasvelocities") else None
+        return self._written(profile, self._timed(profile, rows(self.groups), deltas, velocities))
+
+    def _timed(
+        self, profile: Profile | ToppRa, points: Floats, deltas: Floats | None, velocities: Floats | None
+    ) -> Timed:
+        if not isinstance(profile, ToppRa):
+            time_step = self.time_step
+            return retime(profile, points, self.limits, deltas=deltas, velocities=velocities, time_step=time_step)
+        if deltas is not None or velocities is not None:
+            raise RetimingError("TOPP-RA keeps neither times nor velocities")
+        return profile.timed(points, self.limits, self.time_step)
+
+    # Smoothers
+
+    def _smoothed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> Waypoints:
+        """Replace parts of a path by shortcuts without collisions, and give the result times."""
+        self._check_layout(path)
+        points, coordinates, edges = rows(self.groups), self.limits.coordinates, self.edges()
+        if len(points) < 2:
+            raise RetimingError(f"there should be two waypoints at least, and there are {len(points)}")
+        profile = SMOOTHERS[self.name]()
+        try:
+            self.limits.check(points)
+            if flag(self.options, "verifyinitialpath", default=True) and not path_is_allowed(edges, points):
+                raise RetimingError("the path is in collision from the start")
+            if isinstance(profile, Parabolic) and len(coordinates.rotation) > 1:
+                raise RetimingError("rotations in space can be smoothed by the LinearSmoother only")
+            if not isinstance(profile, Parabolic | Linear) and (coordinates.translation or coordinates.rotation):
+                smoothers = "the LinearSmoother and the ParabolicSmoother"
+                raise RetimingError(f"poses of bodies can be smoothed by {smoothers} only")
+            tries = self.iterations or _TRIES
+            short = shorten(edges, points, tries, self.random, self.proceed)
+            if not isinstance(profile, Parabolic):
+                return self._written(profile, retime(profile, short, self.limits))
+            straight = lines(short, self.limits)
+            motion = faster(edges, straight, self.limits, tries, self.random, self.proceed)
+            return self._written(profile, _timed(motion, points), marks=True)
+        except (RetimingError, ValueError) as error:
+            raise RetimingError(str(error)) from None
+
+    def _written(self, profile: Interpolated, timed: Timed, *, marks: bool = False) -> Waypoints:
+        """Return a timed path as waypoints; ``marks`` adds a group ``iswaypoint``."""
+        groups = copied(self.groups)
+        for group in groups:
+            group.interpolation = profile.interpolation
+        result = groups
+        for order in range(1, profile.order + 1):
+            result = with_derivatives(result, order, deltatime=False)
+        result = with_group(result, Group(DELTATIME, 0, 1))
+        time = result[-1].offset
+        if marks:
+            result = with_group(result, Group("iswaypoint", 0, 1, "next"))
+        rows = np.zeros((len(timed.deltas), count(result)))
+        rows[:, time] = timed.deltas
+        if marks:
+            rows[:, -1] = timed.is_point
+        for group in groups:
+            target = group
+            for numbers in timed.orders:
+                assert target is not None, "each group has its derivatives"
+                rows[:, target.columns] = numbers[:, group.columns]
+                target = find_shifted(result, target.name, 1, exact=True)
+        return Waypoints(result, rows)
+
+
+def _timed(motion: list[Piece], points: Floats) -> Timed:
+    """Return a motion as a timed path, which begins and ends exactly at the first and last of the given points."""
+    rest = np.zeros_like(points[0])
+    values = np.array([*(piece.values for piece in motion), points[-1]])
+    values[0] = points[0]
+    velocities = np.array([*(piece.velocities for piece in motion), rest])
+    deltas = np.array([0.0, *(piece.duration for piece in motion)])
+    corners = np.array([*(piece.is_corner for piece in motion), True])
+    return Timed(deltas, [values, velocities], corners)
