@@ -190,7 +190,7 @@ class IkSearch(Interface):
         solver = self.derived()
         numbers, free = self._numbers(goal), self._free_values(solver, shares)
         start = self._configuration() if seed is None else seed
-        with self._validator(goal, options, failures) as validator:
+        with self._validator(goal, options, failures).moving_robot() as validator:
             answer = validator.first(self._nearest_first(solver, numbers, free, options, start))
             if answer is None:
                 if explain and not validator.quit:
@@ -214,7 +214,7 @@ class IkSearch(Interface):
         """Return all good solutions; none if a filter ends the search. The arguments are those of ``find_one``."""
         solver = self.derived()
         rows = self._all_rows(solver, goal, shares, options)
-        with self._validator(goal, options, failures) as validator:
+        with self._validator(goal, options, failures).moving_robot() as validator:
             answers = validator.all(rows)
             if not answers and failures is not None and not validator.quit:
                 free = self._free_values(solver, shares)

@@ -1,13 +1,13 @@
 """Which solutions of inverse kinematics are good: filters of users, and collisions, with the robot at the solution."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
+from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision import arms
 from ravemj.engine.collision.world import CollisionWorld, Pairs
@@ -71,7 +71,7 @@ class Query(NamedTuple):
 
 
 class Validator:
-    """Validates solutions inside its ``with``, after which the robot is as before.
+    """Validates solutions inside ``moving_robot``, after which the robot is as before.
 
     Attributes:
         filters: The filters, those of high priority first.
@@ -90,21 +90,19 @@ class Validator:
         self.action = 0
         self.quit = False
 
-    def __enter__(self) -> Self:
-        self._state.simulation.lock.acquire()
-        self._saved = self._state.configuration()
-        self._chosen = self._query.robot.active_choice
-        self._query.robot.active_choice = ActiveChoice(np.array(self._query.description.arm_dofs, dtype=int))
-        self._values = self._state.kinematics.values()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        """Bring the robot back to where it was."""
-        self._query.robot.active_choice = self._chosen
-        self._state.restore(self._saved)
-        self._state.simulation.lock.release()
+    @block
+    def moving_robot(self) -> Generator[Self]:
+        """Hold the lock, and bring the robot back to where it was at the end."""
+        state, robot = self._state, self._query.robot
+        with state.simulation.lock:
+            saved, chosen = state.configuration(), robot.active_choice
+            with restoring(lambda: state.restore(saved)):
+                try:
+                    robot.active_choice = ActiveChoice(np.array(self._query.description.arm_dofs, dtype=int))
+                    self._values = state.kinematics.values()
+                    yield self
+                finally:
+                    robot.active_choice = chosen
 
     @cached_property
     def _goal(self) -> IkParameterization:

@@ -108,7 +108,7 @@ class IkSolver(IkSearch):
             raise ArgumentError("CallFilters: ikparam is not where the tool is; it is relative to the arm's base")
         row = self._configuration()
         answer = solution(row)
-        with self._validator(goal, 0, None) as validator:
+        with self._validator(goal, 0, None).moving_robot() as validator:
             return answer if validator.passes(validator.filters, row, answer) else validator.failure()
 
     # Search
