@@ -1,6 +1,5 @@
 """Simulation time, and the thread that lets it pass."""
 
-import atexit
 import logging
 import math
 import threading
@@ -8,8 +7,11 @@ import time
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from threading import Event, Lock, RLock, Thread
+from threading import Lock, Thread
 from weakref import WeakKeyDictionary
+
+from ravemj.core.flags import Flag
+from ravemj.core.locks import StateLock, before_end
 
 _LOG = logging.getLogger("ravemj")
 
@@ -36,13 +38,13 @@ class Clock:
     a weak reference, and so ends when whatever owns the clock is gone.
     """
 
-    def __init__(self, lock: RLock, step: Callable[[float], None]) -> None:
+    def __init__(self, lock: StateLock, step: Callable[[float], None]) -> None:
         """Make a clock that stands at 0; with the lock held, it calls ``step`` for each time step [s]."""
         self.now = 0  # simulation time since the start [microseconds]
         self.is_allowed = True  # whether time passes by itself; ``stop`` ends that
         self._lock = lock
         self._step = step
-        self._rhythm = _Rhythm(lock, Event(), DEFAULT_STEP, 1.0)
+        self._rhythm = _Rhythm(lock, Flag(), DEFAULT_STEP, 1.0)
         self._thread: Thread | None = None
         self._starting = Lock()
 
@@ -56,11 +58,17 @@ class Clock:
         """Let time pass by itself from now on, unless it was stopped."""
         with self._starting:
             if self.is_allowed and self._thread is None:
-                self._rhythm = replace(self._rhythm, ending=Event())
+                self._rhythm = replace(self._rhythm, ending=Flag())
                 arguments = (weakref.ref(self), self._rhythm)
-                self._thread = Thread(target=_run, args=arguments, name="simulation time", daemon=True)
-                self._thread.start()
-                _threads[self._thread] = self._rhythm.ending
+                thread = Thread(target=_run, args=arguments, name="simulation time", daemon=True)
+                try:
+                    thread.start()
+                    _threads[thread] = self._rhythm.ending
+                    self._thread = thread
+                except BaseException:
+                    self._rhythm.ending.set()
+                    self._thread = None
+                    raise
 
     def start(self, timestep: float, *, realtime: bool) -> None:
         """Let time pass by itself from now on, in steps of so many seconds, in real time or as fast as it can."""
@@ -111,10 +119,10 @@ class Clock:
         self._rhythm.ending.set()
 
 
-_threads: WeakKeyDictionary[Thread, Event] = WeakKeyDictionary()
+_threads: WeakKeyDictionary[Thread, Flag] = WeakKeyDictionary()
 
 
-@atexit.register
+@before_end
 def _end_threads() -> None:
     """End the threads while Python is still there: one that comes back from MuJoCo later crashes the process."""
     for thread, ending in tuple(_threads.items()):
@@ -126,8 +134,8 @@ def _end_threads() -> None:
 class _Rhythm:
     """What the thread knows without the clock."""
 
-    lock: RLock  # held during each step
-    ending: Event  # set when the thread should end
+    lock: StateLock  # held during each step
+    ending: Flag  # set when the thread should end
     timestep: float  # [s]
     pace: float  # seconds of simulation in a second; inf: no step waits
 
@@ -136,21 +144,22 @@ def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
     """Step a clock until it is stopped or gone."""
     due = time.monotonic() + rhythm.timestep / rhythm.pace
     while not rhythm.ending.wait(max(due - time.monotonic(), PAUSE)):
-        while not rhythm.lock.acquire(timeout=POLL):
-            if rhythm.ending.is_set():
+        with rhythm.lock.attempt(POLL) as is_free:
+            if is_free and not _step(clock, rhythm):
                 return
-        present = None
-        try:
-            present = clock()
-            if present is None or rhythm.ending.is_set():
-                return
-            present.step(rhythm.timestep)
-        except Exception:
-            _LOG.exception("a step of simulation time failed; time stands still until the next command")
-            if present is not None:
-                present.lose_thread()
-            return
-        finally:
-            present = None
-            rhythm.lock.release()
-        due = max(due + rhythm.timestep / rhythm.pace, time.monotonic() - BEHIND)
+        if is_free:
+            due = max(due + rhythm.timestep / rhythm.pace, time.monotonic() - BEHIND)
+
+
+def _step(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> bool:
+    """Let time pass by a step; return whether it goes on."""
+    present = clock()
+    if present is None or rhythm.ending.is_set():
+        return False
+    try:
+        present.step(rhythm.timestep)
+    except Exception:
+        _LOG.exception("a step of simulation time failed; time stands still until the next command")
+        present.lose_thread()
+        return False
+    return True

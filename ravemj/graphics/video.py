@@ -27,16 +27,15 @@ import math
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.flags import Flag, Handover
 from ravemj.core.output import AnyPath, check_file, check_folder, new_file, new_folder, output_error
 from ravemj.errors import ArgumentError
 
@@ -242,12 +241,9 @@ class _Stopped(Exception):  # noqa: N818 - no error of its own: it ends an encod
     pass
 
 
-def _arriving(
-    handed_over: "SimpleQueue[Frame | None]", room: threading.Semaphore, stopped: threading.Event
-) -> Iterator[Frame]:
+def _arriving(handed_over: "Handover[Frame | None]", stopped: Flag) -> Iterator[Frame]:
     """Yield what the thread that draws hands over, until None comes."""
     while (frame := handed_over.get()) is not None and not stopped.is_set():
-        room.release()
         yield frame
     if stopped.is_set():
         raise _Stopped
@@ -257,15 +253,17 @@ def _overlap(
     frames: Iterable[Frame], encode: Callable[[Iterator[Frame]], None], on_frame: Callable[[int], None] | None
 ) -> None:
     """Encode in a second thread what this thread draws; an exception of either ends both."""
-    handed_over, room = SimpleQueue[Frame | None](), threading.Semaphore(_FRAMES_BETWEEN_THREADS)
-    encoding, stopped = Future[None](), threading.Event()
+    handed_over = Handover["Frame | None"](_FRAMES_BETWEEN_THREADS)
+    ended, stopped = Flag(), Flag()
+    errors: list[BaseException] = []
 
     def work() -> None:
         try:
-            encoding.set_result(encode(_arriving(handed_over, room, stopped)))
+            encode(_arriving(handed_over, stopped))
         except BaseException as error:
-            encoding.set_exception(error)
-        room.release()  # else the thread that draws may wait for ever
+            errors.append(error)
+        ended.set()
+        handed_over.give_room()  # else the thread that draws may wait for ever
 
     # No executor: a process waits for the threads of these before its main thread counts as ended, which tells those
     # who hand in frames that there will be no more.
@@ -273,20 +271,21 @@ def _overlap(
     thread.start()
     try:
         for number, frame in enumerate(frames, 1):
-            room.acquire()
-            if encoding.done():
-                break  # the encoder has failed, and result() tells why
             handed_over.put(frame)
+            if ended.is_set():
+                break  # the encoder has failed
             if on_frame is not None:
                 on_frame(number)
-        handed_over.put(None)
-        encoding.result()
+        handed_over.put_at_once(None)
+        ended.wait()
     except BaseException:
         stopped.set()
-        handed_over.put(None)
+        handed_over.put_at_once(None)
         raise
     finally:
         thread.join()
+    if errors:
+        raise errors[0]
 
 
 def _encode(encoder: _Encoder, frames: Iterator[Frame], temporary: Path, rate: Fraction, path: AnyPath) -> None:

@@ -1,13 +1,13 @@
 """Joint values that take the tool of an arm to a goal: candidates in order, collision tests, reasons for rejection."""
 
 from collections.abc import Generator, Iterable, Iterator
-from contextlib import contextmanager
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision import arms
 from ravemj.engine.collision.findings import Checker, Findings
@@ -101,15 +101,13 @@ class ArmSearch:
     def reject(self, reason: Reason, row: Floats, findings: Findings | None) -> None:
         """Take note that joint values are rejected; ``row`` is empty if there are none."""
 
-    @contextmanager
+    @block
     def moving(self) -> Generator[None]:
         """Hold the lock; on leaving, restore the configuration of the robot."""
         with self.body.simulation.lock:
             saved = self.body.configuration()
-            try:
+            with restoring(lambda: self.body.restore(saved)):
                 yield
-            finally:
-                self.body.restore(saved)
 
     # Candidates
 

@@ -1,11 +1,12 @@
 """The bodies that a motion moves, as one configuration: its limits, and whether it is free of collisions."""
 
 from collections.abc import Callable, Generator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats, Vec3
 from ravemj.engine.collision.findings import Checker, Findings
 from ravemj.engine.collision.moving import moving_test
@@ -13,6 +14,7 @@ from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.engine.simulation.body import SavedConfiguration
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, affine_values, pose_with_values
 from ravemj.geometry_functions.ik_types import IkParameterizationType
@@ -157,7 +159,7 @@ class Bodies:
             else:
                 state.set_pose(pose_with_values(state.pose(), values[part.columns], DOFAffine(part.affine), part.axis))
 
-    @contextmanager
+    @block
     def kept(self) -> Generator[None]:
         """Hold the lock; on leaving, restore the configurations of all bodies and of the bodies that they hold."""
         with self._simulation.lock:
@@ -165,13 +167,8 @@ class Bodies:
             held = [grab.body for state in self.bodies for grab in state.grabs]
             saved = [(state, state.configuration()) for state in [*self.bodies, *held]]
             stamps = [state.stamp for state, _ in saved]
-            try:
+            with restoring(lambda: _restore(saved, stamps)):
                 yield
-            finally:
-                # The stamp tells caches that a body has moved. Nothing has, seen from outside, so it goes back as well.
-                for (state, configuration), stamp in zip(saved, stamps, strict=True):
-                    state.restore(configuration)
-                    state.stamp = stamp
 
     def fast_test(self) -> Callable[[Floats], bool] | None:
         """Return a fast collision test for configurations, or None if only ``move`` and ``collision`` can tell.
@@ -207,6 +204,13 @@ class Bodies:
         """Return the links of a body that the values move, or None if they move all of it."""
         parts = [part for part in self.parts if part.body is body]
         return MovedBy(tuple(dof for part in parts for dof in part.dofs)) if all(part.dofs for part in parts) else None
+
+
+def _restore(saved: Sequence[tuple[BodyState, SavedConfiguration]], stamps: Sequence[int]) -> None:
+    # The stamp tells caches that a body has moved. Nothing has, seen from outside, so it goes back as well.
+    for (state, configuration), stamp in zip(saved, stamps, strict=True):
+        state.restore(configuration)
+        state.stamp = stamp
 
 
 def _is_unbound(group: Group) -> bool:

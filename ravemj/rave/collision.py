@@ -1,15 +1,15 @@
 """Collision checkers."""
 
 import logging
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
-from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import also_named, checked_kind
+from ravemj.core.blocks import always, exit_in_c
 from ravemj.core.transforms import Ints
 from ravemj.engine.collision import queries
 from ravemj.engine.collision.findings import Collision, Findings, GeometryOf, Listed, Wanted, find
@@ -338,10 +338,10 @@ class CollisionOptionsStateSaver(ApiObject):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, type: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        self._checker.SetCollisionOptions(self._old)
+    def _leave(self) -> Callable[..., object]:
+        return always(lambda: self._checker.SetCollisionOptions(self._old))
+
+    __exit__ = exit_in_c(_leave)
 
 
 _told: set[str] = set()

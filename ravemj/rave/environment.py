@@ -3,10 +3,11 @@
 import itertools
 import os
 import weakref
-from types import TracebackType
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Self
 
 from ravemj.core.arguments import also_named
+from ravemj.core.blocks import exit_in_c
 from ravemj.engine.simulation import Simulation, both_locks
 from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.enums import CloningOptions
@@ -87,15 +88,15 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
             With a timeout, whether the lock was taken; else None.
         """
         if timeout is None:
-            self._simulation.lock.acquire()
+            self._simulation.lock.hold()
             return None
-        return self._simulation.lock.acquire(timeout=max(0.0, timeout))
+        return self._simulation.lock.hold(max(0.0, timeout))
 
     LockPhysics = Lock
 
     def TryLock(self) -> bool:
         """Take the lock if it is free, without waiting; return whether it was taken."""
-        return self._simulation.lock.acquire(blocking=False)
+        return self._simulation.lock.hold(0.0)
 
     def Unlock(self) -> None:
         """Give the lock back.
@@ -110,14 +111,18 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
 
     def __enter__(self) -> Self:
         """Hold the environment's lock: no other thread reads or changes it meanwhile."""
-        self._simulation.lock.acquire()
-        return self
+        lock = self._simulation.lock
+        try:
+            lock.acquire()
+            return self
+        except BaseException:
+            lock.release_if_held()
+            raise
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        """Let go of the lock."""
-        self._simulation.lock.release()
+    def _leave(self) -> Callable[..., object]:
+        return self._simulation.lock.__exit__
+
+    __exit__ = exit_in_c(_leave)
 
     def CloneSelf(self, options: int | str = CloningOptions.Bodies, clonedEnvName: Any = None) -> "Environment":  # noqa: ANN401 - either order
         """Return a new environment with copies of the bodies, in the same state.

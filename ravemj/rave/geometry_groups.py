@@ -1,10 +1,11 @@
 """The groups of geometries that a collision checker looks at."""
 
 from collections.abc import Generator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from weakref import WeakKeyDictionary
 
+from ravemj.core.blocks import block
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.model import scene
@@ -45,7 +46,7 @@ class GeometryGroups:
         """
         return self._exchanged() if self.is_used else nullcontext(self._simulation.collisions())
 
-    @contextmanager
+    @block
     def _exchanged(self) -> Generator[CollisionWorld]:
         scenes = {body: with_group(body.scene, self.of(body)) for body in self._simulation.bodies}
         # A world is made again only for other shapes: that takes long.

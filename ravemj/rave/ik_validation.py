@@ -1,13 +1,13 @@
 """Filters of users, and OpenRAVE's answers and failures, for the search for joint values of an arm."""
 
 from collections.abc import Callable, Generator, Iterable, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ravemj.core.blocks import block
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.findings import Findings
 from ravemj.errors import ErrorCode, RavemjError
@@ -112,13 +112,13 @@ class FilteredSearch(ArmSearch):
         """The goal as users see it; made when it is first asked for, since it checks a pose once more."""
         return self._given if isinstance(self._given, IkParameterization) else IkParameterization(self._given, _POSE)
 
-    @contextmanager
+    @block
     def moving(self) -> Generator[None]:
         """Hold the lock and let the joints of the arm be active; on leaving, restore both and the configuration."""
         with super().moving():
             chosen = self._robot.active_choice
-            self._robot.active_choice = ActiveChoice(np.array(self.arm.arm_dofs, dtype=int))
             try:
+                self._robot.active_choice = ActiveChoice(np.array(self.arm.arm_dofs, dtype=int))
                 yield
             finally:
                 self._robot.active_choice = chosen

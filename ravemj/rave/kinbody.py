@@ -1,7 +1,7 @@
 """Bodies."""
 
-from collections.abc import Iterable, Sequence
-from types import EllipsisType, TracebackType
+from collections.abc import Callable, Generator, Iterable, Sequence
+from types import EllipsisType
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_numbers
+from ravemj.core.blocks import Block, Closing, exit_in_c, restoring
 from ravemj.engine.grabbing import grab_as_it_stands
 from ravemj.engine.simulation import BodyState, both_locks
 from ravemj.errors import ArgumentError, ErrorCode
@@ -55,7 +56,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
     SaveParameters = SaveParameters
 
     _interface_type = InterfaceType.kinbody
-    _internal = ("connect", "default_saved", "disconnect", "restorers", "set_following")
+    _internal = ("connect", "default_saved", "disconnect", "innermost_block", "restorers", "set_following")
     default_saved = int(SaveParameters.LinkTransformation | SaveParameters.LinkEnable)
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
@@ -64,7 +65,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
         self._simulation = state.simulation
         self.annotations = Annotations()
         self.annotations.description = state.scene.description
-        self._open_savers: list[StateSaver] = []
+        self.innermost_block: _Saving | None = None
 
     def SetName(self, name: str) -> None:
         """Give the body another name.
@@ -328,18 +329,18 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
             ...     robot.SetDOFValues([0.5, 0.5])
             ...     hits = env.CheckCollision(robot)
         """
-        self._simulation.lock.acquire()
-        self._open_savers.append(StateSaver(self, None))
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        """Restore the body, and let go of the lock."""
+        saving = _Saving(self)
         try:
-            self._open_savers.pop().Restore()
-        finally:
-            self._simulation.lock.release()
+            saving.__enter__()
+            return self
+        except BaseException:
+            saving.close()
+            raise
+
+    def _leave(self) -> Callable[..., object]:
+        return Closing(self).__exit__
+
+    __exit__ = exit_in_c(_leave)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, KinBody) and self._state is other._state
@@ -366,3 +367,20 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
     def __str__(self) -> str:
         kind = self._interface_type.name
         return f"<{kind}:{self.GetXMLId()} - {self.GetName()} ({self.GetKinematicsGeometryHash()})>"
+
+
+class _Saving(Block["KinBody"]):
+    """The block of ``with body:``."""
+
+    def __init__(self, body: KinBody) -> None:
+        super().__init__(self._run(body))
+
+    def _run(self, body: KinBody) -> Generator[KinBody]:
+        with body.GetEnv().simulation.lock:
+            saver, outer = StateSaver(body, None), body.innermost_block
+            with restoring(saver.Restore):
+                try:
+                    body.innermost_block = self
+                    yield body
+                finally:
+                    body.innermost_block = outer

@@ -2,10 +2,11 @@
 
 import time
 from collections.abc import Iterator
-from queue import Empty, Queue
+from queue import Empty
 from threading import Thread, main_thread
 from typing import TYPE_CHECKING, NamedTuple
 
+from ravemj.core.flags import Handover
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.rave.module import Module
@@ -53,7 +54,7 @@ class ViewerRecorder(Module):
         commands = {"Start": self._start, "Stop": self._stop, "GetCodecs": self._codecs}
         super().__init__(env, name, lambda arguments: None, commands)
         self._order: _Order | None = None
-        self._frames: Queue[Frame | None] = Queue(_WAITING)
+        self._frames = Handover["Frame | None"](_WAITING)
         self._thread: Thread | None = None
         self._error: RavemjError | None = None
         self._passed = 0.0
@@ -130,7 +131,7 @@ class ViewerRecorder(Module):
         if self._thread.is_alive():
             self._frames.put(None)
         self._thread.join()
-        self._frames = Queue(_WAITING)
+        self._frames = Handover["Frame | None"](_WAITING)
         if self._error is not None:
             raise self._error
         return ""

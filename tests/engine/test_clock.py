@@ -13,6 +13,7 @@ import pytest
 from waiting import PATIENCE, await_that
 
 import ravemj
+from ravemj.core.locks import StateLock
 from ravemj.engine.clock import Clock
 
 PENDULUM = "models/env.xml"
@@ -104,13 +105,13 @@ def test_real_time_keeps_pace_with_the_wall(monkeypatch, usual, longest, lost):
     """Steps of 5 ms take some time on the wall each, and one of them takes longer."""
     wall, steps = Wall(), []
     monkeypatch.setattr("ravemj.engine.clock.time", SimpleNamespace(monotonic=lambda: wall.now))
-    monkeypatch.setattr("ravemj.engine.clock.Event", lambda: wall)
+    monkeypatch.setattr("ravemj.engine.clock.Flag", lambda: wall)
 
     def step(timestep):
         steps.append(timestep)
         wall.now += longest if len(steps) == 50 else usual
 
-    clock = Clock(threading.RLock(), step)
+    clock = Clock(StateLock(), step)
     clock.start(0.005, realtime=True)
     await_that(lambda: not time_threads())
     assert steps == [0.005] * 100
@@ -182,7 +183,7 @@ def test_a_failing_step_stops_time_with_a_message(caplog):
     def fail(timestep):
         raise ValueError(f"no step of {timestep}")
 
-    clock = Clock(threading.RLock(), fail)
+    clock = Clock(StateLock(), fail)
     clock.start(0.001, realtime=True)
     await_that(lambda: "no step of 0.001" in caplog.text)
     await_that(lambda: not time_threads())

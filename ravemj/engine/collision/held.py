@@ -1,10 +1,12 @@
 """What a body holds follows it in the model of the world while only joint values change there."""
 
+from collections.abc import Generator
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
+from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.queries import held_with
 from ravemj.engine.collision.world import CollisionWorld
@@ -14,8 +16,9 @@ from ravemj.engine.simulation import BodyState
 class HeldRoots:
     """The root links of what a body holds: children of the world in the model.
 
-    Inside a ``with`` they hang on their carriers: ``mj_kinematics`` places them, and ``mj_collision`` looks at them and
-    what is fixed to the world. Where one comes before its carrier (``are_late``), ``mj_kinematics`` has to run twice.
+    Inside ``on_carriers`` they hang on their carriers: ``mj_kinematics`` places them, and ``mj_collision`` looks at
+    them and what is fixed to the world. Where one comes before its carrier (``are_late``), ``mj_kinematics`` has to
+    run twice.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState) -> None:
@@ -36,8 +39,14 @@ class HeldRoots:
             self._welds += zip(fixed, model.body_rootid[fixed].tolist(), strict=True)
         self.are_late = any(one.body_id < one.carrier for one in self._roots)
 
-    def __enter__(self) -> None:
-        """Make them children of their carriers."""
+    @block
+    def on_carriers(self) -> Generator[None]:
+        """Make them children of their carriers, and of the world again; the caller restores their poses there."""
+        with restoring(self._detach):
+            self._attach()
+            yield
+
+    def _attach(self) -> None:
         for index, carrier, position, wxyz, offset, turn in self._roots:
             self._parents[index] = carrier
             self._dof_counts[index] = 1  # else MuJoCo would take it for fixed to the world
@@ -46,8 +55,7 @@ class HeldRoots:
         for index, root in self._welds:
             self._weld_ids[index] = root
 
-    def __exit__(self, *error: object) -> None:
-        """Make them children of the world again; their poses there are for the caller to restore."""
+    def _detach(self) -> None:
         for one in self._roots:
             self._parents[one.body_id] = self._dof_counts[one.body_id] = 0
         for index, _ in self._welds:

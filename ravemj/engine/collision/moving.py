@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.blocks import restoring
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.held import HeldRoots
 from ravemj.engine.collision.pairs import Pairs
@@ -14,6 +15,7 @@ from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.engine.collision.world import MOST_AT_ONCE, CollisionWorld
 from ravemj.engine.kinematics import fixed_view
 from ravemj.engine.simulation import BodyState
+from ravemj.engine.simulation.body import SavedConfiguration
 
 _Kind = Callable[[CollisionWorld, BodyState, MovedBy | None], Pairs]
 _KINDS: tuple[_Kind, ...] = (body_and_others, itself)
@@ -46,7 +48,7 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
     """
     before, stamp = body.configuration(), body.stamp
     held = [(grab.body, grab.body.configuration()) for grab in body.grabs]
-    try:
+    with restoring(lambda: _restore(body, before, held, stamp)):
         if len(values) and body.kinematics.displaced:
             body.set_values(values[0])  # brings displaced links back to their joints
         world = body.simulation.collisions()
@@ -56,11 +58,15 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDAr
         if any(map(world.collide, chosen.resting)):
             return np.ones(len(values), dtype=bool)
         return _MovingTest(world, body, _Placement(world, body, dofs), chosen).of_many(values)
-    finally:
-        body.restore(before)
-        for one, configuration in held:
-            one.restore(configuration)
-        body.stamp = stamp
+
+
+def _restore(
+    body: BodyState, before: SavedConfiguration, held: Sequence[tuple[BodyState, SavedConfiguration]], stamp: int
+) -> None:
+    body.restore(before)
+    for one, configuration in held:
+        one.restore(configuration)
+    body.stamp = stamp
 
 
 class _Chosen(NamedTuple):
@@ -81,7 +87,7 @@ class _Chosen(NamedTuple):
         sets = [kind(world, body, moved) for kind in kinds]
         resting = tuple(_apart_from(world, kind(world, body, None), one) for kind, one in zip(kinds, sets, strict=True))
         pairs = np.concatenate([_as_array(one) for one in sets])
-        with HeldRoots(world, body):  # last, since it does not put the poses back
+        with HeldRoots(world, body).on_carriers():  # last, since it does not put the poses back
             tested = world.detection.finds(pairs[:, 0], pairs[:, 1])
         meant, rest = pairs[tested], pairs[~tested]
         return cls(
@@ -192,7 +198,7 @@ class _MovingTest:
 
     def _detect_with(self, held: HeldRoots) -> None:
         """Let MuJoCo look for contacts, with what is held where its carriers are."""
-        with held:
+        with held.on_carriers():
             mujoco.mj_kinematics(self._model, self._data)
             if held.are_late:
                 mujoco.mj_kinematics(self._model, self._data)

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -10,6 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Detection, Pairs
 from ravemj.engine.collision.rays import RayCaster
@@ -210,20 +210,21 @@ class CollisionWorld:
     def _colliding(self) -> Ints:
         return np.flatnonzero(self._collides)
 
-    @contextmanager
+    @block
     def moved(self, motions: Mapping[tuple[BodyState, int], Floats]) -> Generator[None]:
         """Put links elsewhere for the tests inside the ``with``, by motions in the world (4, 4); bodies stay."""
         positions, rotations = self._data.geom_xpos, self._data.geom_xmat
-        self.detection.is_overruled = True
-        try:
+        with restoring(self._move_back):
+            self.detection.is_overruled = True
             for (body, link), motion in motions.items():
                 for geom in self.geoms_of_link(body, link, enabled_only=False):
                     positions[geom] = motion[:3, :3] @ positions[geom] + motion[:3, 3]
                     rotations[geom] = (motion[:3, :3] @ rotations[geom].reshape(3, 3)).ravel()
             yield
-        finally:
-            self.detection.is_overruled = False
-            mujoco.mj_kinematics(self._model, self._data)
+
+    def _move_back(self) -> None:
+        self.detection.is_overruled = False
+        mujoco.mj_kinematics(self._model, self._data)
 
 
 def _processors() -> int:

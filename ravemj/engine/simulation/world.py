@@ -1,10 +1,10 @@
 """The bodies of an environment and the MuJoCo model made of them."""
 
 from collections.abc import Generator, Mapping
-from contextlib import contextmanager
-from threading import RLock
 from typing import TYPE_CHECKING
 
+from ravemj.core.blocks import block
+from ravemj.core.locks import StateLock
 from ravemj.core.transforms import Vec3
 from ravemj.engine.simulation.body import BodyState
 from ravemj.engine.simulation.published import Published
@@ -30,7 +30,7 @@ class Simulation:
     """
 
     def __init__(self) -> None:
-        self.lock = RLock()  # held by every reader and writer of the model's state, such as the threads of viewers
+        self.lock = StateLock()  # held by every reader and writer of the model's state, such as the threads of viewers
         self.drawings = Drawings()  # what scripts draw beside the bodies; needs no lock
         self.published = Published()  # what viewers show while the lock is held; needs none
         self.view = View()  # background and camera that the loaded files ask for
@@ -226,7 +226,7 @@ class Simulation:
             self._collisions = known = CollisionWorld(self.bodies, model, stamp)
         return known
 
-    @contextmanager
+    @block
     def described_as(
         self, scenes: Mapping[BodyState, KinBody], known: "CollisionWorld | None"
     ) -> "Generator[CollisionWorld]":
@@ -266,7 +266,7 @@ class Simulation:
         return world
 
 
-@contextmanager
+@block
 def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
     """Hold the locks of two environments. All callers take them in the same order, which prevents deadlocks."""
     first, second = sorted((one, other), key=id)

@@ -4,7 +4,6 @@ A ``GlScene`` belongs to one model and one OpenGL context. Its methods need that
 calling thread; making it current is the caller's business, which is why a window can use the same code.
 """
 
-import contextlib
 import logging
 import threading
 from collections.abc import Generator, Sequence
@@ -14,6 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.blocks import block
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera, bounding_sphere
 from ravemj.graphics.rendering.drawing_geoms import add_drawing_geoms
@@ -282,7 +282,7 @@ def _find_skybox(model: mujoco.MjModel) -> int | None:
     return int(skyboxes[0])
 
 
-@contextlib.contextmanager
+@block
 def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
     """Set what ``MjrContext`` reads from the model, and give the model its own values back."""
     sizes: Sequence[tuple[object, str, int]] = (

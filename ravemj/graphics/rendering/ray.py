@@ -4,7 +4,6 @@ Flat shading with the lights of the model, transparency, no textures and no shad
 microseconds per pixel and geom in view.
 """
 
-import contextlib
 import copy
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.blocks import block
 from ravemj.core.transforms import Floats
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import Renderer
@@ -211,7 +211,7 @@ class _RayScene:
         walls = 1 + self._has_two_walls(geom_ids)
         return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
 
-    @contextlib.contextmanager
+    @block
     def _without(self, geom: int) -> Generator[None]:
         group = int(self.model.geom_group[geom])
         self.model.geom_group[geom] = _HIDDEN_GROUP

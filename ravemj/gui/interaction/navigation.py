@@ -55,12 +55,10 @@ class Navigation:
 
     def scene_sphere(self) -> Sphere:
         """Return a sphere around everything: as it was last, while others have the simulation."""
-        if self._simulation.lock.acquire(blocking=False):
-            try:
+        with self._simulation.lock.attempt(0) as is_free:
+            if is_free:
                 compiled = self._simulation.compiled()
                 self._sphere = bounding_sphere(compiled.model, compiled.data)
-            finally:
-                self._simulation.lock.release()
         return self._sphere
 
     @property

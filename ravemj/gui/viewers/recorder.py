@@ -10,6 +10,7 @@ import weakref
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from ravemj.core.flags import Flag
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Interaction, Notices, Playback
@@ -62,7 +63,7 @@ class Recorder:
 
     def __init__(self, notices: Notices) -> None:
         self._notices = notices
-        self._stop = threading.Event()
+        self._stop = Flag()
         self._recorder: threading.Thread | None = None
         self._threads: set[threading.Thread] = set()
 

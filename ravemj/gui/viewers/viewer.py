@@ -2,7 +2,6 @@
 
 import contextlib
 import math
-import threading
 import weakref
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_vector
+from ravemj.core.flags import Flag
 from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import Simulation
@@ -65,7 +65,7 @@ class Viewer(Interactive):
         self._thread_callbacks = Callbacks()
         self._image_callbacks = Callbacks()
         self._camera_of_nothing = None if simulation.bodies else self.camera
-        self._ended = threading.Event()  # set once the window or the page is closed; without either, from the start
+        self._ended = Flag()  # set once the window or the page is closed; without either, from the start
         self._ended.set()
 
     def GetXMLId(self) -> str:

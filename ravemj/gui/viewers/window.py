@@ -11,6 +11,7 @@ from queue import SimpleQueue
 import numpy as np
 
 from ravemj.core.arrays import checked_vector
+from ravemj.core.flags import Flag
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, RavemjError, RenderingError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
@@ -32,7 +33,7 @@ _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
 """Largest coordinate on an X screen."""
 
-_running: dict[threading.Thread, tuple[threading.Event, threading.Event]] = {}
+_running: dict[threading.Thread, tuple[Flag, Flag]] = {}
 """The threads of windows; for each an event that closes it, and one that tells its end: Ctrl-C breaks ``join``."""
 
 
@@ -45,13 +46,13 @@ class WindowViewer(Viewer):
         super().__init__(simulation, renderer, name)
         self._size = _WIDTH, _HEIGHT
         self._requests: SimpleQueue[tuple[str, *tuple[object, ...]]] = SimpleQueue()
-        self._awaited: SimpleQueue[threading.Event] = SimpleQueue()
+        self._awaited: SimpleQueue[Flag] = SimpleQueue()
         self._complaint = ""
         self._free_at = self._changed_at = time.monotonic()
-        self._closing = threading.Event()
-        self._opened = threading.Event()
+        self._closing = Flag()
+        self._opened = Flag()
         self._failure = ""
-        self._ended = threading.Event()
+        self._ended = Flag()
         thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
         _running[thread] = self._closing, self._ended
         self._end = weakref.finalize(self, _end, thread)  # before Ctrl-C can end this here
@@ -86,7 +87,7 @@ class WindowViewer(Viewer):
 
     def EnvironmentSync(self) -> None:
         """Wait until the window shows the environment as it is now; at most a second, in which others may hold it."""
-        drawn = threading.Event()
+        drawn = Flag()
         self._awaited.put(drawn)
         drawn.wait(_LONGEST_SYNC if self.is_open else 0.0)
 
@@ -116,14 +117,11 @@ class WindowViewer(Viewer):
         self._size = window.size
         self._thread_callbacks.call()
         now = time.monotonic()
-        is_free = self._simulation.lock.acquire(timeout=_PERIOD)  # who holds it may wait for this thread to end
-        self._simulation.published.is_wanted = not is_free
+        with self._simulation.lock.attempt(_PERIOD) as is_free:  # who holds it may wait for this thread to end
+            self._simulation.published.is_wanted = not is_free
+            is_changed = is_free and self._take_in(window, painter)
         if is_free:
             self._free_at = now
-            try:
-                is_changed = self._take_in(window, painter)
-            finally:
-                self._simulation.lock.release()
         else:
             is_changed = self._take_in_view(window, painter, now)
             for drawn in waiting:

@@ -88,8 +88,8 @@ class Configuration(Limits):
             >>> robot.SetDOFValues([1.57], [1])  # the second joint only
         """
         lock = self._simulation.lock
-        lock.acquire()  # without ``with``, which takes twice as long, since nothing is called more often
         try:
+            lock.acquire()  # without ``with``, which takes twice as long, since nothing is called more often
             state = self._state
             kinematics = state.kinematics
             if (
@@ -102,15 +102,18 @@ class Configuration(Limits):
                 target = values
             elif dofindices is not None and dofindices is not ... and not np.size(values):
                 checked_indices(dofindices, kinematics.dof)
-                return  # random-api-145
+                target = None  # random-api-145
             else:
                 target = full_values(state.scene, kinematics, values, dofindices)
-            if not kinematics.limits.contain(target):
-                target = settled_values(state.scene, kinematics, target, checklimits)
-            kinematics.set_values(target, clamp_mimic=checklimits != _UNLIMITED)
-            state.moved()
-        finally:
-            lock.release()
+            if target is not None:
+                if not kinematics.limits.contain(target):
+                    target = settled_values(state.scene, kinematics, target, checklimits)
+                kinematics.set_values(target, clamp_mimic=checklimits != _UNLIMITED)
+                state.moved()
+        except BaseException:
+            lock.release_if_held()
+            raise
+        lock.release()
 
     @property
     def qpos_indices(self) -> Ints:

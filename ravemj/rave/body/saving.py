@@ -1,11 +1,11 @@
 """State savers, which restore an earlier state of a body."""
 
 from collections.abc import Callable, Mapping, Sequence
-from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
+from ravemj.core.blocks import always, exit_in_c
 from ravemj.engine.grabbing import still_possible
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
@@ -101,11 +101,10 @@ class StateSaver(ApiObject):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        """Restore the state."""
-        self.Restore()
+    def _leave(self) -> Callable[..., object]:
+        return always(self.Restore)
+
+    __exit__ = exit_in_c(_leave)
 
     def __repr__(self) -> str:
         return f"<state saver:{self._body.GetName()}>"

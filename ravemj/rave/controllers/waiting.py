@@ -3,8 +3,8 @@
 import logging
 import time
 from collections.abc import Callable
-from threading import Condition, RLock
 
+from ravemj.core.locks import StateLock
 from ravemj.errors import ErrorCode, RavemjError
 
 _LOG = logging.getLogger("ravemj")
@@ -13,7 +13,7 @@ _POLL = 1e-3
 """The interval [s] at which the controller is asked: short against a time step of 10 ms, and no load for a core."""
 
 
-def wait_until(is_done: Callable[[], bool], timeout: float, lock: RLock, is_running: Callable[[], bool]) -> bool:
+def wait_until(is_done: Callable[[], bool], timeout: float, lock: StateLock, is_running: Callable[[], bool]) -> bool:
     """Wait until a controller has finished its command; see ``Robot.WaitForController``.
 
     Args:
@@ -30,7 +30,7 @@ def wait_until(is_done: Callable[[], bool], timeout: float, lock: RLock, is_runn
     """
     if is_done():
         return True
-    if _is_held(lock):
+    if lock.is_held:
         message = "WaitForController: time stands still inside 'with env:'; wait outside of it"
         if timeout <= 0:
             raise RavemjError(message, ErrorCode.InvalidState)
@@ -43,13 +43,4 @@ def wait_until(is_done: Callable[[], bool], timeout: float, lock: RLock, is_runn
         if timeout > 0 and deadline < time.monotonic():
             return False
         time.sleep(_POLL)
-    return True
-
-
-def _is_held(lock: RLock) -> bool:
-    """Return whether this thread holds a lock. ``RLock`` cannot tell, but only its holder may notify a condition."""
-    try:
-        Condition(lock).notify(0)
-    except RuntimeError:
-        return False
     return True

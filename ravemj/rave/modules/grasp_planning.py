@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
+from ravemj.core.blocks import block
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import IkFilterOptions, SaveParameters
@@ -261,7 +261,7 @@ def _goal(T_world_tool: Floats) -> IkParameterization:
     return IkParameterization(T_world_tool, IkParameterization.Type.Transform6D)
 
 
-@contextmanager
+@block
 def _kept(robot: Robot, target: KinBody) -> Generator[None]:
     """Restore the robot and the target on leaving."""
     with robot.CreateRobotStateSaver(_SAVED), target.CreateKinBodyStateSaver(_SAVED):

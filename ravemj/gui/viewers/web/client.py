@@ -180,34 +180,39 @@ class Client:
     def _update_if_due(self, style: PageStyle) -> _Update | None:
         """Do what the page said; return what it is to be sent if that is due."""
         now = time.monotonic()
-        self._sees_bodies = self._simulation.lock.acquire(timeout=_PERIOD)
-        self._simulation.published.is_wanted = not self._sees_bodies
-        if not self._sees_bodies:  # who holds it may wait for this thread to end
+        # No longer, since who holds it may wait for this thread to end.
+        with self._simulation.lock.attempt(_PERIOD) as self._sees_bodies:
+            self._simulation.published.is_wanted = not self._sees_bodies
+            overlay = self._overlay_if_due(style, now) if self._sees_bodies else None
+        if not self._sees_bodies:
             return self._update_of_view(style, now)
-        try:
-            self._free_at = now
-            self.interaction.pass_time(now)
-            before = self.interaction.view.camera
-            while self._waiting:
-                self.interaction.handle(self._waiting.popleft())
-            self._has_moved |= self.interaction.view.camera is not before
-            if not self._link.is_free:
-                return None
-            acknowledged = self._acknowledged if self._feed else 0  # what a page did by itself is waiting for an answer
-            seen = appearance(self._simulation), self.interaction.appearance, style, self._ratio, acknowledged
-            has_changed = seen != self._seen or self._says_locked
-            if not self._is_due(now, has_changed=has_changed):
-                self.looks += 1
-                return None
-            self._seen, self._seen_view, self._says_locked = seen, self._view(style), False
-            self._overlay = self.interaction.overlay()
-            if self._feed is not None:
-                self._stage = Stage.of(self._simulation, self._overlay, self._scenes)
-        finally:
-            self._simulation.lock.release()
+        if overlay is None:
+            return None
         if self._feed is not None and self._stage is not None:
-            return self._news(self._feed, self._stage, self._overlay, style)
-        return self._picture(self._overlay, style, self._level(now))
+            return self._news(self._feed, self._stage, overlay, style)
+        return self._picture(overlay, style, self._level(now))
+
+    def _overlay_if_due(self, style: PageStyle, now: float) -> Overlay | None:
+        """Do what the page said, with the simulation locked; return what lies over the picture if one is due."""
+        self._free_at = now
+        self.interaction.pass_time(now)
+        before = self.interaction.view.camera
+        while self._waiting:
+            self.interaction.handle(self._waiting.popleft())
+        self._has_moved |= self.interaction.view.camera is not before
+        if not self._link.is_free:
+            return None
+        acknowledged = self._acknowledged if self._feed else 0  # what a page did by itself is waiting for an answer
+        seen = appearance(self._simulation), self.interaction.appearance, style, self._ratio, acknowledged
+        has_changed = seen != self._seen or self._says_locked
+        if not self._is_due(now, has_changed=has_changed):
+            self.looks += 1
+            return None
+        self._seen, self._seen_view, self._says_locked = seen, self._view(style), False
+        self._overlay = overlay = self.interaction.overlay()
+        if self._feed is not None:
+            self._stage = Stage.of(self._simulation, overlay, self._scenes)
+        return overlay
 
     def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
         """Do what changes only the view, while others have the simulation; return what is to be sent if that is due."""

@@ -18,6 +18,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
+from ravemj.core.flags import Flag
 from ravemj.errors import ArgumentError, RenderingError
 from ravemj.gui.viewers.web.document import document
 from ravemj.gui.viewers.web.embedding import checked_origins, frame_ancestors, origins_of_environment
@@ -85,7 +86,7 @@ class PageServer:
         self._is_lasting = port != 0 and token is not None
         self.token = secrets.token_urlsafe(16) if token is None else checked_token(token)
         self.complain = Rejections()
-        self.closed = threading.Event()
+        self.closed = Flag()
         self._may_stop = threading.Lock()  # once, by whoever comes first
         self._any_name = any_name
         self._find_scene, self._first_scene = find_scene, first_scene

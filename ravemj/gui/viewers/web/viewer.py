@@ -7,12 +7,14 @@ import threading
 import time
 import weakref
 from collections.abc import Iterable
+from contextlib import suppress
 
 from numpy.typing import ArrayLike
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.sync.server import ServerConnection
 
+from ravemj.core.flags import Flag
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.rendering.style import AS_IT_IS
@@ -77,7 +79,7 @@ class WebViewer(Viewer):
         self._views: dict[str, Interaction] = {}
         self._lock = threading.Lock()
         self._scenes = Scenes()
-        self._ended = threading.Event()  # open: a page may come before the server is returned
+        self._ended = Flag()  # open: a page may come before the server is returned
         reference: weakref.ref[WebViewer] = weakref.ref(self)
         self.server = PageServer(
             host,
@@ -138,15 +140,11 @@ class WebViewer(Viewer):
 
     def first_scene(self) -> str:
         """Return the name of the surfaces that a new page will draw; empty where somebody has the environment."""
-        if not self._simulation.lock.acquire(timeout=_SYNC_STEP):
-            return ""
-        try:
-            model = self._simulation.compiled().model
-            return self._scenes.of(model, self._simulation.version, AS_IT_IS).name
-        except RavemjError:  # which the page says
-            return ""
-        finally:
-            self._simulation.lock.release()
+        with self._simulation.lock.attempt(_SYNC_STEP) as is_free, suppress(RavemjError):  # which the page says
+            if is_free:
+                model = self._simulation.compiled().model
+                return self._scenes.of(model, self._simulation.version, AS_IT_IS).name
+        return ""
 
     def welcome(self, connection: ServerConnection) -> None:
         """Take a page up; one that was here before has the view that it had.

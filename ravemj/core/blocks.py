@@ -1,0 +1,105 @@
+"""Context managers whose end no signal can skip.
+
+Python handles signals when a Python function begins and after calls. A signal that raises, as Ctrl-C does, at the begin
+of a Python function ``__exit__`` skips all of it. So the ``__exit__`` of these context managers is C code. Their
+``__enter__`` may be Python code, because no signal is handled between its ``return`` and the block.
+"""
+
+import io
+from collections.abc import Callable, Generator
+from contextlib import AbstractContextManager
+from functools import wraps
+from operator import attrgetter
+from types import TracebackType
+from typing import Any, Generic, ParamSpec, TypeVar
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+
+
+class _CodeInC(io.IOBase):
+    """``io.IOBase`` for its ``__exit__`` alone: C code that calls ``close()``, whatever it is given."""
+
+    closed = True  # pyright: ignore - garbage collection should not call ``close``
+
+
+class Block(_CodeInC, Generic[_T]):
+    """Runs a generator to its ``yield`` at the begin of a ``with`` block, and the rest at its end.
+
+    Unlike with ``contextlib.contextmanager``, the generator does not see the error that ends the block.
+    """
+
+    def __init__(self, generator: Generator[_T]) -> None:
+        self._generator = generator
+        self.close = generator.close
+
+    def __enter__(self) -> _T:  # pyright: ignore[reportIncompatibleMethodOverride]
+        try:
+            return next(self._generator)
+        except BaseException:
+            self.close()
+            raise
+
+
+def block(function: Callable[_P, Generator[_T]]) -> Callable[_P, AbstractContextManager[_T]]:
+    """Make a generator function a context manager; see ``Block``."""
+
+    @wraps(function)
+    def begin(*args: _P.args, **kwargs: _P.kwargs) -> Any:  # noqa: ANN401 - typed above
+        return Block(function(*args, **kwargs))
+
+    return begin
+
+
+class _Exit(Generic[_T]):
+    """An ``__exit__`` that is found when the block begins."""
+
+    def __init__(self, find: Callable[[_T], Callable[..., object]]) -> None:
+        self._find = find
+
+    def __get__(self, owner: _T | None, kind: type) -> object:
+        return self if owner is None else self._find(owner)
+
+    def __call__(self, owner: _T, *error: object) -> None:
+        """Leave the block of an object, as ``contextlib.ExitStack`` does."""
+        self._find(owner)(*error)
+
+
+def exit_in_c(
+    find: Callable[[_T], Callable[..., object]],
+) -> Callable[[_T, type[BaseException] | None, BaseException | None, TracebackType | None], None]:
+    """Make an ``__exit__`` of a method that returns C code, which takes what ``__exit__`` takes.
+
+    The method is called before the block begins.
+    """
+    found: Any = _Exit(find)
+    return found
+
+
+@block
+def restoring(action: Callable[[], object]) -> Generator[None]:
+    """Call a function at the end of the block, again if an interrupt ends it before it is complete."""
+    try:
+        yield
+    finally:
+        try:
+            action()
+        except BaseException:
+            action()
+            raise
+
+
+def always(action: Callable[[], object]) -> Callable[..., object]:
+    """Return an ``__exit__`` that calls a function."""
+    waiting = restoring(action)
+    waiting.__enter__()
+    return waiting.__exit__
+
+
+class Closing(_CodeInC):
+    """Has an ``__exit__`` in C that closes the ``innermost_block`` that an object has then."""
+
+    close = property(attrgetter("_owner.innermost_block.close"))  # pyright: ignore[reportAssignmentType]
+
+    def __init__(self, owner: object) -> None:
+        self._owner = owner
