@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats
 from ravemj.planning.space import Space
 
+LARGEST_JUMP = 0.5
+"""The largest step of a joint between consecutive goals [rad or m]; a larger one is another branch of solutions."""
+
 _FIRST_STEP = 1000.0
 """What the way from the start to the first goal costs: a path that begins where the robot is beats all others."""
 

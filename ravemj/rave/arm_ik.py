@@ -12,6 +12,7 @@ from ravemj.core.transforms import Floats, inverse, pose_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool, moved_goal
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
+from ravemj.manipulation.arm_search import ArmSearch
 from ravemj.model import hashes
 from ravemj.rave.arm_base import ArmPart
 from ravemj.rave.ik_search import task_of
@@ -49,6 +50,8 @@ class IkBatch(NamedTuple):
 
 class ArmIk(ArmPart):
     """Inverse kinematics: joint values that take the tool to goals, and the goal where the tool is now."""
+
+    _internal = ("search",)
 
     # Solvers
 
@@ -158,7 +161,7 @@ class ArmIk(ArmPart):
             if ikreturn or ikFailureAccumulator is not None:
                 answer = solver.find_one(goal, shares, options, failures=ikFailureAccumulator)
                 return answer if ikreturn else None if answer.GetAction() else answer.GetSolution()
-            return solver.find_row(goal, shares, options)
+            return solver.search(goal, shares, options).nearest()
 
     @overload
     def FindIKSolutions(
@@ -214,8 +217,13 @@ class ArmIk(ArmPart):
                     return answers
                 rows = np.array([answer.GetSolution() for answer in answers])
             else:
-                rows = solver.find_rows(goal, shares, options)
+                rows = np.array(solver.search(goal, shares, options).every())
             return rows if len(rows) else np.zeros(0)
+
+    def search(self, param: ArrayLike | IkParameterization, options: int) -> ArmSearch:
+        """Return a search for joint values that take the tool to a goal in the world; the arm has a solver."""
+        with self._state.simulation.lock:
+            return self._solver("search").search(self._in_base(param), None, options)
 
     def _in_base(self, param: ArrayLike | IkParameterization) -> IkParameterization | Floats:
         """Return a goal in the frame of the arm's base; a pose (4, 4) as it is."""

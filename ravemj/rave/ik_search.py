@@ -68,8 +68,6 @@ class IkSearch(Interface):
         "derived",
         "find_all",
         "find_one",
-        "find_row",
-        "find_rows",
         "kind",
         "search",
         "set_steps",
@@ -150,14 +148,6 @@ class IkSearch(Interface):
         return self._owner().simulation_state.kinematics.values()[list(self._description().arm_dofs)]
 
     # Search
-
-    def find_row(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> Floats | None:
-        """Return the joint values of ``find_one``, shape (n,), or None."""
-        return self.search(goal, shares, options).nearest()
-
-    def find_rows(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> Floats:
-        """Return the joint values of ``find_all``, shape (K, n)."""
-        return np.array(self.search(goal, shares, options).every())
 
     def search(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> ArmSearch:
         """Return a search for joint values.

@@ -7,20 +7,20 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.arm_search import ArmSearch
 from ravemj.manipulation.bodies import Bodies
 from ravemj.planning.edges import nearby
 from ravemj.planning.rrt import MoreGoals
+from ravemj.planning.tracking import LARGEST_JUMP, track
 from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.motions import Manipulation, Postprocessing, SearchOptions
 from ravemj.rave.planning.names import is_planner
 from ravemj.rave.planning.status import PlanningError
-from ravemj.rave.planning.values import Values
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
-_LARGEST_JUMP = 0.5
-"""The largest step of a joint [rad or m] in one step of the tool along a line; a larger one is another IK branch."""
+_CHECKED = int(IkFilterOptions.CheckEnvCollisions)
 
 HAND_SEARCH = SearchOptions(maxtries=3, jitter=0.03)
 """OpenRAVE's defaults for motions to poses of the tool."""
@@ -79,7 +79,7 @@ class BaseManipulation(Manipulation):
         if min(seedik, goalsamples) < 0:
             raise ArgumentError(f"seedik is {seedik} and goalsamples {goalsamples}, and both should be 0 or more")
         manip = self._solvable()
-        stream = (row for goal in goals for row in solutions(manip, goal, IkFilterOptions.CheckEnvCollisions))
+        stream = (row for goal in goals for row in manip.search(goal, _CHECKED).every())
         found = list(islice(stream, min(seedik, goalsamples)))
         if not found:
             raise PlanningError("inverse kinematics (IK) has no solution without collisions for any of the goals")
@@ -122,45 +122,46 @@ class BaseManipulation(Manipulation):
             raise ArgumentError(f"direction {direction.tolist()} and stepsize {stepsize:g} should not be 0")
         manip = self._solvable()
         T_world_tool = manip.GetTransform() if starteematrix is None else starteematrix
-        reached, check = 0, ignorefirstcollision < 0
-        with self.keeping_active(), self.bodies_of(manip.description.arm_dofs).kept():
-            present = manip.GetArmDOFValues()
-            self.robot.SetActiveDOFs(manip.GetArmIndices())
-            is_here = starteematrix is None
-            for row in [present] if is_here else self._nearest_first(manip, T_world_tool, present, check=check):
-                step = direction / length * stepsize
-                rows = self._along(manip, T_world_tool, step, row, maxsteps, ignorefirstcollision)
-                reached = max(reached, len(rows) - 1)
-                if reached >= max(minsteps, 1):
-                    return self.straight(np.array(rows))
+        step = direction / length * stepsize
+        present, reached = manip.GetArmDOFValues(), 0
+        firsts = [present]
+        if starteematrix is not None:
+            firsts = _search(manip, T_world_tool, check=ignorefirstcollision < 0).every()
+            firsts.sort(key=lambda row: float(np.abs(row - present).max()))
+
+        def pose(number: int) -> tuple[Floats, bool]:
+            T_world_goal = T_world_tool.copy()
+            T_world_goal[:3, 3] += step * number
+            return T_world_goal, number * stepsize > ignorefirstcollision
+
+        for row in firsts:
+            rows = self.follow(manip, pose, maxsteps, row)
+            reached = max(reached, len(rows) - 1)
+            if reached >= max(minsteps, 1):
+                return self.straight(rows, manip.description.arm_dofs)
         raise PlanningError(f"the tool gets {reached} steps far, and should get {max(minsteps, 1)}")
 
-    def _along(
-        self, manip: Manipulator, T_world_tool: Floats, step: Floats, first: Floats, most: int, ignored: float
-    ) -> list[Floats]:
-        """Return the arm's values in steps [m] of the tool along a line, from its first values as far as it goes."""
-        rows = [first]
-        for number in range(1, most + 1):
-            pose = T_world_tool.copy()
-            pose[:3, 3] += step * number
-            is_free = number * float(np.linalg.norm(step)) <= ignored
-            row = self.next_solution(manip, pose, rows[-1], check=not is_free)
-            if row is None:
-                break
-            rows.append(row)
-        return rows
+    def follow(
+        self, manip: Manipulator, pose: Callable[[int], tuple[Floats, bool]], count: int, first: Floats
+    ) -> Floats:
+        """Return joint values with which the tool follows poses without jumps, as far as it gets, shape (m, n).
 
-    def next_solution(self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool) -> Floats | None:
-        """Return the IK solution nearest to joint values, or None if none is near them and free of collisions."""
-        found = self._nearest_first(manip, pose, before, check=check)
-        return found[0] if found and np.abs(found[0] - before).max() <= _LARGEST_JUMP else None
+        Args:
+            manip: The manipulator.
+            pose: Returns ``T_world_tool`` and whether collisions count, for a number from 1 to ``count``.
+            count: The number of poses.
+            first: The joint values to start from, shape (n,), which are the first row.
+        """
+        space = self.stated(manip.description.arm_dofs).space()
 
-    def _nearest_first(self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool) -> list[Floats]:
-        """Return the IK solutions for a pose, in the order of their distances from joint values."""
-        self.robot.SetDOFValues(before, manip.GetArmIndices())
-        options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions
-        found = solutions(manip, IkParameterization(pose, IkParameterization.Type.Transform6D), options)
-        return sorted(found, key=lambda row: float(np.abs(row - before).max()))
+        def solve(number: int, near: Floats) -> list[Floats]:
+            if not number:
+                return [first]
+            T_world_tool, check = pose(number)
+            row = _search(manip, T_world_tool, check=check).near(near, LARGEST_JUMP)
+            return [] if row is None else [row]
+
+        return track(space, count + 1, first, solve, lambda number, before, after: True)
 
     def move_unsync_joints(
         self,
@@ -189,7 +190,7 @@ class BaseManipulation(Manipulation):
         if not np.isfinite(hand).all() or maxdivision < 1:
             message = f"jointvalues are {hand.tolist()} in {maxdivision} divisions"
             raise ArgumentError(f"{message}, and should be finite numbers in 1 at least")
-        values, before = self._stated(), robot.GetDOFValues(indices)
+        values, before = self.stated(), robot.GetDOFValues(indices)
         space, here = values.space(), values.vectors["_vinitialconfig"]
         moving = self.bodies_of(indices)
         test = values.conditions.allowed()
@@ -226,19 +227,13 @@ class BaseManipulation(Manipulation):
         finally:
             self.planner = old
 
-    def _stated(self) -> Values:
-        """Return a problem of what is active."""
-        values = Values()
-        values.state(self.env, self.groups())
-        return values
-
     def jitter_active(self, maxiter: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
         """Return a free configuration of the active DOFs within ``jitter`` [rad or m], and the straight motion to it.
 
         Raises:
             PlanningError: none of ``maxiter`` random configurations is free of collisions.
         """
-        values = self._stated()
+        values = self.stated()
         here = values.vectors["_vinitialconfig"]
         with values.conditions.kept():
             random = np.random.default_rng(0)
@@ -253,6 +248,6 @@ def _free(bodies: Bodies, values: Floats) -> bool:
     return not bodies.collision()
 
 
-def solutions(manip: Manipulator, goal: IkParameterization, options: int) -> list[Floats]:
-    """Return the joint values of an arm that reach a goal."""
-    return [np.asarray(row, dtype=float) for row in manip.FindIKSolutions(goal, int(options))]
+def _search(manip: Manipulator, T_world_tool: Floats, *, check: bool) -> ArmSearch:
+    options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions
+    return manip.search(T_world_tool, int(options))

@@ -13,7 +13,7 @@ from ravemj.errors import ArgumentError
 from ravemj.rave.enums import IkFilterOptions, SaveParameters
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.modules.base_manipulation import BaseManipulation, solutions
+from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.motions import SearchOptions
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.robot import Robot
@@ -26,6 +26,7 @@ _STEP = 0.01
 _IN_LIMITS = 1e-3
 """The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
 
+_CHECKED = int(IkFilterOptions.CheckEnvCollisions)
 _SAVED = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
 
 
@@ -208,7 +209,7 @@ class _Candidates:
         start = T_world_tool.copy()
         start[:3, 3] -= self._query.approachoffset * direction
         rows: list[Floats] = []
-        for row in solutions(self._manip, _goal(start), IkFilterOptions.CheckEnvCollisions):
+        for row in self._manip.search(_goal(start), _CHECKED).every():
             if self._gets_there(row, start, direction):
                 rows.append(row)
             if len(rows) == self._query.seedik > 0:
@@ -218,18 +219,17 @@ class _Candidates:
     def _gets_there(self, row: Floats, start: Floats, direction: Floats) -> bool:
         count = int(np.ceil(self._query.approachoffset / _STEP))
         enabled = self._query.target.GetLinkEnableStates()
+
+        def pose(number: int) -> tuple[Floats, bool]:
+            T_world_goal = start.copy()
+            T_world_goal[:3, 3] += direction * (self._query.approachoffset * number / count)
+            return T_world_goal, True
+
         self._query.target.Enable(False)  # the hand may touch the body that it is about to grasp
         try:
-            for number in range(1, count + 1):
-                pose = start.copy()
-                pose[:3, 3] += direction * (self._query.approachoffset * number / count)
-                after = self._base.next_solution(self._manip, pose, row, check=True)
-                if after is None:
-                    return False
-                row = after
+            return len(self._base.follow(self._manip, pose, count, row)) == count + 1
         finally:
             self._query.target.SetLinkEnableStates(enabled)
-        return True
 
     def _goals(self, T_target_tool: Floats) -> list[IkParameterization]:
         """Return the goals of the tool at the places where the target can be put down with a grasp."""
@@ -254,7 +254,7 @@ class _Candidates:
     def _is_reached(self, goal: IkParameterization) -> bool:
         with _kept(self._base.robot, self._query.target):
             self._query.target.Enable(False)
-            return len(solutions(self._manip, goal, IkFilterOptions.CheckEnvCollisions)) > 0
+            return len(self._manip.search(goal, _CHECKED).every()) > 0
 
 
 def _goal(T_world_tool: Floats) -> IkParameterization:

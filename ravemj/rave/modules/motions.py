@@ -2,7 +2,6 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
 from operator import is_not
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,7 +13,6 @@ from ravemj.manipulation.bodies import Bodies
 from ravemj.manipulation.motions import jittered
 from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.rrt import MoreGoals
-from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
@@ -123,9 +121,11 @@ class Manipulation:
         """Return some joints of the robot as what moves."""
         return Bodies(self.env.simulation, self.groups(dofs), self.env.GetCollisionChecker)
 
-    def keeping_active(self) -> AbstractContextManager[object]:
-        """Restore the active DOFs on leaving."""
-        return self.robot.CreateRobotStateSaver(SaveParameters.ActiveDOF)
+    def stated(self, dofs: Sequence[int] | None = None) -> Values:
+        """Return a problem of some joints, or of what is active."""
+        values = Values()
+        values.state(self.env, self.groups(dofs))
+        return values
 
     def move_joints(
         self,
@@ -151,10 +151,9 @@ class Manipulation:
             PlanningError: no motion was found; the message says why.
             ArgumentError: a goal or start has another shape, or is not finite.
         """
-        groups = self.groups(dofs)
-        _check(goals, starts, count(groups))
-        values, jitter = Values(goal_sampler=more), search.jitter
-        values.state(self.env, groups)
+        values, jitter = self.stated(dofs), search.jitter
+        _check(goals, starts, count(values.groups))
+        values.goal_sampler = more
         values.numbers["_nmaxiterations"] = search.maxiter
         if search.constraint is not None:
             values.conditions.manifold = hand_of(self.env, values).tool.to_constraint(search.constraint)
@@ -171,7 +170,7 @@ class Manipulation:
             status = needed_planner(self.env, self.planner).run(values, traj)
             if status:
                 if any(map(is_not, itertools.chain(*moved), itertools.chain(*wanted))):
-                    self._join(traj, groups, wanted, moved)
+                    self._join(traj, values.groups, wanted, moved)
                 return traj
         raise PlanningError(status.description)
 

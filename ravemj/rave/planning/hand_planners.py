@@ -14,7 +14,7 @@ from ravemj.planning.edges import Edges
 from ravemj.planning.problem import Problem
 from ravemj.planning.projection import descend
 from ravemj.planning.rrt import Budget, End, Search
-from ravemj.planning.tracking import track
+from ravemj.planning.tracking import LARGEST_JUMP, track
 from ravemj.rave.enums import PlannerStatusCode
 from ravemj.rave.planning.parameter_text import CHAIN
 from ravemj.rave.planning.path_planners import PathPlanner
@@ -26,9 +26,6 @@ from ravemj.rave.specification import ConfigurationSpecification, IkParameteriza
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories import extraction
 from ravemj.trajectories.groups import AFFINE
-
-_LARGEST_JUMP = 0.5
-"""The largest step of a joint between two consecutive goals [rad or m]; a larger one is another branch of solutions."""
 
 _MOST_GOALS = 100_000
 """The most goals of one trajectory of the hand. Each takes half a millisecond, so these take a minute."""
@@ -142,7 +139,7 @@ class WorkspaceTrajectoryTracker(Planner):
         def connects(number: int, before: Floats, after: Floats) -> bool:
             step = edges.space.difference(after, before)
             elapsed = times[number] - times[number - 1]
-            if np.abs(step).max() > _LARGEST_JUMP or (np.abs(step) > fastest * elapsed * (1 + 1e-9)).any():
+            if np.abs(step).max() > LARGEST_JUMP or (np.abs(step) > fastest * elapsed * (1 + 1e-9)).any():
                 return False
             turned = [hand.tool.motion(one)[0][:3, :3] for one in (before, before + step / 2, after)]
             if max(_angle(turned[0], turned[1]), _angle(turned[1], turned[2])) > largest_turn:
