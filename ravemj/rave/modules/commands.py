@@ -65,7 +65,8 @@ def _some(options: Options, *names: str) -> dict[str, Any]:
 
 def search_options(options: Options, default: SearchOptions) -> SearchOptions:
     """Return the effort of a search that options ask for."""
-    return default._replace(**_some(options, "maxiter", "maxtries", "jitter"), constraint=_tool_constraint(options))
+    given = _some(options, "maxiter", "maxtries", "jitter", "steplength")
+    return default._replace(**given, constraint=_tool_constraint(options))
 
 
 def _tool_constraint(options: Options) -> ToolConstraint | None:

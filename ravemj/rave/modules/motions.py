@@ -16,7 +16,7 @@ from ravemj.rave.planning.hand import ToolConstraint, hand_of
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
-from ravemj.rave.planning.values import Values
+from ravemj.rave.planning.values import STEP_LENGTH, Values
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 
@@ -38,6 +38,7 @@ class SearchOptions(NamedTuple):
     Attributes:
         maxtries: The number of calls of the planner, with other random numbers each time.
         maxiter: The maximum number of iterations of each call.
+        steplength: The step of the planner's trees, a weighted distance of configurations.
         jitter: The largest change of each value of a start or goal in collision, to make it free [rad or m]. The
             motion between the two is not tested.
         constraint: The constraint of the tool along the whole motion; None for none. With a constraint, starts and
@@ -46,6 +47,7 @@ class SearchOptions(NamedTuple):
 
     maxtries: int = 2
     maxiter: int = 4000
+    steplength: float = STEP_LENGTH
     jitter: float = 0.04
     constraint: ToolConstraint | None = None
 
@@ -111,12 +113,15 @@ class Manipulation:
 
         Raises:
             PlanningError: no motion was found; the message says why.
-            ArgumentError: a goal or start has another shape, or is not finite.
+            ArgumentError: a goal or start has another shape, or is not finite; or the step length is not positive.
         """
         self._check(goals, starts)
+        if not search.steplength > 0:
+            raise ArgumentError(f"steplength: is {search.steplength:g}, and should be more than 0")
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
         params.SetMaxIterations(search.maxiter)
+        params.SetStepLength(search.steplength)
         if postprocessing is not None:
             params.SetPostProcessing(*postprocessing)
         if more is not None:

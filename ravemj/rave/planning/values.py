@@ -8,7 +8,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
-from ravemj.planning.edges import Allowed, Edges
+from ravemj.planning.edges import STEP, Allowed, Edges
 from ravemj.planning.retiming.segments import Limits
 from ravemj.planning.space import Coordinates, Space
 from ravemj.rave.enums import ConstraintFilterOptions
@@ -18,8 +18,8 @@ from ravemj.rave.report import CollisionReport
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.layout import count
 
-_STEP_LENGTH = float(np.float32(0.04))
-"""OpenRAVE's default step length [s], which it keeps in single precision."""
+STEP_LENGTH = float(np.float32(STEP))
+"""OpenRAVE's default step length, which it keeps in single precision."""
 
 ALL = int(ConstraintFilterOptions.RecommendedOptions)
 """The tests that every configuration of a path has to pass."""
@@ -52,7 +52,7 @@ class Values:
 
     vectors: dict[str, Floats] = field(default_factory=lambda: {name: np.zeros(0) for name in VECTORS})
     numbers: dict[str, float] = field(
-        default_factory=lambda: {**dict.fromkeys(NUMBERS, 0.0), "_fsteplength": _STEP_LENGTH}
+        default_factory=lambda: {**dict.fromkeys(NUMBERS, 0.0), "_fsteplength": STEP_LENGTH}
     )
     groups: Sequence[Group] = ()
     weights: Floats = field(default_factory=_empty)
@@ -156,9 +156,10 @@ class Values:
 
     def edges(self) -> Edges:
         """Return the test of lines, for use within ``bodies.kept``."""
+        step = self.numbers["_fsteplength"]
         if self.manifold is None:
-            return Edges(self.space(), self.allowed())
-        return ConstrainedEdges(self.space(), replace(self, manifold=None).allowed(), self.manifold)
+            return Edges(self.space(), self.allowed(), step)
+        return ConstrainedEdges(self.space(), replace(self, manifold=None).allowed(), self.manifold, step)
 
     def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
         """Move the bodies to a configuration, and return the bit of ``ConstraintFilterOptions`` that fails there, or 0.
