@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ravemj.core.transforms import Floats, Vec3
+from ravemj.engine.affine import translation_columns
 from ravemj.engine.collision.moving import moving_test
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
+from ravemj.engine.collision.region import touching_region
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
 from ravemj.geometry_functions.ik_types import IkParameterizationType
@@ -129,6 +131,27 @@ class Bodies:
         if part.dofs:
             return f"joint '{part.body.GetJointFromDOFIndex(part.dofs[index]).GetName()}'"
         return f"value {index} of the pose of '{part.body.GetName()}'"
+
+    def near_others(self, space: Space, ends: Floats) -> Space:
+        """Return a space in which a base stays where it can touch other bodies, or between starts and goals.
+
+        Every path elsewhere could be moved onto the border of this box. OpenRAVE's limits of a base are 100 m, where
+        hardly a sample is near anything.
+
+        Args:
+            space: The configuration space.
+            ends: The starts and goals, shape (m, n).
+        """
+        lower, upper = space.lower.copy(), space.upper.copy()
+        for part in self._parts if len(self.bodies) == 1 else ():
+            axes = [] if part.dofs else translation_columns(part.affine)
+            region = touching_region(part.body.simulation_state) if axes else None
+            for column, axis in enumerate(axes, part.columns.start):
+                low, high = ends[:, column].min(), ends[:, column].max()
+                if region is not None:
+                    low, high = min(low, region.low[axis]), max(high, region.high[axis])
+                lower[column], upper[column] = max(low, lower[column]), min(high, upper[column])
+        return replace(space, lower=lower, upper=upper)
 
     def values(self) -> Floats:
         """Return the current configuration, shape (n,)."""

@@ -122,7 +122,7 @@ class PathPlanner(Planner):
                 [one for one in candidates if self._wrong(values, "", one) is None]
                 for candidates in self._starts_and_goals(values)
             )
-            edges, numbers = values.edges(), values.numbers
+            edges, numbers = values.edges(np.array([*starts, *goals])), values.numbers
             iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
             budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
             random = values.random()

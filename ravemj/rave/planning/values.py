@@ -154,12 +154,14 @@ class Values:
             return lambda values: manifold.has(values) and not fast(values)
         return lambda values: not fast(values)
 
-    def edges(self) -> Edges:
-        """Return the test of lines, for use within ``bodies.kept``."""
-        step = self.numbers["_fsteplength"]
+    def edges(self, ends: Floats) -> Edges:
+        """Return the test of lines between starts and goals, shape (m, n), for use within ``bodies.kept``."""
+        space, step = self.space(), self.numbers["_fsteplength"]
+        if self.bodies is not None and not self.constraints:
+            space = self.bodies.near_others(space, ends)
         if self.manifold is None:
-            return Edges(self.space(), self.allowed(), step)
-        return ConstrainedEdges(self.space(), replace(self, manifold=None).allowed(), self.manifold, step)
+            return Edges(space, self.allowed(), step)
+        return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold, step)
 
     def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
         """Move the bodies to a configuration, and return the bit of ``ConstraintFilterOptions`` that fails there, or 0.
