@@ -1,5 +1,7 @@
 """Affine DOFs: which parts of a body's pose move, and their values."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -40,13 +42,17 @@ _SIZES = {
 }
 
 
-def _parts(affinedofs: int) -> list[DOFAffine]:
+_AXES = {DOFAffine.X: 0, DOFAffine.Y: 1, DOFAffine.Z: 2}
+
+
+@lru_cache(maxsize=64)  # planners place a base thousands of times
+def _parts(affinedofs: int) -> tuple[DOFAffine, ...]:
     """Return the parts in the order of their values.
 
     Raises:
         ArgumentError: there are two kinds of rotation.
     """
-    parts = [part for part in _SIZES if part & affinedofs]
+    parts = tuple(part for part in _SIZES if part & affinedofs)
     if sum(bool(part & DOFAffine.RotationMask) for part in parts) > 1:
         raise ArgumentError(f"affinedofs: {affinedofs} has more than one kind of rotation", ErrorCode.Assert)
     return parts
@@ -142,8 +148,8 @@ def affine_values(pose: Pose, affinedofs: int, axis: Vec3 = Z_AXIS) -> Floats:
     """Return the values of parts of a pose, X, Y, Z, then the rotation."""
     values: list[float] = []
     for part in _parts(affinedofs):
-        if part & DOFAffine.XYZ:
-            values.append(pose.position[(DOFAffine.X, DOFAffine.Y, DOFAffine.Z).index(part)])
+        if part in _AXES:
+            values.append(pose.position[_AXES[part]])
         else:
             values.extend(rotation_values(pose, part, axis))
     return np.array(values)
@@ -167,8 +173,8 @@ def pose_with_values(pose: Pose, values: Floats, affinedofs: int, axis: Vec3 = Z
     numbers = iter(values.tolist())
     for part in _parts(affinedofs):
         given = [next(numbers) for _ in range(_SIZES[part])]
-        if part & DOFAffine.XYZ:
-            position[(DOFAffine.X, DOFAffine.Y, DOFAffine.Z).index(part)] = given[0]
+        if part in _AXES:
+            position[_AXES[part]] = given[0]
         elif part == DOFAffine.RotationAxis:
             quaternion = wxyz_from_axis_angle(axis, given[0])
         elif part == DOFAffine.Rotation3D:

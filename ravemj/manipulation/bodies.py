@@ -8,10 +8,12 @@ import numpy as np
 
 from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats, Vec3
+from ravemj.engine.affine import translation_columns
 from ravemj.engine.collision.findings import Checker, Findings
 from ravemj.engine.collision.moving import moving_test
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
+from ravemj.engine.collision.region import touching_region
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.engine.simulation.body import SavedConfiguration
@@ -135,6 +137,29 @@ class Bodies:
         if part.dofs:
             return f"joint '{scene.joint_of_dof(part.dofs[index]).name}'"
         return f"value {index} of the pose of '{scene.name}'"
+
+    def near_others(self, space: Space, ends: Floats) -> Space:
+        """Return a space in which a base stays where it can touch other bodies, or between starts and goals.
+
+        Every path elsewhere could be moved onto the border of this box. OpenRAVE's limits of a base are 100 m, where
+        hardly a sample is near anything.
+
+        Args:
+            space: The configuration space.
+            ends: The starts and goals, shape (m, n).
+        """
+        moved = [part for part in self.parts if not part.dofs and translation_columns(part.affine)]
+        if not moved or len(self.bodies) != 1:
+            return space
+        region = touching_region(self.bodies[0])
+        lower, upper = space.lower.copy(), space.upper.copy()
+        for part in moved:
+            for column, axis in enumerate(translation_columns(part.affine), part.columns.start):
+                low, high = ends[:, column].min(), ends[:, column].max()
+                if region is not None:
+                    low, high = min(low, region.low[axis]), max(high, region.high[axis])
+                lower[column], upper[column] = max(low, lower[column]), min(high, upper[column])
+        return replace(space, lower=lower, upper=upper)
 
     def values(self) -> Floats:
         """Return the current configuration, shape (n,)."""
@@ -269,11 +294,15 @@ class Conditions:
             return lambda values: manifold.has(values) and not fast(values)
         return lambda values: not fast(values)
 
-    def edges(self, space: Space) -> Edges:
-        """Return the test of lines, for use within ``bodies.kept``."""
+    def near_others(self, space: Space, ends: Floats) -> Space:
+        """Return where to search for a path between starts and goals; see ``Bodies.near_others``."""
+        return space if self.bodies is None or self.constraints else self.bodies.near_others(space, ends)
+
+    def edges(self, space: Space, step: float) -> Edges:
+        """Return the test of lines, for use within ``bodies.kept``; ``step`` is that of trees."""
         if self.manifold is None:
-            return Edges(space, self.allowed())
-        return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold)
+            return Edges(space, self.allowed(), step)
+        return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold, step)
 
     def violation(self, values: Floats, options: int = ALL, told: list[Findings] | None = None) -> int:
         """Move the bodies to a configuration, and return the bit of the condition that it violates, or 0.

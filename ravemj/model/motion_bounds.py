@@ -35,6 +35,11 @@ def motion_bounds(body: KinBody) -> Floats:
     return found
 
 
+def reach(body: KinBody) -> float:
+    """Return the greatest distance [m] of a body's shapes from the origin of its first link, at any joint values."""
+    return _farthest(body, 0, np.zeros(3), np.zeros(3))
+
+
 def _joint_reach(body: KinBody, joint: Joint) -> Floats:
     """Return for each axis of a joint the greatest distance of the shapes that it moves; for one that slides 1."""
     if joint.kind == "slider":

@@ -5,12 +5,13 @@ After D. Berenson, S. Srinivasa, D. Ferguson and J. Kuffner, "Manipulation plann
 
 from collections import deque
 from itertools import pairwise
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.edges import Allowed, Edges
+from ravemj.planning.edges import LINE, ROUNDING, STEP, Allowed, Edges, Growth
 from ravemj.planning.projection import PROJECTION_STEPS, Error, project
 from ravemj.planning.space import Space
 
@@ -50,20 +51,29 @@ class Manifold(NamedTuple):
 class ConstrainedEdges(Edges):
     """Tests lines that are bent onto a constraint, in steps of the space's resolution; ``allowed`` need not test it."""
 
-    def __init__(self, space: Space, allowed: Allowed, manifold: Manifold) -> None:
-        super().__init__(space, allowed)
+    def __init__(self, space: Space, allowed: Allowed, manifold: Manifold, step: float = STEP) -> None:
+        super().__init__(space, allowed, step)
         self._manifold = manifold
 
-    def towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
-        """Return a step towards a configuration, onto the constraint, and whether it gets there.
+    def grow(self, start: Floats, target: Floats, *, longest: float = LINE, whole: bool = False) -> Growth:
+        """Return steps on the constraint towards another configuration, up to the first that is blocked or too far."""
+        points, here, arrives = [start], start, False
+        for _ in range(ceil(longest / self.step - ROUNDING)):
+            end, arrives = self._towards(here, target)
+            if not (self._far(end, target) < self._far(here, target) and self.line(here, end - here)):
+                return Growth(np.array([] if whole else points[1:]).reshape(-1, len(start)), True, False)
+            here = end
+            points.append(here)
+            if arrives:
+                break
+        return Growth(np.array(points[1:]), False, arrives)
 
-        Where no step onto the constraint comes nearer, it leaves the constraint, and ``line`` does not allow it.
-        """
-        step, is_last = super().towards(start, target)
-        if is_last and self._manifold.has(start + step):
-            return step, True
-        end = self.onto(start + step)
-        return (end - start if self._far(end, target) < self._far(start, target) else step), False
+    def _towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
+        """Return the configuration one step nearer to a target, onto the constraint, and whether it is the target."""
+        way, arrives = self._shortened(start, target, self.step)
+        if arrives and self._manifold.has(start + way):
+            return start + way, True
+        return self.onto(start + way), False
 
     def onto(self, configuration: Floats) -> Floats:
         """Return a configuration well inside of the threshold, near another one; that one where none is found."""

@@ -1,35 +1,86 @@
-"""Which configurations and straight lines between them are allowed."""
+"""Tests of configurations and of the straight lines between them."""
 
 from collections.abc import Callable
 from functools import lru_cache
-from math import sqrt
+from math import ceil, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.space import Space
 
-RANGE = 1.0
-"""The largest length [rad or m] of one line of a tree."""
+STEP = 0.04
+"""Default step of trees, a weighted distance: OpenRAVE's default step length."""
+
+LINE = 1.0
+"""Largest length of one line of a tree, a weighted distance."""
+
+ROUNDING = 1e-9
+"""Part of a step by which a line may be longer than a number of steps."""
 
 Allowed = Callable[[Floats], bool]
 """Whether a configuration is without collisions, and keeps the user's constraints."""
 
 
+class Growth(NamedTuple):
+    """Result of growing a tree along a line.
+
+    Attributes:
+        points: The allowed configurations along the line, at most one step apart, without its start; shape (m, n).
+        is_blocked: Whether the next step is not allowed.
+        arrives: Whether the last point is the target.
+    """
+
+    points: Floats
+    is_blocked: bool
+    arrives: bool
+
+
 class Edges:
-    """Tests straight lines in steps of the space's resolution; ``allowed`` tests one configuration."""
+    """Tests of straight lines in steps of the space's resolution.
 
-    def __init__(self, space: Space, allowed: Allowed) -> None:
+    Args:
+        space: The configuration space.
+        allowed: The test of one configuration.
+        step: Distance of neighbouring nodes of a tree, a weighted distance; 0 selects ``STEP``.
+    """
+
+    def __init__(self, space: Space, allowed: Allowed, step: float = STEP) -> None:
         self.space, self.allowed = space, allowed
+        self.step = step if step > 0 else STEP
 
-    def towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
-        """Return a step towards a configuration, no longer than a line of a tree, and whether it gets there."""
-        step = self.space.difference(target, start)
-        far = sqrt(step.dot(step))
-        return (step * (RANGE / far), False) if far > RANGE else (step, True)
+    def grow(self, start: Floats, target: Floats, *, longest: float = LINE, whole: bool = False) -> Growth:
+        """Return the steps from an allowed configuration towards another one, up to the first that is blocked.
+
+        Args:
+            start: The configuration to start from, shape (n,).
+            target: The configuration to grow towards, shape (n,).
+            longest: Largest length of the line, a weighted distance.
+            whole: Return no steps at all if one of them is blocked, which takes fewer tests.
+        """
+        way, arrives = self._shortened(start, target, longest)
+        count = max(1, ceil(self._length(way) / self.step - ROUNDING))
+        tests = self.space.steps(way / count)
+        free = count
+        for number in bisection_order(count * tests):
+            if number <= free * tests and not self.allowed(start + number / (count * tests) * way):
+                free = 0 if whole else (number - 1) // tests
+        points = start + np.arange(1, free + 1)[:, None] / count * way
+        return Growth(points, free < count, arrives and free == count)
+
+    def _shortened(self, start: Floats, target: Floats, longest: float) -> tuple[Floats, bool]:
+        """Return the difference from a start to a target, cut to a length, and whether it is not cut."""
+        way = self.space.difference(target, start)
+        far = self._length(way)
+        return (way * (longest / far), False) if far > longest * (1 + ROUNDING) else (way, True)
+
+    def _length(self, way: Floats) -> float:
+        weighted = self.space.weights * way
+        return sqrt(weighted.dot(weighted))
 
     def onto(self, configuration: Floats) -> Floats:
-        """Return where lines that are meant for a configuration end: there, unless a constraint says otherwise."""
+        """Return the configuration nearest to another one that keeps the constraint: the same, as there is none."""
         return configuration
 
     def line(self, start: Floats, step: Floats) -> bool:
@@ -37,18 +88,18 @@ class Edges:
 
         Lines in collision are mostly so in their middle: halves are tested before quarters.
         """
-        allowed = self.allowed
-        return all(allowed(start + part * step) for part in bisection_order(self.space.steps(step)))
+        allowed, steps = self.allowed, self.space.steps(step)
+        return all(allowed(start + number / steps * step) for number in bisection_order(steps))
 
 
 @lru_cache(maxsize=1024)
-def bisection_order(steps: int) -> tuple[float, ...]:
-    """Return the parts of the way at which a line of some steps is tested: its end, its middle, its quarters, ..."""
-    order, pending = [1.0], [(0, steps)]
+def bisection_order(steps: int) -> tuple[int, ...]:
+    """Return the order in which the steps of a line are tested, 1 to ``steps``: its end, middle, quarters, ..."""
+    order, pending = [steps], [(0, steps)]
     for low, high in pending:
         middle = (low + high) // 2
         if low < middle:
-            order.append(middle / steps)
+            order.append(middle)
             pending += [(low, middle), (middle, high)]
     return tuple(order)
 

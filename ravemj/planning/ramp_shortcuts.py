@@ -135,6 +135,5 @@ def _is_allowed(edges: Edges, piece: Piece) -> bool:
     """Return whether a piece is allowed everywhere, its start excluded; no joint moves farther than its resolution."""
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
-    return all(
-        edges.allowed(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest))
-    )
+    steps = edges.space.steps(farthest)
+    return all(edges.allowed(piece.after(number / steps * piece.duration)[0]) for number in bisection_order(steps))

@@ -9,12 +9,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.edges import RANGE, Edges
+from ravemj.planning.edges import Edges
 from ravemj.planning.rrt import Budget, End, Search, without_repetitions
 from ravemj.planning.trees import Tree
 
 _STEP = 0.3
 """How far [rad or m] neighbours are."""
+
+_REACH = 1.0
+"""Largest length [rad or m] of a line to a goal."""
 
 _APART = 0.5
 """Nearer than this part of a step no two configurations are."""
@@ -44,7 +47,7 @@ def search_by_cost(
         node = tree.node(number).copy()
         goal = min(range(len(goals)), key=lambda index: space.distance(goals[index], node))
         step = space.difference(goals[goal], node)
-        if np.linalg.norm(step) <= RANGE and edges.line(node, step):
+        if np.linalg.norm(step) <= _REACH and edges.line(node, step):
             path = without_repetitions(np.array([*tree.branch(number)[::-1], goals[goal]]))
             return Search(End.found, path, tree.root(number), goal, iteration + 1, (tree,))
         for direction in random.normal(size=(_NEIGHBOURS, len(node))):

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,18 @@ from ravemj.planning.trees import Tree
 
 _PATIENCE = 20
 """After so many blocked lines of the smaller tree, the other one has a turn: perhaps it finds the way in."""
+
+_WHOLE_LINES = 50
+"""Number of blocked lines that are dropped. After them, trees keep the steps before what blocks a line.
+
+Most problems are open: trees of whole lines meet sooner, since a blocked line takes few tests. Narrow ones need steps.
+"""
+
+_TURN = 1e-6
+"""Largest difference of the directions [1] of two steps of one straight line."""
+
+_SAME = 1e-9
+"""Largest distance [rad or m] of two equal nodes of a path."""
 
 _MOST_LINES = 16
 """Of straight lines from starts to goals that are tried before any tree is grown."""
@@ -125,7 +138,7 @@ class _Growth:
         self._edges = edges
         self.trees = Tree(edges.space, starts), Tree(edges.space, goals)
         self._goals = list(range(len(goals)))
-        self._grown = self._blocked = 0
+        self._grown = self._blocked = self._lines_blocked = 0
 
     def add_goal(self, goal: Floats | None) -> None:
         """Add a further goal, if it is one."""
@@ -144,8 +157,10 @@ class _Growth:
     def grow(self, target: Floats, iteration: int) -> Search | None:
         """Grow the smaller tree towards a configuration, and the other to where it got; return the path, or None."""
         near, far = self.trees[self._grown], self.trees[1 - self._grown]
-        added = _extend(self._edges, near, target)
-        met = None if added is None else _reach(self._edges, far, near.node(added))
+        whole = self._lines_blocked < _WHOLE_LINES
+        added, is_blocked = _extend(self._edges, near, target, whole=whole)
+        self._lines_blocked += is_blocked
+        met = None if added is None else _reach(self._edges, far, near.node(added), whole=whole)
         if added is not None and met is not None:
             ends = (added, met) if self._grown == 0 else (met, added)
             return self._found(*ends, iteration)
@@ -156,9 +171,9 @@ class _Growth:
 
     def _found(self, at_start: int, at_goal: int, iteration: int) -> Search:
         first, second = self.trees
-        path = np.array(first.branch(at_start)[::-1] + second.branch(at_goal))
+        path = _path(self._edges, first.branch(at_start)[::-1] + second.branch(at_goal))
         start, goal = first.root(at_start), self._goals.index(second.root(at_goal))
-        return Search(End.found, without_repetitions(path), start, goal, iteration, self.trees)
+        return Search(End.found, path, start, goal, iteration, self.trees)
 
 
 def single(
@@ -181,7 +196,7 @@ def single(
         if to_goal:
             reached = _reach(edges, tree, goals[goal])
             if reached is not None:
-                path = without_repetitions(np.array([*tree.branch(reached)[::-1], goals[goal]]))
+                path = _path(edges, [*tree.branch(reached)[::-1], goals[goal]])
                 return Search(End.found, path, tree.root(reached), goal, iteration + 1, (tree,))
         else:
             _extend(edges, tree, edges.space.sample(random))
@@ -194,30 +209,56 @@ def explore(edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, r
     tree = Tree(edges.space, starts)
     iteration = 0
     while tree.count < size and budget.end(iteration) is None:
-        _extend(edges, tree, edges.space.sample(random))
+        target = edges.space.sample(random)
+        nearest = tree.nearest(target)
+        tree.add_line(edges.grow(tree.node(nearest), target, longest=edges.step).points, nearest)
         iteration += 1
     return tree
 
 
-def _extend(edges: Edges, tree: Tree, target: Floats) -> int | None:
-    """Grow a tree towards a configuration by one line; return the new node, or None where it is blocked."""
+def _extend(edges: Edges, tree: Tree, target: Floats, *, whole: bool = False) -> tuple[int | None, bool]:
+    """Grow a tree towards a configuration by one line.
+
+    Returns:
+        The last new node, or None if the first step is blocked; and whether the line is blocked.
+    """
     nearest = tree.nearest(target)
-    start = tree.node(nearest)
-    step, _ = edges.towards(start, target)
-    return tree.add(start + step, nearest) if edges.line(start, step) else None
+    grown = edges.grow(tree.node(nearest), target, whole=whole)
+    added = tree.add_line(grown.points, nearest) if len(grown.points) else None
+    return added, grown.is_blocked
 
 
-def _reach(edges: Edges, tree: Tree, target: Floats) -> int | None:
-    """Grow a tree to a configuration; return the last node before it, or None where it is blocked on the way."""
+def _reach(edges: Edges, tree: Tree, target: Floats, *, whole: bool = False) -> int | None:
+    """Grow a tree to a configuration, line by line; return the node there, or None if one is blocked on the way."""
     nearest = tree.nearest(target)
     while True:
-        start = tree.node(nearest)
-        step, is_last = edges.towards(start, target)
-        if not edges.line(start, step):
-            return None
-        if is_last:
-            return nearest
-        nearest = tree.add(start + step, nearest)
+        grown = edges.grow(tree.node(nearest), target, whole=whole)
+        nearest = tree.add_line(grown.points, nearest)
+        if grown.arrives or grown.is_blocked:
+            return nearest if grown.arrives else None
+
+
+def _path(edges: Edges, nodes: Sequence[Floats]) -> Floats:
+    """Return a path through nodes of trees without those that are repeated, or on a straight line between others.
+
+    A line has to be allowed without the nodes on it, too: it is tested at other configurations then.
+    """
+    space, path = edges.space, np.array(nodes)
+    lengths = np.linalg.norm(space.difference(path[1:], path[:-1]), axis=1)
+    path = np.concatenate([path[:1], path[1:][lengths > _SAME]])
+    path[-1] = nodes[-1]
+    if len(path) < 3:
+        return path
+    steps = space.difference(path[1:], path[:-1])
+    directions = steps / np.linalg.norm(steps, axis=1, keepdims=True)
+    turns = np.linalg.norm(np.diff(directions, axis=0), axis=1) > _TURN
+    kept = [0]
+    for first, last in pairwise([0, *(np.flatnonzero(turns) + 1).tolist(), len(steps)]):
+        way = steps[first:last].sum(axis=0)
+        is_short = np.allclose(space.difference(path[last], path[first]), way)  # else it would go the other way round
+        is_line = is_short and last > first + 1 and edges.line(path[first], way)
+        kept += [last] if is_line else range(first + 1, last + 1)
+    return path[kept]
 
 
 def without_repetitions(path: Floats) -> Floats:

@@ -1,6 +1,7 @@
 """Shorter paths: straight lines in place of detours."""
 
 from collections.abc import Callable
+from math import ceil
 
 import numpy as np
 
@@ -9,6 +10,9 @@ from ravemj.planning.edges import Edges
 
 _WORTH = 3e-3
 """A shortcut has to save this part of the whole path: testing lines is what takes time."""
+
+_MOST_ENDS = 32
+"""Number of ends of straight lines from one point that are tried."""
 
 
 def shorten(
@@ -54,11 +58,14 @@ def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
 
 
 def _without_detours(edges: Edges, path: Floats) -> Floats:
-    """Return a path that goes from each of its points straight to the last one that a line reaches."""
+    """Return a path that goes from each of its points straight to the last one that a line reaches.
+
+    Of many points, ``_MOST_ENDS`` are tried.
+    """
     kept, last = [0], len(path) - 1
     while kept[-1] < last:
         start = path[kept[-1]]
-        farther = range(last, kept[-1] + 1, -1)
+        farther = range(last, kept[-1] + 1, -ceil((last - kept[-1]) / _MOST_ENDS))
         reached = (end for end in farther if edges.line(start, edges.space.difference(path[end], start)))
         kept.append(next(reached, kept[-1] + 1))
     return path[kept]

@@ -31,6 +31,12 @@ class Tree:
         self.count += 1
         return self.count - 1
 
+    def add_line(self, configurations: Floats, parent: int) -> int:
+        """Add configurations, each a child of the one before, shape (m, n); return the number of the last one."""
+        for configuration in configurations:
+            parent = self.add(configuration, parent)
+        return parent
+
     def node(self, number: int) -> Floats:
         """Return a configuration."""
         return self._nodes[number]

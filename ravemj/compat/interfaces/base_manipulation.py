@@ -70,7 +70,7 @@ class BaseManipulation(Helper):
 
         Args:
             goal: Active values.
-            steplength: Not used; resolutions of the joints say how finely lines are tested.
+            steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
             maxiter: Iterations of the planner; None: 4000.
             maxtries: How often it is asked; None: 2.
             goals: Several goals in place of one; any will do.
@@ -86,11 +86,11 @@ class BaseManipulation(Helper):
         Example:
             >>> traj = basemanip.MoveActiveJoints(goal=[0.5, 0.3], execute=False, outputtrajobj=True)
         """
-        del steplength, releasegil, usedynamicsconstraints
+        del releasegil, usedynamicsconstraints
         dof = self.robot.GetActiveDOF()
         wanted, starts = _rows("goal", goal, goals, dof), _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
-        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter))
+        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter, steplength))
         traj = self._base.move_joints(wanted, search, starts=starts, postprocessing=post)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
@@ -109,23 +109,23 @@ class BaseManipulation(Helper):
     ) -> Answer:
         """Move the arm of the active manipulator to a goal without collisions, whatever is active.
 
-        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``steplength`` and ``releasegil`` are not
-        used.
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``releasegil`` is not used.
 
         Args:
             goal: Values of the arm's joints.
             maxiter: Iterations of the planner; None: 4000.
             maxtries: How often the planner is asked; None: 2.
             goals: Several goals in place of one; any will do.
+            steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
             jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
 
         Raises:
             PlanningError: there is no such motion.
             AssertionError: a goal has not as many values as the arm has joints.
         """
-        del steplength, releasegil
+        del releasegil
         wanted = _rows("goal", goal, goals, len(self._base.arm().description.arm_dofs))
-        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter))
+        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter, steplength))
         return self._done(self._base.move_manipulator(wanted, search), execute, outputtraj, outputtrajobj)
 
     def MoveToHandPosition(
@@ -162,7 +162,7 @@ class BaseManipulation(Helper):
     ) -> Answer:
         """Move the arm of the active manipulator so that its tool reaches a goal, without collisions.
 
-        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``affinedofs``, ``steplength``,
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``affinedofs``,
         ``minimumgoalpaths``, ``jittergoal``, ``goalmaxtries``, ``releasegil`` and ``freevalues`` are not used.
 
         Args:
@@ -178,6 +178,7 @@ class BaseManipulation(Helper):
             constraintmatrix: ``T_task_world``, the task frame, to whose axes ``constraintfreedoms`` refers; by default
                 the world.
             constrainterrorthresh: The tolerance of the constraint [m and rad]; by default 0.001.
+            steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
             goalsamples: The largest number of IK solutions that are goals; by default 40.
             ikparam: A goal of any type.
             ikparams: Several goals of any type.
@@ -202,8 +203,8 @@ class BaseManipulation(Helper):
 
             >>> basemanip.MoveToHandPosition(matrices=[T_world_tool], constraintfreedoms=[1, 1, 0, 0, 0, 0])
         """
-        del affinedofs, steplength, minimumgoalpaths, jittergoal, goalmaxtries, releasegil, freevalues
-        options = _effort(maxiter, maxtries, jitter) | given(
+        del affinedofs, minimumgoalpaths, jittergoal, goalmaxtries, releasegil, freevalues
+        options = _effort(maxiter, maxtries, jitter, steplength) | given(
             constraintfreedoms=constraintfreedoms,
             constraintmatrix=constraintmatrix,
             constrainttaskmatrix=constrainttaskmatrix,
@@ -385,9 +386,11 @@ class BaseManipulation(Helper):
     )
 
 
-def _effort(maxiter: int | None, maxtries: int | None, jitter: float | None) -> dict[str, Any]:
+def _effort(
+    maxiter: int | None, maxtries: int | None, jitter: float | None, steplength: float | None
+) -> dict[str, Any]:
     """Return the effort of a search, as options."""
-    return whole_numbers(maxiter=maxiter, maxtries=maxtries) | numbers(jitter=jitter)
+    return whole_numbers(maxiter=maxiter, maxtries=maxtries) | numbers(jitter=jitter, steplength=steplength)
 
 
 def _rows(name: str, one: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.compat.interfaces.helper import Helper, given
+from ravemj.compat.interfaces.helper import Helper, given, numbers
 from ravemj.compat.refusal import lacking, refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform, checked_vector
@@ -193,7 +193,7 @@ class TaskManipulation(Helper):
         ``destposes``.
 
         The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``grasptranslationstepmult``,
-        ``graspfinestep``, ``steplength`` and ``releasegil`` are not used.
+        ``graspfinestep`` and ``releasegil`` are not used.
 
         Args:
             graspindices: The first column of what a grasp has: ``igrasptrans``, the pose of the tool in the target, 12
@@ -212,6 +212,7 @@ class TaskManipulation(Helper):
             randomdests: Whether poses are; None: they are.
             gmodel: Has ``graspindices``, ``grasps`` and ``target``, for those that are not given.
             paddedgeometryinfo: Not possible here.
+            steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
 
         Returns:
             Goals of the hand, as ``IkParameterization``, with which the target is at one of ``destposes``; the number
@@ -225,14 +226,14 @@ class TaskManipulation(Helper):
             >>> goals, index, seconds, trajectory = taskmanip.GraspPlanning(
             ...     graspindices={"igrasptrans": 0}, grasps=grasps, target=box, approachoffset=0.05)
         """
-        del grasptranslationstepmult, graspfinestep, steplength, releasegil
+        del grasptranslationstepmult, graspfinestep, releasegil
         if paddedgeometryinfo is not None:
             raise UnsupportedError("GraspPlanning with paddedgeometryinfo", _PADDING)
         rows = np.atleast_2d(np.asarray(gmodel.grasps if grasps is None and gmodel else grasps, dtype=float))
         body = checked_kind(target or getattr(gmodel, "target", None), KinBody, "GraspPlanning: target")
         columns = graspindices or getattr(gmodel, "graspindices", {})
         options = given(seedgrasps=seedgrasps, seeddests=seeddests, seedik=seedik, maxiter=maxiter)
-        options |= given(randomgrasps=randomgrasps, randomdests=randomdests)
+        options |= given(randomgrasps=randomgrasps, randomdests=randomdests) | numbers(steplength=steplength)
         places = [checked_transform(one, "destposes") for one in (() if destposes is None else destposes)]
         plan = self._task.plan_grasp(GraspQuery(body, rows, columns, approachoffset, places, **options))
         return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj) or None

@@ -16,6 +16,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.motions import SearchOptions
 from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.values import STEP_LENGTH
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
@@ -47,6 +48,7 @@ class GraspQuery:
         seeddests: The number of places that are looked for with each grasp.
         seedik: The number of IK solutions of each grasp that are goals; 0 for all.
         maxiter: The maximum number of iterations of the planner.
+        steplength: The step of the planner's trees, a weighted distance of configurations.
         randomgrasps: Whether to try the grasps in random order.
         randomdests: Whether to try the places in random order.
     """
@@ -60,6 +62,7 @@ class GraspQuery:
     seeddests: int = 5
     seedik: int = 0
     maxiter: int = 4000
+    steplength: float = STEP_LENGTH
     randomgrasps: bool = True
     randomdests: bool = True
 
@@ -108,7 +111,8 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
         reachable += len(batch)
         begin = time.perf_counter()
         try:
-            traj, chosen = _planned(base, manip, batch, query.maxiter)
+            search = SearchOptions(1, query.maxiter, query.steplength, jitter=0.03)
+            traj, chosen = _planned(base, manip, batch, search)
         except PlanningError as error:
             refused = f"{reachable} grasps can be reached, and there is no way to them: {error}"
             continue
@@ -123,7 +127,7 @@ def _first(found: Iterator[_Candidate], count: int) -> list[_Candidate]:
 
 
 def _planned(
-    base: BaseManipulation, manip: Manipulator, batch: Sequence[_Candidate], iterations: int
+    base: BaseManipulation, manip: Manipulator, batch: Sequence[_Candidate], search: SearchOptions
 ) -> tuple[Trajectory, _Candidate]:
     """Return a motion to one of the candidates, and that candidate."""
     robot = base.robot
@@ -132,7 +136,7 @@ def _planned(
     dofs = [*manip.description.arm_dofs, *gripper[changed].tolist()]
     owners = [one for one in batch for _ in one.rows]
     goals = [np.append(row, one.preshape[changed]) for one in batch for row in one.rows]
-    traj = base.move_joints(goals, SearchOptions(maxtries=1, maxiter=iterations, jitter=0.03), dofs=dofs)
+    traj = base.move_joints(goals, search, dofs=dofs)
     last = traj.GetWaypoint(-1, ConfigurationSpecification.of(base.groups(dofs)))
     return traj, owners[int(np.argmin([np.abs(goal - last).max() for goal in goals]))]
 

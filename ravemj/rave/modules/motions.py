@@ -16,7 +16,7 @@ from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
-from ravemj.rave.planning.values import Values, hand_of
+from ravemj.rave.planning.values import STEP_LENGTH, Values, hand_of
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
@@ -42,6 +42,7 @@ class SearchOptions(NamedTuple):
     Attributes:
         maxtries: The number of calls of the planner, with other random numbers each time.
         maxiter: The maximum number of iterations of each call.
+        steplength: The step of the planner's trees, a weighted distance of configurations.
         jitter: The largest change of each value of a start or goal in collision, to make it free [rad or m]. The
             motion between the two is not tested.
         constraint: The constraint of the tool along the whole motion; None for none. With a constraint, starts and
@@ -50,12 +51,13 @@ class SearchOptions(NamedTuple):
 
     maxtries: int = 2
     maxiter: int = 4000
+    steplength: float = STEP_LENGTH
     jitter: float = 0.04
     constraint: ToolConstraint | None = None
 
     def changed(self, options: Options) -> "SearchOptions":
         """Return the effort with some options of a command in place of those here."""
-        given = {name: options[name] for name in ("maxiter", "maxtries", "jitter") if name in options}
+        given = {name: options[name] for name in ("maxiter", "maxtries", "jitter", "steplength") if name in options}
         return self._replace(**given, constraint=_tool_constraint(options))
 
 
@@ -149,12 +151,13 @@ class Manipulation:
 
         Raises:
             PlanningError: no motion was found; the message says why.
-            ArgumentError: a goal or start has another shape, or is not finite.
+            ArgumentError: a goal or start has another shape, or is not finite; or the step length is not positive.
         """
         values, jitter = self.stated(dofs), search.jitter
         _check(goals, starts, count(values.groups))
         values.goal_sampler = more
         values.numbers["_nmaxiterations"] = search.maxiter
+        values.numbers["_fsteplength"] = search.steplength
         if search.constraint is not None:
             values.conditions.manifold = hand_of(self.env, values).tool.to_constraint(search.constraint)
             values.postprocessing, jitter = ("LinearTrajectoryRetimer", ""), 0.0

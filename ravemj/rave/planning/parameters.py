@@ -156,9 +156,10 @@ class PlannerParameters(ApiObject):
         self.given.numbers["_nmaxplanningtime"] = _whole(nMaxPlanningTime, "nMaxPlanningTime")
 
     def SetStepLength(self, fStepLength: float) -> None:
-        """Set the step length ``fStepLength`` [s].
+        """Set the step length ``fStepLength``.
 
-        Retimers round all times up to multiples of it; 0 leaves them as they are.
+        Trees grow in steps of it, a weighted distance of configurations (``DistMetricFn``); 0 selects OpenRAVE's 0.04.
+        Retimers that are called directly round times [s] up to multiples of it; 0 leaves them as they are.
         """
         self.given.numbers["_fsteplength"] = checked_vector([fStepLength], 1, "fStepLength").item()
 

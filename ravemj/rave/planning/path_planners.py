@@ -67,7 +67,8 @@ class PathPlanner(Planner):
         except ArgumentError as error:
             return self._failed(error.message)
         needs_goal = self._needs_goal and not (self._samples_goals and values.goal_sampler is not None)
-        edges = values.conditions.edges(values.space())
+        space, step = values.space(), values.numbers["_fsteplength"]
+        edges = values.conditions.edges(space, step)
         try:
             ends = allowed_ends(values.conditions, edges, list(starts), list(goals), needs_goal=needs_goal)
         except RefusedError as error:
@@ -78,7 +79,9 @@ class PathPlanner(Planner):
             return status
         iterations = int(values.numbers["_nmaxiterations"]) or _ITERATIONS
         budget = Budget(iterations, values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
-        return Problem(edges, *ends, budget, values.random(), _more_goals(values, edges))
+        near = values.conditions.near_others(space, np.array([*ends[0], *ends[1]]))
+        searched = edges if near is space else values.conditions.edges(near, step)
+        return Problem(searched, *ends, budget, values.random(), _more_goals(values, edges))
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Find a path, and process it."""

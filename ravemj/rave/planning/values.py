@@ -10,6 +10,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.bodies import Bodies, Conditions, space_of
 from ravemj.manipulation.tool import MovedTool
+from ravemj.planning.edges import STEP
 from ravemj.planning.retiming.segments import Limits
 from ravemj.planning.rrt import MoreGoals
 from ravemj.planning.space import Coordinates, Space
@@ -23,8 +24,8 @@ from ravemj.trajectories.layout import count
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
-_STEP_LENGTH = float(np.float32(0.04))
-"""OpenRAVE's default step length [s], which it keeps in single precision."""
+STEP_LENGTH = float(np.float32(STEP))
+"""OpenRAVE's default step length, which it keeps in single precision."""
 
 
 def _empty() -> Floats:
@@ -49,7 +50,7 @@ class Values:
 
     vectors: dict[str, Floats] = field(default_factory=lambda: {name: np.zeros(0) for name in VECTORS})
     numbers: dict[str, float] = field(
-        default_factory=lambda: {**dict.fromkeys(NUMBERS, 0.0), "_fsteplength": _STEP_LENGTH}
+        default_factory=lambda: {**dict.fromkeys(NUMBERS, 0.0), "_fsteplength": STEP_LENGTH}
     )
     groups: Sequence[Group] = ()
     weights: Floats = field(default_factory=_empty)
