@@ -265,10 +265,10 @@ class Conditions:
             return lambda values: manifold.has(values) and not fast(values)
         return lambda values: not fast(values)
 
-    def edges(self, space: Space) -> Edges:
-        """Return the test of lines, for use within ``bodies.kept``."""
+    def edges(self, space: Space, allowed: Allowed) -> Edges:
+        """Return the test of lines, for use within ``kept``; ``allowed`` is that of single configurations."""
         if self.manifold is None:
-            return Edges(space, self.allowed())
+            return Edges(space, allowed)
         return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold)
 
     def violation(self, values: Floats, options: int = ALL, told: list[Findings] | None = None) -> int:
