@@ -298,10 +298,16 @@ class Conditions:
         """Return where to search for a path between starts and goals; see ``Bodies.near_others``."""
         return space if self.bodies is None or self.constraints else self.bodies.near_others(space, ends)
 
-    def edges(self, space: Space, step: float) -> Edges:
-        """Return the test of lines, for use within ``bodies.kept``; ``step`` is that of trees."""
+    def edges(self, space: Space, allowed: Allowed, step: float) -> Edges:
+        """Return the test of lines, for use within ``kept``.
+
+        Args:
+            space: The configuration space.
+            allowed: The test of single configurations.
+            step: The step of trees, a weighted distance.
+        """
         if self.manifold is None:
-            return Edges(space, self.allowed(), step)
+            return Edges(space, allowed, step)
         return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold, step)
 
     def violation(self, values: Floats, options: int = ALL, told: list[Findings] | None = None) -> int:

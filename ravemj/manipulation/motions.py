@@ -9,7 +9,7 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.collision.findings import Findings, GeometryOf
 from ravemj.manipulation.bodies import USER, Conditions
 from ravemj.planning.constrained_edges import ConstrainedEdges, bent_path
-from ravemj.planning.edges import Edges, nearby
+from ravemj.planning.edges import Allowed, nearby
 from ravemj.planning.problem import Problem
 from ravemj.planning.rrt import End, Search
 from ravemj.planning.shortcuts import shorten
@@ -36,9 +36,11 @@ class RefusedError(Exception):
         self.findings = findings
 
 
-def refusal(conditions: Conditions, edges: Edges, values: Floats, name: str) -> RefusedError | None:
-    """Return why a configuration cannot be a start or a goal, or None. Use it within ``conditions.kept``."""
-    space, manifold = edges.space, conditions.manifold
+def refusal(conditions: Conditions, space: Space, allowed: Allowed, values: Floats, name: str) -> RefusedError | None:
+    """Return why a configuration cannot be a start or a goal, or None. Use it within ``conditions.kept``.
+
+    ``allowed`` is the test of ``conditions``.
+    """
     if not np.isfinite(values).all():
         return RefusedError(f"{name}: {values.tolist()} should be finite numbers", values)
     outside = space.outside(values)
@@ -46,7 +48,7 @@ def refusal(conditions: Conditions, edges: Edges, values: Floats, name: str) -> 
         limits = f"[{space.lower[outside]:g}, {space.upper[outside]:g}]"
         reason = f"{_described(conditions, outside)} is {values[outside]:.6g}, outside its limits {limits}"
         return RefusedError(f"{name}: {reason}", values)
-    if edges.allowed(values) and (manifold is None or manifold.has(values)):
+    if allowed(values):
         return None
     told: list[Findings] = []
     found = conditions.violation(values, told=told)
@@ -59,26 +61,31 @@ def refusal(conditions: Conditions, edges: Edges, values: Floats, name: str) -> 
 
 
 def allowed_ends(
-    conditions: Conditions, edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats], *, needs_goal: bool
+    conditions: Conditions,
+    space: Space,
+    allowed: Allowed,
+    ends: tuple[Sequence[Floats], Sequence[Floats]],
+    *,
+    needs_goal: bool,
 ) -> tuple[list[Floats], list[Floats]]:
     """Return the starts and goals that are allowed. Use it within ``conditions.kept``.
 
     Raises:
         RefusedError: there is no start or no goal, none is allowed, or a value has no limits.
     """
-    endless = np.flatnonzero(~np.isfinite(edges.space.lower) | ~np.isfinite(edges.space.upper))
+    endless = np.flatnonzero(~np.isfinite(space.lower) | ~np.isfinite(space.upper))
     if len(endless):
         raise RefusedError(f"{_described(conditions, int(endless[0]))} has no limits, and should have some")
-    allowed: list[list[Floats]] = []
-    for name, candidates in (("start", starts), ("goal", goals)):
+    kept: list[list[Floats]] = []
+    for name, candidates in zip(("start", "goal"), ends, strict=True):
         if not len(candidates) and (name == "start" or needs_goal):
             raise RefusedError(f"there is no {name}")
-        refusals = [refusal(conditions, edges, values, name) for values in candidates]
-        allowed.append([values for values, why in zip(candidates, refusals, strict=True) if why is None])
-        if refusals and not allowed[-1]:
+        refusals = [refusal(conditions, space, allowed, values, name) for values in candidates]
+        kept.append([values for values, why in zip(candidates, refusals, strict=True) if why is None])
+        if refusals and not kept[-1]:
             assert refusals[0] is not None, "none is allowed"
             raise refusals[0]
-    return allowed[0], allowed[1]
+    return kept[0], kept[1]
 
 
 def find_path(problem: Problem, search: Callable[[Problem], Search]) -> Search:

@@ -10,7 +10,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.motions import RefusedError, allowed_ends, find_path, refusal
-from ravemj.planning.edges import Edges
+from ravemj.planning.edges import Allowed, Edges
 from ravemj.planning.problem import Problem
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
@@ -67,10 +67,10 @@ class PathPlanner(Planner):
         except ArgumentError as error:
             return self._failed(error.message)
         needs_goal = self._needs_goal and not (self._samples_goals and values.goal_sampler is not None)
-        space, step = values.space(), values.numbers["_fsteplength"]
-        edges = values.conditions.edges(space, step)
+        space, conditions = values.space(), values.conditions
+        allowed = conditions.allowed()
         try:
-            ends = allowed_ends(values.conditions, edges, list(starts), list(goals), needs_goal=needs_goal)
+            ends = allowed_ends(conditions, space, allowed, (list(starts), list(goals)), needs_goal=needs_goal)
         except RefusedError as error:
             status = self._failed(str(error))
             status.jointValues = error.values
@@ -79,9 +79,9 @@ class PathPlanner(Planner):
             return status
         iterations = int(values.numbers["_nmaxiterations"]) or _ITERATIONS
         budget = Budget(iterations, values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
-        near = values.conditions.near_others(space, np.array([*ends[0], *ends[1]]))
-        searched = edges if near is space else values.conditions.edges(near, step)
-        return Problem(searched, *ends, budget, values.random(), _more_goals(values, edges))
+        near = conditions.near_others(space, np.array([*ends[0], *ends[1]]))
+        edges = conditions.edges(near, allowed, values.numbers["_fsteplength"])
+        return Problem(edges, *ends, budget, values.random(), _more_goals(values, allowed))
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Find a path, and process it."""
@@ -178,16 +178,17 @@ class ExplorationRrt(PathPlanner):
         return self._solved(f"{traj.GetNumWaypoints()} configurations")
 
 
-def _more_goals(values: Values, edges: Edges) -> MoreGoals | None:
+def _more_goals(values: Values, allowed: Allowed) -> MoreGoals | None:
     """Return the goal sampler of the parameters, without goals that are not allowed."""
     if values.goal_sampler is None:
         return None
-    sampler = values.goal_sampler
+    sampler, space = values.goal_sampler, values.space()
 
     def next_goal() -> Floats | None:
         goal = sampler.sample()
-        allowed = goal is not None and refusal(values.conditions, edges, goal, "goal") is None
-        return goal if allowed else None
+        if goal is None or refusal(values.conditions, space, allowed, goal, "goal") is not None:
+            return None
+        return goal
 
     return MoreGoals(next_goal, sampler.probability)
 
