@@ -136,6 +136,4 @@ def _is_allowed(edges: Edges, piece: Piece) -> bool:
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
     steps = edges.space.steps(farthest)
-    return all(
-        edges.allowed(piece.after(number / steps * piece.duration)[0]) for number in bisection_order(steps)
-    )
+    return all(edges.allowed(piece.after(number / steps * piece.duration)[0]) for number in bisection_order(steps))
