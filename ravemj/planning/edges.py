@@ -92,7 +92,7 @@ class Edges:
         return all(allowed(start + number / steps * step) for number in bisection_order(steps))
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=256)
 def bisection_order(steps: int) -> tuple[int, ...]:
     """Return the order in which the steps of a line are tested, 1 to ``steps``: its end, middle, quarters, ..."""
     order, pending = [steps], [(0, steps)]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.edges import Edges
+from ravemj.planning.edges import LINE, Edges
 from ravemj.planning.trees import Tree
 
 _PATIENCE = 20
@@ -23,8 +23,15 @@ _PATIENCE = 20
 _WHOLE_LINES = 50
 """Number of blocked lines that are dropped. After them, trees keep the steps before what blocks a line.
 
-Most problems are open: trees of whole lines meet sooner, since a blocked line takes few tests. Narrow ones need steps.
+Most problems are open: trees of long whole lines meet sooner, since a blocked line takes few tests. Narrow problems
+need steps.
 """
+
+_WHOLE_LENGTH = 0.15
+"""Largest length of a whole line, relative to the diagonal of the space."""
+
+_LONGEST = 4.0
+"""Largest length of a whole line, a weighted distance: OpenRAVE's 100 steps of 0.04."""
 
 _TURN = 1e-6
 """Largest difference of the directions [1] of two steps of one straight line."""
@@ -49,13 +56,13 @@ class End(Enum):
 
 @dataclass
 class Budget:
-    """How long a search goes on.
+    """Termination limits of a search.
 
     Attributes:
-        iterations: How often at most a tree is grown.
-        seconds: How long at most; 0: any time.
-        proceed: Asked before each iteration, with its number, whether to go on.
-        started: When it began.
+        iterations: Maximum number of iterations.
+        seconds: Time limit [s]; 0 means none.
+        proceed: Callback before each iteration, with its number; returning False stops the search.
+        started: Time at which the search began [s], of ``time.monotonic``.
     """
 
     iterations: int
@@ -74,15 +81,15 @@ class Budget:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """How a search went.
+    """Result of a search.
 
     Attributes:
-        end: Why it ended.
-        path: The configurations that straight lines connect, shape (m, n); None: there is none.
-        start: Which start it is from.
-        goal: Which goal it leads to.
-        iterations: How often a tree was grown.
-        trees: The trees, for pictures.
+        end: Reason for its end.
+        path: Waypoints of a path of straight lines, shape (m, n); None if no path was found.
+        start: Index of the start of the path.
+        goal: Index of the goal of the path.
+        iterations: Number of iterations.
+        trees: The trees, whose neighbouring nodes are a step apart at most.
     """
 
     end: End
@@ -94,11 +101,11 @@ class Search:
 
 
 class MoreGoals(NamedTuple):
-    """Goals that come while a search is under way.
+    """Source of further goals during a search.
 
     Attributes:
-        sample: Returns one, or None if there is none now.
-        probability: Part of the iterations in which it is asked.
+        sample: Function that returns a goal, or None if it has none at this time.
+        probability: Probability of sampling a goal in an iteration.
     """
 
     sample: Callable[[], Floats | None]
@@ -113,7 +120,10 @@ def connect(
     random: np.random.Generator,
     more_goals: MoreGoals | None = None,
 ) -> Search:
-    """Grow trees from starts and goals, which are allowed, towards each other."""
+    """Grow trees from starts and goals, which are allowed, towards each other.
+
+    At first, lines that are blocked are dropped; later, the trees keep the steps before what blocks a line.
+    """
     growth = _Growth(edges, starts, goals)
     stopped = budget.end(0)
     if stopped is None and (found := growth.straight(starts, goals)) is not None:
@@ -139,6 +149,8 @@ class _Growth:
         self.trees = Tree(edges.space, starts), Tree(edges.space, goals)
         self._goals = list(range(len(goals)))
         self._grown = self._blocked = self._lines_blocked = 0
+        diagonal = float(np.linalg.norm(edges.space.weights * (edges.space.upper - edges.space.lower)))
+        self._longest = min(max(LINE, _WHOLE_LENGTH * diagonal), _LONGEST)
 
     def add_goal(self, goal: Floats | None) -> None:
         """Add a further goal, if it is one."""
@@ -158,7 +170,8 @@ class _Growth:
         """Grow the smaller tree towards a configuration, and the other to where it got; return the path, or None."""
         near, far = self.trees[self._grown], self.trees[1 - self._grown]
         whole = self._lines_blocked < _WHOLE_LINES
-        added, is_blocked = _extend(self._edges, near, target, whole=whole)
+        longest = self._longest if whole else LINE
+        added, is_blocked = _extend(self._edges, near, target, longest=longest, whole=whole)
         self._lines_blocked += is_blocked
         met = None if added is None else _reach(self._edges, far, near.node(added), whole=whole)
         if added is not None and met is not None:
@@ -205,25 +218,25 @@ def single(
 
 
 def explore(edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, random: np.random.Generator) -> Tree:
-    """Grow one tree from the starts until it has a size, without any goal."""
+    """Grow one tree from the starts until it has a size, one step in an iteration, without any goal."""
     tree = Tree(edges.space, starts)
     iteration = 0
     while tree.count < size and budget.end(iteration) is None:
-        target = edges.space.sample(random)
-        nearest = tree.nearest(target)
-        tree.add_line(edges.grow(tree.node(nearest), target, longest=edges.step).points, nearest)
+        _extend(edges, tree, edges.space.sample(random), longest=edges.step)
         iteration += 1
     return tree
 
 
-def _extend(edges: Edges, tree: Tree, target: Floats, *, whole: bool = False) -> tuple[int | None, bool]:
+def _extend(
+    edges: Edges, tree: Tree, target: Floats, *, longest: float = LINE, whole: bool = False
+) -> tuple[int | None, bool]:
     """Grow a tree towards a configuration by one line.
 
     Returns:
         The last new node, or None if the first step is blocked; and whether the line is blocked.
     """
     nearest = tree.nearest(target)
-    grown = edges.grow(tree.node(nearest), target, whole=whole)
+    grown = edges.grow(tree.node(nearest), target, longest=longest, whole=whole)
     added = tree.add_line(grown.points, nearest) if len(grown.points) else None
     return added, grown.is_blocked
 

@@ -4,7 +4,7 @@ import statistics
 import time
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,8 @@ _PEG = 0.02  # half width [m] of the peg, and of the hole in the ring
 _CLEARANCE = 0.008  # around it [m]
 _DEEP = 0.06  # half length of the peg, and half depth of its hole [m]
 _THICK = 0.015  # half width of walls and of the ring's sides [m]
+
+_Body = TypeVar("_Body", bound=ravemj.KinBody)
 
 Boxes = list[list[float]]
 """Centre and half extents of boxes."""
@@ -50,7 +52,7 @@ def rows(seed: int = 0, each: int = 20) -> list[Row]:
     return [row for name, make in PROBLEMS.items() for row in _kind(name, make, seed, each)]
 
 
-def _kind(name: str, make: "Callable[[np.random.Generator], Problem]", seed: int, each: int) -> Iterable[Row]:
+def _kind(name: str, make: Callable[[np.random.Generator], Problem], seed: int, each: int) -> Iterable[Row]:
     ours: list[float] = []
     others: list[float] = []
     rival = (planner_classes() or {}).get("rrtconnect")
@@ -100,7 +102,9 @@ def _arm_problem(obstacles: Boxes, held: Boxes, start: Floats, goal: Floats) -> 
     robot = env.GetRobots()[0]
     manip = robot.GetActiveManipulator()
     assert manip is not None
-    ravemj.databases.inversekinematics.InverseKinematicsModel(robot, iktype=ravemj.IkParameterization.Type.Transform6D).load()
+    ravemj.databases.inversekinematics.InverseKinematicsModel(
+        robot, iktype=ravemj.IkParameterization.Type.Transform6D
+    ).load()
     ends = [_solutions(manip, pose) for pose in (start, goal)]
     _add_boxes(env, "obstacles", obstacles)
     robot.SetActiveDOFs(manip.GetArmIndices())
@@ -128,9 +132,13 @@ def _problem(env: ravemj.Environment, robot: ravemj.Robot, start: Floats, goals:
     return Problem(env, params)
 
 
-def _add_boxes(env: ravemj.Environment, name: str, boxes: Boxes, kind: type[ravemj.KinBody] | None = None) -> ravemj.KinBody:
-    body = ravemj.RaveCreateKinBody(env, "") if kind is None else ravemj.RaveCreateRobot(env, "")
+def _add_boxes(env: ravemj.Environment, name: str, boxes: Boxes) -> ravemj.KinBody:
+    body = ravemj.RaveCreateKinBody(env, "")
     assert body is not None
+    return _added(env, name, boxes, body)
+
+
+def _added(env: ravemj.Environment, name: str, boxes: Boxes, body: _Body) -> _Body:
     body.InitFromBoxes(boxes)
     body.SetName(name)
     env.Add(body)
@@ -179,9 +187,10 @@ def ring(random: np.random.Generator) -> Problem:
 def door(random: np.random.Generator) -> Problem:
     """Return a problem of a base that goes from one room through a door into another; limits are OpenRAVE's 100 m."""
     env = ravemj.Environment()
-    robot = _add_boxes(env, "base", [[0, 0, 0.5, 0.33, 0.3, 0.5]], ravemj.Robot)
-    at, place = float(random.uniform(-1.4, 1.4)), float(random.uniform(-0.5, 0.5))
-    half = 0.37
+    empty = ravemj.RaveCreateRobot(env, "")
+    assert empty is not None
+    robot = _added(env, "base", [[0, 0, 0.5, 0.33, 0.3, 0.5]], empty)
+    at, place, half = float(random.uniform(-1.4, 1.4)), float(random.uniform(-0.5, 0.5)), 0.4
     walls = [[x, 0, 0.5, 0.05, 2, 0.5] for x in (-4, 4)] + [[0, y, 0.5, 4, 0.05, 0.5] for y in (-2, 2)]
     walls += [[place, (at + half + 2) / 2, 0.5, 0.05, (2 - at - half) / 2, 0.5]]
     walls += [[place, (at - half - 2) / 2, 0.5, 0.05, (2 + at - half) / 2, 0.5]]

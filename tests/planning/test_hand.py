@@ -348,6 +348,8 @@ def beside_a_wall(robot):
 
 def test_a_cup_is_carried_upright_around_a_wall(robot):
     here, there = beside_a_wall(robot)
+    for joint in robot.GetJoints():
+        joint.SetResolution(0.01)  # else a line may graze the wall between two tests
     there[:3, :3] = ravemj.rotationMatrixFromAxisAngle([0, 0, 0.3]) @ there[:3, :3]
     upright = np.linalg.inv(here)
     found = ravemj.interfaces.BaseManipulation(robot).MoveToHandPosition(
@@ -358,7 +360,7 @@ def test_a_cup_is_carried_upright_around_a_wall(robot):
     )
     error = moved_tool(robot, found, point=upright)
     assert np.linalg.norm(error[:, :2], axis=1).max() <= 1e-3
-    assert np.abs(error[:, 3:]).max() > 0.3
+    assert np.abs(error[:, 3:]).max() > 0.2, "that of the goal is 0.13: there is a detour"
     rows = waypoints(robot, found)
     assert rows[0] == pytest.approx(READY)
     assert tool_at(robot, rows[-1]) == pytest.approx(there, abs=1e-6)

@@ -525,6 +525,98 @@ def test_a_base_moves_with_its_joints_round_what_is_in_the_way(env, robot, turni
     assert robot.GetTransform()[:3, 3] == pytest.approx([1.3, 0, 0])
 
 
+def two_rooms(seed=0):
+    """Return a base in one of two rooms of 6 x 3 m, and a goal in the other; the door is 0.8 m wide."""
+    env = ravemj.Environment()
+    base = ravemj.RaveCreateRobot(env, "")
+    base.InitFromBoxes([[0, 0, 0.5, 0.32, 0.28, 0.5]])
+    base.SetName("base")
+    env.Add(base)
+    outer = [[0, 0, 0.5, 0.05, 1.5, 0.5], [6, 0, 0.5, 0.05, 1.5, 0.5], [3, -1.5, 0.5, 3, 0.05, 0.5]]
+    door = np.random.default_rng(seed).uniform(-0.8, 0.8)
+    inner = [
+        [3, (side * 1.5 + door + side * 0.4) / 2, 0.5, 0.05, (1.5 - 0.4 - side * door) / 2, 0.5] for side in (-1, 1)
+    ]
+    for number, numbers in enumerate([*outer, [3, 1.5, 0.5, 3, 0.05, 0.5], *inner]):
+        box(env, f"wall{number}", numbers)
+    parts = ravemj.DOFAffine
+    base.SetActiveDOFs([], parts.X | parts.Y | parts.RotationAxis, [0, 0, 1])
+    base.SetAffineTranslationResolution([0.01] * 3)
+    base.SetActiveDOFValues([1.0, -0.8, 0.0])
+    assert not env.CheckCollision(base)
+    return base, np.array([5.0, 0.8, 1.0])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_base_goes_through_a_door_with_openraves_limits_of_100_m(seed):
+    base, goal = two_rooms(seed)
+    assert base.GetActiveDOFLimits()[1][0] == 100
+    assert base.GetActiveDOFWeights().tolist() == [2, 2, 2]
+    helper = ravemj.interfaces.BaseManipulation(base)
+    trajectory = helper.MoveActiveJoints(goal=goal, steplength=0.15, execute=False, outputtrajobj=True)
+    spec = base.GetActiveConfigurationSpecification()
+    for time_s in np.linspace(0, trajectory.GetDuration(), 300):
+        base.SetActiveDOFValues(trajectory.Sample(time_s, spec))
+        assert not base.GetEnv().CheckCollision(base)
+    assert base.GetActiveDOFValues() == pytest.approx(goal)
+
+
+def test_bases_are_sampled_where_they_can_touch_something_and_between_start_and_goal():
+    base, _ = two_rooms()
+    params = Planner.PlannerParameters()
+    params.SetRobotActiveJoints(base)
+    values = params.resolved()
+    reach = np.linalg.norm([0.32, 0.28, 1.0])
+    near = values.bodies.near_others(values.space(), np.array([[1.0, -0.8, 0.0], [50.0, 0.8, 1.0]]))
+    assert near.lower == pytest.approx([-0.05 - reach, -1.55 - reach, -np.pi])
+    assert near.upper == pytest.approx([50.0, 1.55 + reach, np.pi])
+    base.SetAffineTranslationLimits([-0.1, -9, 0], [9, 1, 0])
+    params.SetRobotActiveJoints(base)
+    near = params.resolved().bodies.near_others(params.resolved().space(), np.array([[1.0, -0.8, 0.0]]))
+    assert [near.lower[0], near.upper[1]] == [-0.1, 1.0], "limits are kept"
+    box(base.GetEnv(), "rod", [1.0, -0.8, 1.2, 2.0, 0.05, 0.1])
+    assert base.Grab(base.GetEnv().GetKinBody("rod"), base.GetLinks()[0])
+    held = params.resolved().bodies.near_others(params.resolved().space(), np.array([[1.0, -0.8, 0.0]]))
+    assert held.lower[1] < near.lower[1] - 2.0, "what a robot holds reaches farther"
+
+
+@pytest.mark.parametrize("step", [0.05, 0.3])
+def test_the_step_length_is_the_step_of_the_trees(robot, step):
+    params = parameters(robot)
+    params.SetStepLength(step)
+    planner = ravemj.RaveCreatePlanner(robot.GetEnv(), "birrt")
+    planner.InitPlan(robot, params)
+    assert planner.PlanPath(ravemj.RaveCreateTrajectory(robot.GetEnv(), "")) == PlannerStatus.HasSolution
+    lengths = []
+    for tree in planner.search.trees:
+        nodes = tree.nodes()
+        lengths += [params.DistMetricFn(nodes[child], nodes[parent]) for child, parent in tree.lines()]
+    assert 0.7 * step < max(lengths) <= step * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    "send",
+    [
+        lambda helper, **options: helper.MoveActiveJoints(goal=[1.2, 0.2], execute=False, **options),
+        lambda helper, **options: helper.MoveManipulator(goal=[1.2, 0.2], execute=False, **options),
+        lambda helper, **options: helper.prob.SendCommand(
+            "MoveManipulator goal 1.2 0.2 execute 0" + "".join(f" {name} {value}" for name, value in options.items())
+        ),
+    ],
+)
+def test_commands_hand_the_step_length_to_the_planner(robot, monkeypatch, send):
+    robot.SetActiveManipulator("hand")
+    given = []
+    monkeypatch.setattr(Planner.PlannerParameters, "SetStepLength", lambda params, length: given.append(length))
+    helper = ravemj.interfaces.BaseManipulation(robot)
+    send(helper, steplength=0.2)
+    send(helper)
+    assert given == pytest.approx([0.2, 0.04])
+    for wrong in (0, -1):
+        with pytest.raises(ravemj.openrave_exception, match=f"steplength: is {wrong}, and should be more than 0"):
+            send(helper, steplength=wrong)
+
+
 def test_a_touching_start_is_jittered_and_left(env, robot):
     robot.SetDOFValues([0, 0.64])
     assert env.CheckCollision(robot)

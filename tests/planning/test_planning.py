@@ -131,6 +131,110 @@ def test_the_search_by_cost_finds_allowed_paths_that_are_short(allowed):
     assert (ended.end, ended.path) == (End.iterations, None)
 
 
+def outside_or_in_a_hole(values) -> bool:
+    """The open half of a space, and a hole 0.5 deep and 0.16 wide in the other half."""
+    return values[0] > 0.5 or (values[0] > -0.05 and np.abs(values[1:]).max() < 0.08)
+
+
+def one_step(start, target, allowed, step, **options):
+    weighted = Space(plain(2), -2 * np.ones(2), 2 * np.ones(2), np.array([2.0, 1.0]), 0.01 * np.ones(2))
+    return Edges(weighted, allowed, step).grow(np.array(start), np.array(target), **options), weighted
+
+
+@pytest.mark.parametrize("step", [0.03, 0.1, 0.4])
+@pytest.mark.parametrize("wall", np.random.default_rng(0).uniform(0, 0.4, 10))
+def test_a_line_grows_step_by_step_up_to_what_blocks_it(step, wall):
+    calls = []
+
+    def allowed(values):
+        calls.append(values)
+        return values[0] <= wall
+
+    grown, weighted = one_step([0, 0], [0.4, 0.2], allowed, step)
+    points = np.vstack([[0, 0], grown.points])
+    lengths = [weighted.distance(second, first) for first, second in pairwise(points)]
+    assert max(lengths, default=0.0) <= step * (1 + 1e-9)
+    assert (points[:, 0] <= wall).all()
+    assert points[-1, 0] + step / 2 + 0.01 > wall, "the last allowed configuration is kept"
+    assert grown.is_blocked
+    assert not grown.arrives
+    tested, calls[:] = len(calls), []
+    dropped, _ = one_step([0, 0], [0.4, 0.2], allowed, step, whole=True)
+    assert (len(dropped.points), dropped.is_blocked) == (0, True)
+    assert len(calls) <= tested
+
+
+def test_a_line_that_nothing_blocks_arrives_or_ends_at_its_greatest_length():
+    grown, weighted = one_step([0, 0], [0.3, 0.2], lambda values: True, 0.1)
+    assert (grown.is_blocked, grown.arrives) == (False, True)
+    assert grown.points[-1] == pytest.approx([0.3, 0.2])
+    assert len(grown.points) == 7, "0.632 in steps of 0.1"
+    grown, _ = one_step([0, 0], [1.0, 0.0], lambda values: True, 0.1, longest=0.5)
+    assert (grown.is_blocked, grown.arrives, len(grown.points)) == (False, False, 5)
+    assert weighted.distance(grown.points[-1], np.zeros(2)) == pytest.approx(0.5)
+
+
+def test_every_step_of_a_line_is_tested_at_the_resolution():
+    seen = [np.zeros(2)]
+    grown, weighted = one_step([0, 0], [0.4, 0.2], lambda values: seen.append(values) or True, 0.1)
+    along = np.array(sorted(seen, key=lambda one: one[0]))
+    assert np.abs(np.diff(along, axis=0)).max() <= weighted.resolution.max() + 1e-12
+    assert {tuple(np.round(one, 9)) for one in grown.points} <= {tuple(np.round(one, 9)) for one in seen}
+
+
+@pytest.mark.parametrize("step", [0.04, 0.15, 0.5])
+@pytest.mark.parametrize("allowed", [round_a_wall, nowhere])
+def test_neighbouring_nodes_of_all_trees_are_a_step_apart_at_most(step, allowed):
+    weighted = Space(plain(2), -2 * np.ones(2), 2 * np.ones(2), np.array([2.0, 0.5]), 0.02 * np.ones(2))
+    edges, random = Edges(weighted, allowed, step), np.random.default_rng(0)
+    trees = [*connect(edges, [START], [GOAL], budget(300), random).trees]
+    trees += single(edges, [START], [GOAL], budget(300), random, 0.05).trees
+    for tree in trees:
+        nodes = tree.nodes()
+        lengths = np.array([weighted.distance(nodes[child], nodes[parent]) for child, parent in tree.lines()])
+        assert (lengths <= step * (1 + 1e-9)).all()
+        assert lengths.max() > 0.7 * step, "lines are divided no finer than needed"
+        assert all(map(allowed, nodes))
+
+
+@pytest.mark.parametrize("step", [0.04, 0.15, 0.5])
+def test_exploration_takes_one_step_at_a_time(step):
+    tree = explore(Edges(space(), round_a_wall, step), [START], 50, budget(50), np.random.default_rng(0))
+    nodes = tree.nodes()
+    lengths = np.array([space().distance(nodes[child], nodes[parent]) for child, parent in tree.lines()])
+    assert (lengths <= step * (1 + 1e-9)).all()
+    assert np.median(lengths) == pytest.approx(step), "samples that are nearer than a step are few"
+    assert len(lengths) <= 49
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_way_out_of_a_narrow_hole_is_found_in_steps(seed):
+    edges, random = Edges(space(5), outside_or_in_a_hole), np.random.default_rng(seed)
+    search = connect(edges, [np.zeros(5)], [np.ones(5)], budget(4000), random)
+    assert search.end is End.found
+    assert path_is_allowed(edges, search.path)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_paths_have_no_waypoints_on_their_lines(seed):
+    path = found(round_a_wall, seed=seed).path
+    steps = np.diff(path, axis=0)
+    directions = steps / np.linalg.norm(steps, axis=1, keepdims=True)
+    assert np.linalg.norm(np.diff(directions, axis=0), axis=1).min() > 1e-6
+    assert len(path) < 12
+
+
+def test_a_line_of_more_than_half_a_turn_keeps_its_nodes():
+    circle = Space(
+        Coordinates(np.array([True])), -np.pi * np.ones(1), np.pi * np.ones(1), np.ones(1), 0.05 * np.ones(1)
+    )
+    edges = Edges(circle, lambda values: np.cos(values[0] - np.pi / 2) < 0.5)  # the short way is blocked
+    search = connect(edges, [np.array([0.0])], [np.array([3.0])], budget(2000), np.random.default_rng(0))
+    turned = circle.difference(search.path[1:], search.path[:-1]).sum()
+    assert turned == pytest.approx(3.0 - 2 * np.pi)
+    assert path_is_allowed(edges, search.path)
+
+
 def test_one_tree_finds_goals_and_explores():
     edges = Edges(space(), round_a_wall)
     search = single(edges, [START], [GOAL], budget(), np.random.default_rng(0), 0.05)
