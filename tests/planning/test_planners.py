@@ -19,6 +19,7 @@ import ravemj
 from ravemj import Planner, PlannerStatus, planningutils
 from ravemj.engine.collision.moving import moving_test
 from ravemj.planning import rrt
+from ravemj.rave.planning.path_planners import PathPlanner
 
 ARM = """<Environment><Robot name="arm"><KinBody>
 <Body name="base"><Geom type="box"><extents>0.1 0.1 0.05</extents></Geom></Body>
@@ -606,8 +607,13 @@ def test_the_step_length_is_the_step_of_the_trees(robot, step):
 )
 def test_commands_hand_the_step_length_to_the_planner(robot, monkeypatch, send):
     robot.SetActiveManipulator("hand")
-    given = []
-    monkeypatch.setattr(Planner.PlannerParameters, "SetStepLength", lambda params, length: given.append(length))
+    given, run = [], PathPlanner.run
+
+    def noted(planner, values, trajectory):
+        given.append(values.numbers["_fsteplength"])
+        return run(planner, values, trajectory)
+
+    monkeypatch.setattr(PathPlanner, "run", noted)
     helper = ravemj.interfaces.BaseManipulation(robot)
     send(helper, steplength=0.2)
     send(helper)
