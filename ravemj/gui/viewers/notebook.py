@@ -11,7 +11,7 @@ from typing import Any
 from ravemj.graphics.simulation_renderer import Frame
 from ravemj.graphics.video import picture_bytes
 
-_HEIGHT = 480
+_HEIGHT, _LINES = 480, 60  # pixels; the second is that of _ALONE in a narrow cell
 _PROXY = "jupyter_server_proxy"
 _PREFIX = "JUPYTERHUB_SERVICE_PREFIX"
 """The variable that says where JupyterHub has a user's server."""
@@ -57,15 +57,17 @@ def mimebundle(url: str, picture: Frame | None, still: Callable[[], str]) -> dic
 
         output.serve_kernel_port_as_iframe(int(port), path=f"/{path}", height=str(_HEIGHT))  # pyright: ignore
         return {}
-    instead = "" if picture is None else _image(picture)
+    instead, height = "" if picture is None else _image(picture), _HEIGHT
     if is_proxied():
         url = f"{os.environ.get(_PREFIX, '/')}proxy/{port}/{path}"
     elif any(map(os.environ.get, _ELSEWHERE)):
-        instead = f"{still()}<div>{_ALONE.format(port=port)}</div>"
+        instead, height = f"<div>{_ALONE.format(port=port)}</div>{still()}", _HEIGHT + _LINES
     address = html.escape(url)
+    # Where the server does not answer, the object has no size, and what is behind it moves up. It is no content of the
+    # object, since Chromium does not show that in the cells of JupyterLab, which have content-visibility: auto.
     live = (
-        f'<object data="{address}" type="text/html" aria-label="ravemj viewer" '
-        f'style="width: 100%; height: {_HEIGHT}px">{instead}</object>'
+        f'<div style="height: {height}px; overflow: hidden"><object data="{address}" type="text/html" '
+        f'aria-label="ravemj viewer" style="width: 100%; height: {height}px"></object>{instead}</div>'
         f'<div><a href="{address}" target="_blank" rel="noopener">in a tab of its own</a></div>'
     )
     png = {} if picture is None else {"image/png": b64encode(picture_bytes(picture)).decode()}
