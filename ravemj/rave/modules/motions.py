@@ -153,6 +153,8 @@ class Manipulation:
             PlanningError: no motion was found; the message says why.
             ArgumentError: a goal or start has another shape, or is not finite; or the step length is not positive.
         """
+        if not search.steplength > 0:
+            raise ArgumentError(f"steplength: is {search.steplength:g}, and should be more than 0")
         values, jitter = self.stated(dofs), search.jitter
         _check(goals, starts, count(values.groups))
         values.goal_sampler = more
@@ -194,9 +196,8 @@ class Manipulation:
             if is_it and (asked[nearest] != used[nearest]).any():
                 rest = np.zeros(len(reached))
                 new = EndWaypoint(traj, spec, asked[nearest], rest, place)
-                retimer = (
-                    "LinearTrajectoryRetimer" if any(group.kind == AFFINE[0] for group in groups) else ""
-                )  # the only one for poses
+                has_pose = any(group.kind == AFFINE[0] for group in groups)
+                retimer = "LinearTrajectoryRetimer" if has_pose else ""  # the only one for poses
                 new.join(new.retimed((1.0, 1.0), retimer, ""))
 
     def straight(self, points: Floats, dofs: Sequence[int] | None = None) -> Trajectory:
