@@ -302,6 +302,11 @@ class Fuzzer:
 # ---------------------------------------------------------------------------------------------------- trials
 
 
+def main_file(files: Files) -> str:
+    """Return the name of the file that is read; the others are those that it may name."""
+    return MAIN if MAIN in files else next(iter(files))
+
+
 @dataclass
 class Outcome:
     """What came of a document.
@@ -344,7 +349,7 @@ class Trial:
             with time_limit(self.seconds), warnings.catch_warnings():
                 warnings.simplefilter("error")
                 warnings.simplefilter("ignore", RavemjWarning)
-                return self._read(str(Path(folder, MAIN)))
+                return self._read(str(Path(folder, main_file(files))))
 
     def _read(self, path: str) -> Outcome:
         reading = read_file(path)

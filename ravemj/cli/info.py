@@ -53,6 +53,9 @@ class _Tree:
         self._first_dofs = [*dof_starts(body), *(None for _ in body.passive_joints)]
         self._joints = body.all_joints
         self._placing = {joint.child: index for index, joint in enumerate(self._joints) if joint.places_child}
+        self._children: dict[int, list[int]] = {}
+        for child, number in self._placing.items():
+            self._children.setdefault(self._joints[number].parent, []).append(child)
 
     def lines(self) -> Iterator[str]:
         """Yield the lines of the tree."""
@@ -60,7 +63,7 @@ class _Tree:
         pending = [(root, "", "") for root in reversed(roots)]
         while pending:
             link, first, rest = pending.pop()
-            children = [child for child, number in self._placing.items() if self._joints[number].parent == link]
+            children = self._children.get(link, [])
             yield from self._entry(link, first, rest + ("│ " if children else "  "))
             branches = [(child, f"{rest}├╴", f"{rest}│ ") for child in sorted(children)]
             if branches:

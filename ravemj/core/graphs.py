@@ -169,9 +169,9 @@ class ShortestPaths:
         for one, other in near_parts:
             is_tree = lines[whole[one]] == 2 * (sizes[whole[one]] - 1)  # each edge stands in there twice
             for first, second in itertools.product(members[one], members[other]):
-                if first < second or (first > second and one != other):
-                    if is_tree or sum(is_heavy[index] for index in self.path(first, second)) <= 1:
-                        yield ordered_pair(first, second)
+                is_new = first < second or (first > second and one != other)
+                if is_new and (is_tree or sum(is_heavy[index] for index in self.path(first, second)) <= 1):
+                    yield ordered_pair(first, second)
 
 
 def nodes_between(edges: Iterable[Pair], count: int, start: int, end: int) -> set[int]:

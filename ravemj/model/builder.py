@@ -120,6 +120,9 @@ class BodyBuilder:
     joint_values: list[float] | None = None
     description: str = ""
     refusal: SourceError | None = None
+    _first: dict[str, int] = field(default_factory=dict[str, int])  # link of each name, for those before ``_indexed``
+    _first_any_case: dict[str, int] = field(default_factory=dict[str, int])
+    _indexed: int = 0
 
     def parts(self) -> "BodyParts":
         """Return what it consists of at this moment."""
@@ -129,6 +132,7 @@ class BodyBuilder:
 
     def set_parts(self, parts: "BodyParts") -> None:
         """Let it consist of what it consisted of before."""
+        self.forget_names()
         self.name, self.links, self.joints, self.adjacent, self.manipulators, self.sensors = parts
 
     def check_joint_names(self) -> None:
@@ -144,12 +148,28 @@ class BodyBuilder:
 
     def find_link(self, name: str) -> int | None:
         """Return the index of the first link of that name, or None."""
-        return next((index for index, link in enumerate(self.links) if link.name == name), None)
+        self._index_links()
+        return self._first.get(name)
 
     def find_link_any_case(self, name: str) -> int | None:
         """Return the index of the first link of that name in any letter case, or None."""
-        wanted = name.lower()
-        return next((index for index, link in enumerate(self.links) if link.name.lower() == wanted), None)
+        self._index_links()
+        return self._first_any_case.get(name.lower())
+
+    def _index_links(self) -> None:
+        for index in range(self._indexed, len(self.links)):
+            name = self.links[index].name
+            self._first.setdefault(name, index)
+            self._first_any_case.setdefault(name.lower(), index)
+        self._indexed = len(self.links)
+
+    def forget_names(self, first: int = 0) -> None:
+        """Forget the names of the links from an index on, because they will be renamed, moved or removed."""
+        for link in self.links[first : self._indexed]:
+            for names, name in ((self._first, link.name), (self._first_any_case, link.name.lower())):
+                if names.get(name, -1) >= first:
+                    del names[name]
+        self._indexed = min(self._indexed, first)
 
     def freeze(self, diagnostics: Diagnostics) -> scene.KinBody:
         """Settle the body, with a warning for every value that is moved into its limits.
@@ -188,8 +208,9 @@ class BodyBuilder:
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
         """Return the arms. One that is impossible has no gripper, and those behind it have no links."""
         frozen: list[scene.Manipulator] = []
+        names: set[str] = set()
         for built in self.manipulators:
-            if any(arm.name == built.name for arm in frozen):
+            if built.name in names:
                 message = f"there already is a manipulator '{built.name}'; by this name, the first one is found"
                 diagnostics.warn("repeated-name", message, built.source, "give each a name of its own")
             arm = freeze_manipulator(built, body, diagnostics)
@@ -199,6 +220,7 @@ class BodyBuilder:
                 self.refusal = self.refusal or error
                 break
             frozen.append(arm)
+            names.add(arm.name)
         rest = self.manipulators[len(frozen) :]
         unfinished = [replace(built, gripper_joints=[]) for built in rest[:1]]
         unfinished += [replace(built, base="", effector="", gripper_joints=[]) for built in rest[1:]]

@@ -222,8 +222,9 @@ class _Comparison:
         for _ in range(CONFIGURATIONS if first.joints else 0):
             values = [_random_value(axis, random) for axis in first.dof_axes]
             poses = [poses_in(body, values) for body in (first, second)]
+            named = " ".join(f"{value:.3g}" for value in values)
             for link, one, other in zip(first.links, *poses, strict=True):
-                place = f"{part} link '{link.name}' at the values {' '.join(f'{value:.3g}' for value in values)}"
+                place = f"{part} link '{link.name}' at the values {named}"
                 found += self._poses(place, "pose", one, other)
         if found:
             yield max(found, key=lambda difference: difference.error or math.inf)

@@ -54,10 +54,12 @@ def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
     return poses
 
 
-def rests(body: KinBody, joint: Joint) -> bool:
-    """Tell whether a joint of a body stays where it is: it neither has DOFs nor follows others."""
-    follows = joint.mimic is not None and joint.mimic.expression is not None
-    return not follows and all(joint is not other for other in body.joints)
+def rests(body: KinBody, index: int) -> bool:
+    """Return whether a joint of a body stays where it is: it neither has DOFs nor follows others."""
+    if index < len(body.joints):
+        return False
+    mimic = body.passive_joints[index - len(body.joints)].mimic
+    return mimic is None or mimic.expression is None
 
 
 def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:

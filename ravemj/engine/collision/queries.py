@@ -136,9 +136,8 @@ def _find_touching(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
         return frozenset()
     links = range(len(body.scene.links))
     geoms = [world.geoms_of_link(body, link, enabled_only=False) for link in links]
-    pairs = world.make_pairs(
-        *joined(cross(geoms[first], geoms[second]) for first, second in separate_pairs(body.scene))
-    )
+    candidates = (cross(geoms[first], geoms[second]) for first, second in separate_pairs(body.scene))
+    pairs = world.make_pairs(*joined(candidates))
     motions = {
         (body, link): rest @ inverse(now)
         for link, (rest, now) in enumerate(zip(body.rest_poses, body.link_transforms(), strict=True))

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from weakref import WeakSet
 
 import numpy as np
 
@@ -55,6 +56,7 @@ class BodyState:
         self.index = 0  # in the world, from 1; 0 while it is not in the world
         self.stamp = 0  # grows with every change of pose
         self._grabs: tuple[GrabbedBody, ...] = ()
+        self.holders: WeakSet[BodyState] = WeakSet()  # the bodies that hold it
         self._link_enabled: tuple[bool, ...] = ()
         # The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the body was
         # added, or that of the body of which it is a copy.
@@ -101,7 +103,11 @@ class BodyState:
 
     @grabs.setter
     def grabs(self, grabs: Iterable[GrabbedBody]) -> None:
+        for grab in self._grabs:
+            grab.body.holders.discard(self)
         self._grabs = tuple(grabs)
+        for grab in self._grabs:
+            grab.body.holders.add(self)
         self.simulation.collision_stamp += 1
 
     @property

@@ -1,5 +1,6 @@
 """The bodies of an environment and the MuJoCo model made of them."""
 
+import heapq
 from collections.abc import Generator, Mapping
 from typing import TYPE_CHECKING
 
@@ -42,6 +43,7 @@ class Simulation:
         self.clock: Clock | None = None  # simulation time; None where nobody lets it pass
         self.physics: Physics | None = None  # moves the bodies in that time; None: they stay where they are put
         self._places: list[BodyState | None] = []
+        self._gaps: list[int] = []  # a heap of the free places among these, and of some that are no longer free
         self._by_name: dict[str, BodyState] = {}
         self._world: WorldModel | None = None
         self._collisions: CollisionWorld | None = None
@@ -78,11 +80,18 @@ class Simulation:
         with self.lock:
             self.check_name(body, body.scene.name)
             self.forget_model()
-            body.index = index or [*self._places, None].index(None) + 1
-            self._places += [None] * (body.index - len(self._places))
+            body.index = index or self._free_index()
+            for gap in range(len(self._places), body.index):
+                heapq.heappush(self._gaps, gap)
+                self._places.append(None)
             self._places[body.index - 1] = self._by_name[body.scene.name] = body
             if body.rest_poses is None:
                 body.rest_poses = body.link_transforms()
+
+    def _free_index(self) -> int:
+        while self._gaps and (self._gaps[0] >= len(self._places) or self._places[self._gaps[0]] is not None):
+            heapq.heappop(self._gaps)
+        return (self._gaps[0] if self._gaps else len(self._places)) + 1
 
     def remove(self, body: BodyState) -> bool:
         """Take a body out of the world; it keeps its pose. Return False if it was not there."""
@@ -92,9 +101,10 @@ class Simulation:
             self.forget_model()
             self.changed.discard(body)
             body.grabs, body.rest_poses = [], None
-            for holder in self.bodies:
+            for holder in [*body.holders]:
                 holder.release(body)
             self._places[body.index - 1] = None
+            heapq.heappush(self._gaps, body.index - 1)
             while self._places and self._places[-1] is None:
                 self._places.pop()
             del self._by_name[body.scene.name]
@@ -110,7 +120,7 @@ class Simulation:
         found = [body]
         for one in found:  # which grows meanwhile
             near = [grab.body for grab in one.grabs]
-            near += [holder for holder in self.bodies if any(grab.body is one for grab in holder.grabs)]
+            near += sorted(filter(self.holds, one.holders), key=lambda holder: holder.index)
             found += [other for other in dict.fromkeys(near) if other not in found]
         return found
 

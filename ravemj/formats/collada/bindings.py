@@ -1,5 +1,6 @@
 """The bindings of a ``<scene>``: models to the nodes that show them, and axes to nodes and values."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ravemj.formats.collada.library import Library
@@ -43,17 +44,30 @@ class AxisBinding:
     value: float | None
 
 
-@dataclass(frozen=True, slots=True)
 class Bindings:
-    """All bindings of a kinematics scene; of several for one thing the first counts."""
+    """All bindings of a kinematics scene; of several for one thing the first counts.
 
-    models: tuple[ModelBinding, ...]
-    axes: tuple[AxisBinding, ...]
-    moved: frozenset[Node]
+    Attributes:
+        models: The bindings of models.
+        axes: The bindings of axes.
+        moved: The nodes that they bind.
+    """
+
+    def __init__(self, models: Sequence[ModelBinding], axes: Sequence[AxisBinding]) -> None:
+        self.models, self.axes = models, axes
+        nodes = (binding.node for binding in (*models, *axes))
+        self.moved = frozenset(node for node in nodes if node is not None)
+        self._of_instance: dict[Element, list[int]] = {}
+        self._of_axis: dict[Element, list[AxisBinding]] = {}
+        for number, model in enumerate(models):
+            self._of_instance.setdefault(model.instance, []).append(number)
+        for axis in axes:
+            self._of_axis.setdefault(axis.axis, []).append(axis)
 
     def node_of(self, owner: Element, instance: Element, model: Element) -> Node | None:
         """Return the node that shows an instance of a model, given the instance in the scene that it belongs to."""
-        found = [binding for binding in self.models if binding.instance is instance or binding.instance is model]
+        numbers = {number for element in (instance, model) for number in self._of_instance.get(element, ())}
+        found = [self.models[number] for number in sorted(numbers)]
         own = [binding for binding in found if binding.owner is owner]
         return (own or found)[0].node if found else None
 
@@ -66,7 +80,7 @@ class Bindings:
             axis: The axis.
             holder: The ``<joint>`` or ``<instance_joint>`` that stands in the model.
         """
-        found = [binding for binding in self.axes if binding.axis is axis and _is_through(binding, instance, holder)]
+        found = [binding for binding in self._of_axis.get(axis, ()) if _is_through(binding, instance, holder)]
         own = [binding for binding in found if binding.owner is owner]
         return next(iter(own or found), None)
 
@@ -104,8 +118,7 @@ def read_bindings(library: Library, instance: Element, scene: Element, root: Nod
         value = library.number(child(element, "value"), instance, scene)
         node = find_node(library, root, element.get("target") or "", element)
         axes.append(AxisBinding(owner, found.through, found.element, node, value))
-    nodes = (binding.node for binding in (*models, *axes))
-    return Bindings(tuple(models), tuple(axes), frozenset(node for node in nodes if node is not None))
+    return Bindings(models, axes)
 
 
 def _owner(library: Library, name: str, *scopes: Element) -> Element | None:

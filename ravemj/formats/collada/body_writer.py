@@ -1,6 +1,6 @@
 """The writer of one body: its nodes, kinematics models, rigid bodies and articulated systems."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, Vec3, add, conjugate, rotate, scale
 from ravemj.errors import Diagnostics, OutputError
@@ -34,6 +34,14 @@ class BodyWriter:
         sections.models += len(self._trees)
         self._T_root_links: dict[int, Pose] = {}
         self._joint_names = _joint_names(body)
+        self._model_of_joint = {joint: tree.model for tree in self._trees for joint in tree.joints}
+        self._joints = body.all_joints
+        self._variables = joint_variables([joint.name for joint in self._joints])
+        self._loops: dict[int, list[int]] = {}  # joints that close loops, by each of their links
+        for index in (index for tree in self._trees for index in tree.joints):
+            joint = self._joints[index]
+            for link in () if joint.places_child else {joint.parent, joint.child}:
+                self._loops.setdefault(link, []).append(index)
 
     def write(self) -> None:
         """Write everything about the body."""
@@ -50,24 +58,23 @@ class BodyWriter:
         out = self._sections.kinematics_models
         with out.inside("kinematics_model", id=tree.model, name=self._body.name), out.inside("technique_common"):
             for index in tree.joints:
-                self._write_joint(index, self._body.all_joints[index])
+                self._write_joint(index, self._joints[index])
             if tree.links:
                 self._write_link(tree, tree.root, None, 0)
             for index in tree.joints:
-                self._write_formula(index, self._body.all_joints[index].mimic)
+                self._write_formula(index, self._joints[index].mimic)
 
     def _write_formula(self, index: int, mimic: Mimic | None) -> None:
         """Write what a joint follows."""
         if mimic is None or mimic.expression is None:
             return
-        out, joint = self._sections.kinematics_models, self._body.all_joints[index]
+        out, joint = self._sections.kinematics_models, self._joints[index]
         try:
             position = math_of(mimic.expression, self._joint_path)
         except TooDeepError:
             message = f"the equation of joint '{joint.name}' is nested too deep for COLLADA; it is left out"
             self._diagnostics.warn("not-written", message, joint.source)
             return
-        names = joint_variables([other.name for other in self._body.all_joints])
         with out.inside("formula", sid=f"formula{index}"):
             out.element_inside("target", "param", self._joint_path(f"joint{index}"))
             with out.inside("technique_common"):
@@ -76,13 +83,13 @@ class BodyWriter:
                 with out.inside("equation", type="position"):
                     out.append(position)
                 for kind, text in (("first_partial", mimic.velocity), ("second_partial", mimic.acceleration)):
-                    for name, partial in self._partials(joint, text, names):
+                    for name, partial in self._partials(joint, text):
                         with out.inside("equation", type=kind, target=self._joint_path(name)):
                             out.append(partial)
 
-    def _partials(self, joint: Joint, text: str, names: Mapping[str, str]) -> Iterator[tuple[str, XmlText]]:
+    def _partials(self, joint: Joint, text: str) -> Iterator[tuple[str, XmlText]]:
         """Yield the variable and the equation of each partial derivative that can be written."""
-        known = set(names.values())
+        names, known = self._variables, set(self._variables.values())
         try:
             for name, equation in partials(text).items():
                 variable = substitute(name, names)
@@ -95,7 +102,7 @@ class BodyWriter:
     def _joint_path(self, variable: str) -> str:
         """Return the path of a joint by the name of its variable."""
         index = int(variable.removeprefix("joint"))
-        return next(f"{tree.model}/joint{index}" for tree in self._trees if index in tree.joints)
+        return f"{self._model_of_joint[index]}/joint{index}"
 
     def _write_joint(self, index: int, joint: Joint) -> None:
         """Write the kind of a joint and its axes in its own frame, which has the axes of its parent link."""
@@ -122,8 +129,8 @@ class BodyWriter:
             raise OutputError(f"COLLADA readers take no body with more than {DEEPEST} links in a row")
         body, links, nodes = self._body, self._sections.kinematics_models, self._sections.nodes
         link = body.links[index]
-        anchor, T_frame_link = (ZERO, Pose()) if joint is None else self._joint_frames(body.all_joints[joint])
-        parent = None if joint is None else body.all_joints[joint].parent
+        anchor, T_frame_link = (ZERO, Pose()) if joint is None else self._joint_frames(joint)
+        parent = None if joint is None else self._joints[joint].parent
         T_root_parent = Pose() if parent is None else self._T_root_links[parent]
         self._T_root_links[index] = T_root_parent @ Pose(anchor) @ T_frame_link
         node = f"node{self._number}.{index}"
@@ -134,9 +141,9 @@ class BodyWriter:
             if joint is not None:
                 write_pose(links, T_frame_link)
                 nodes.element("translate", anchor)
-                for place, direction in enumerate(self._directions(body.all_joints[joint])):
+                for place, direction in enumerate(self._directions(self._joints[joint])):
                     sid = f"joint{self._number}.{joint}_axis{place}"
-                    if body.all_joints[joint].slides(place):
+                    if self._joints[joint].slides(place):
                         nodes.element("translate", ZERO, sid=sid)
                     else:
                         nodes.element("rotate", (*direction, 0.0), sid=sid)
@@ -145,24 +152,22 @@ class BodyWriter:
                 self._sections.geometry.write(geometry, f"geometry{self._number}.{index}.{place}", nodes)
             for placing in tree.placing.get(index, ()):
                 with links.inside("attachment_full", joint=f"{tree.model}/joint{placing}"):
-                    links.element("translate", self._joint_frames(body.all_joints[placing])[0])
-                    self._write_link(tree, body.all_joints[placing].child, placing, depth + 1)
+                    links.element("translate", self._joint_frames(placing)[0])
+                    self._write_link(tree, self._joints[placing].child, placing, depth + 1)
             self._write_loops(index)
 
     def _write_loops(self, link: int) -> None:
         """Write the two ends of joints that close loops."""
         out = self._sections.kinematics_models
-        for tree in self._trees:
-            for index, joint in ((index, self._body.all_joints[index]) for index in tree.joints):
-                if joint.places_child:
-                    continue
-                anchor, T_frame_child = self._joint_frames(joint)
-                if joint.parent == link:
-                    with out.inside("attachment_start", joint=f"{tree.model}/joint{index}"):
-                        self._write_loop_end(Pose(anchor))
-                if joint.child == link:
-                    with out.inside("attachment_end", joint=f"{tree.model}/joint{index}"):
-                        self._write_loop_end(settled.pose(T_frame_child.inverse()))
+        for index in self._loops.get(link, ()):
+            joint, path = self._joints[index], self._joint_path(f"joint{index}")
+            anchor, T_frame_child = self._joint_frames(index)
+            if joint.parent == link:
+                with out.inside("attachment_start", joint=path):
+                    self._write_loop_end(Pose(anchor))
+            if joint.child == link:
+                with out.inside("attachment_end", joint=path):
+                    self._write_loop_end(settled.pose(T_frame_child.inverse()))
 
     def _write_loop_end(self, T_link_frame: Pose) -> None:
         out = self._sections.kinematics_models
@@ -170,19 +175,20 @@ class BodyWriter:
         with out.inside("extra", type=PROFILE):
             out.element("technique", profile=PROFILE)
 
-    def _joint_frames(self, joint: Joint) -> tuple[Vec3, Pose]:
+    def _joint_frames(self, index: int) -> tuple[Vec3, Pose]:
         """Return a joint's frame: its origin in the parent link, and the pose of the child in it at the value 0."""
-        T_parent_child = self._rest_pose(joint)
-        anchor = settled.position(joint.anchor if rests(self._body, joint) else reported_anchor(joint))
+        joint, T_parent_child = self._joints[index], self._rest_pose(index)
+        anchor = settled.position(joint.anchor if rests(self._body, index) else reported_anchor(joint))
         T_frame_child = Pose(add(T_parent_child.position, scale(anchor, -1.0)), T_parent_child.wxyz)
         return anchor, settled.pose(T_frame_child)
 
-    def _rest_pose(self, joint: Joint) -> Pose:
+    def _rest_pose(self, index: int) -> Pose:
         """Return the pose of a joint's child in its parent where the file has the joint at 0."""
+        joint = self._joints[index]
         if not self._body.joints:  # joints place nothing
             parent, child = (self._body.links[index].T_world_link for index in (joint.parent, joint.child))
             return parent.inverse() @ child
-        if rests(self._body, joint):
+        if rests(self._body, index):
             return relative_pose(joint, settled.values(joint))
         return relative_pose(joint, [0.0] * len(joint.axes))
 

@@ -1,9 +1,11 @@
 """``<formula>``: how joints of a model follow others; MathML becomes the text of mimic equations."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 
 from ravemj.formats.collada.library import Library
+from ravemj.formats.limits import MOST_ELEMENTS
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
 from ravemj.model.builder import BodyBuilder, JointBuilder
 from ravemj.model.expressions.functions import NAMED
@@ -52,6 +54,7 @@ class _FormulaReader:
     model: Element
     indices: Mapping[Element, int]
     joints: list[JointBuilder]
+    steps: Iterator[int] = field(default_factory=itertools.count)
 
     def read(self, formula: Element) -> None:
         """Read a formula; a joint whose formula says nothing that can be computed stays where it is."""
@@ -115,6 +118,8 @@ class _FormulaReader:
     def _text(self, element: Element, name_of: _NameOf, depth: int) -> str:
         if depth > _MAX_DEPTH:
             raise _FormulaError("it is nested too deep")
+        if next(self.steps) > MOST_ELEMENTS:  # functions that call others twice, which call others twice
+            raise _FormulaError("it calls functions too often")
         kind = local_name(element)
         if kind == "cn":
             return _number(element)

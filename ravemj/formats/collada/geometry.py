@@ -18,7 +18,7 @@ from ravemj.formats.meshes.collada.document import (
     numbers,
     words,
 )
-from ravemj.formats.meshes.collada.materials import bindings, read_material
+from ravemj.formats.meshes.collada.materials import ColladaMaterial, bindings, read_material
 from ravemj.formats.meshes.collada.triangles import triangle_meshes, unread_primitives
 from ravemj.formats.meshes.parts import BLACK, WHITE, check_finite, check_size
 from ravemj.model.scene import SHAPE_TYPES, CrossSection, Geometry, Mesh, Rgb, Shape, Surface, TriMesh
@@ -36,6 +36,8 @@ class GeometryReader:
     def __init__(self, library: Library) -> None:
         self._library = library
         self._meshes: dict[Element, list[tuple[str, Mesh]]] = {}
+        self._bound: dict[Element, dict[str, str]] = {}
+        self._materials: dict[Element, ColladaMaterial | None] = {}
         self._triangles = 0
 
     def read(self, node: Node, T_link_node: Callable[[Node], Floats], others: Container[Node] = ()) -> list[Geometry]:
@@ -134,11 +136,15 @@ class GeometryReader:
 
     def _colours(self, instance: Element, symbol: str) -> tuple[Rgb, Rgb, float]:
         """Return the diffuse and the ambient colour and the transparency of a group."""
-        bound = bindings(instance)
+        if instance not in self._bound:
+            self._bound = {instance: bindings(instance)}  # for all of its groups, which come one after the other
+        bound = self._bound[instance]
         url = bound.get(symbol, next(iter(bound.values())) if bound and not symbol else "")
         document = self._library.document_of(instance)
         element = document.find("material", url)
-        material = None if element is None else read_material(document, element)
+        if element is not None and element not in self._materials:
+            self._materials[element] = read_material(document, element)
+        material = None if element is None else self._materials[element]
         if material is None:
             if url:
                 self._library.warn("broken-reference", f"there is no material '{url}' with an effect", instance)

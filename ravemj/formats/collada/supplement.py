@@ -146,6 +146,7 @@ def _order_links(body: BodyBuilder, order: Sequence[int], names: Sequence[str]) 
         one._replace(sensor=replace(one.sensor, link=None if one.sensor.link is None else place_of[one.sensor.link]))
         for one in body.sensors
     ]
+    body.forget_names()
     body.links = [body.links[index] for index in order]
     for link, name in zip(body.links, names, strict=True):
         link.name = name

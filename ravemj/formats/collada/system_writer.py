@@ -1,5 +1,6 @@
 """The writer of articulated systems: what the axes are like, how they follow each other, and OpenRAVE's extras."""
 
+import itertools
 from collections.abc import Callable, Iterator
 
 from ravemj.errors import Diagnostics
@@ -30,6 +31,8 @@ class SystemWriter:
         self._number = number
         self._trees = trees
         self._name = f"body{number}"
+        self._joints = body.all_joints
+        self._first_dofs = list(itertools.accumulate((len(joint.axes) for joint in body.joints), initial=0))
         self._model_of_link = {link: tree.model for tree in trees for link in tree.links}
         self._model_of_joint = {joint: tree.model for tree in trees for joint in tree.joints}
 
@@ -64,7 +67,7 @@ class SystemWriter:
         """Write what a model and its axes are called in a scope; there, they may have names in an inner scope."""
         named = {f"{tree.model}_inst": f"{tree.model}_inst"}
         for index in tree.joints:
-            for place in range(len(self._body.all_joints[index].axes)):
+            for place in range(len(self._joints[index].axes)):
                 named[f"joint{index}_axis{place}"] = f"{tree.model}_inst/joint{index}/axis{place}"
         for name, path in named.items():
             named_here = f"{inner}/{inner}_{name}" if inner else f"{scope}/{path}"
@@ -72,7 +75,7 @@ class SystemWriter:
 
     def _write_kinematics(self, index: int, place: int, axis: Axis) -> None:
         """Write DOF, limits, weight and resolution of an axis."""
-        out, joint = self._sections.systems, self._body.all_joints[index]
+        out, joint = self._sections.systems, self._joints[index]
         sid = f"{self._name}_axis{index}_{place}"
         with out.inside("axis_info", sid=sid, axis=f"{self._joint_path(index)}/axis{place}"):
             circular = axis.circular and not joint.slides(place)
@@ -85,8 +88,7 @@ class SystemWriter:
             out.element_inside("active", "bool", index < len(self._body.joints))
             out.element_inside("locked", "bool", False)
             if index < len(self._body.joints):
-                first = sum(len(other.axes) for other in self._body.joints[:index])
-                out.element_inside("index", "int", first + place, semantic="OpenRAVE")
+                out.element_inside("index", "int", self._first_dofs[index] + place, semantic="OpenRAVE")
             if not circular:
                 with out.inside("limits"):
                     out.element_inside("min", "float", _in_file(joint, place, axis.lower))
@@ -94,7 +96,7 @@ class SystemWriter:
 
     def _write_motion(self, index: int, place: int, axis: Axis) -> None:
         """Write the largest velocity and acceleration of an axis."""
-        out, joint = self._sections.systems, self._body.all_joints[index]
+        out, joint = self._sections.systems, self._joints[index]
         with out.inside("axis_info", axis=f"{self._name}_kinematics/{self._name}_axis{index}_{place}"):
             out.element_inside("speed", "float", _in_file(joint, place, axis.max_velocity))
             out.element_inside("acceleration", "float", _in_file(joint, place, axis.max_acceleration))
@@ -116,7 +118,7 @@ class SystemWriter:
 
     def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
         """Bind the axes of a joint to what they move and, if they are DOFs, to their values."""
-        joint = self._body.all_joints[index]
+        joint = self._joints[index]
         for place, axis in enumerate(joint.axes):
             name = f"joint{self._number}.{index}_axis{place}"
             target = f"visual{tree.number}/{name}" if joint.places_child else f"node{self._number}.{joint.child}"
@@ -201,7 +203,7 @@ class SystemWriter:
             ignored = True if link.self_collision_ignored else None
             out.element("link", link.name, path=self._link_path(index), self_collision_ignored=ignored)
         for index, joint in enumerate(body.all_joints):
-            is_kept = rests(body, joint) and joint.kind != "spherical"  # a ball counts from where it is
+            is_kept = rests(body, index) and joint.kind != "spherical"  # a ball counts from where it is
             values = settled.values(joint) if is_kept else []
             torques = [axis.max_torque for axis in joint.axes]
             attributes = {

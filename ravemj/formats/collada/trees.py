@@ -32,8 +32,10 @@ def trees_of(body: KinBody, first: int) -> list[Tree]:
     """Return the trees of a body, numbered from a number on; an empty one for a body without links."""
     joints = body.all_joints
     placing: dict[int, list[int]] = {}
+    on_link: dict[int, list[int]] = {}
     placed: set[int] = set()
     for index, joint in enumerate(joints):
+        on_link.setdefault(joint.parent, []).append(index)
         if joint.places_child:
             placing.setdefault(joint.parent, []).append(index)
             placed.add(joint.child)
@@ -42,6 +44,6 @@ def trees_of(body: KinBody, first: int) -> list[Tree]:
         links = [root]
         for link in links:  # grows meanwhile
             links += [joints[index].child for index in placing.get(link, ())]
-        own = [index for index, joint in enumerate(joints) if joint.parent in links]
+        own = sorted(index for link in links for index in on_link.get(link, ()))
         trees.append(Tree(first + len(trees), root, tuple(links), tuple(own), placing))
     return trees or [Tree(first, 0, (), (), {})]

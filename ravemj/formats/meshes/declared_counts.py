@@ -73,21 +73,21 @@ class _Gltf:
         check_json(content, source)
         self._header: Entry = json.loads(content.decode("utf-8-sig"))
         self._source = source
-        self._views = self._list("bufferViews")
-        self._accessors = self._list("accessors")
+        self._views = self._entries("bufferViews")
+        self._accessors = self._entries("accessors")
         self._held = size + sum(int(view.get("byteLength", 0)) for view in self._views)
 
     def check(self) -> None:
         """Check all counts and instances."""
         check_bytes(self._held, "the buffers have", self._source)
         check_bytes(sum(map(self._size, self._accessors)), "the accessors have", self._source)
-        triangles = [self._triangles(mesh) for mesh in self._list("meshes")]
+        triangles = [self._triangles(mesh) for mesh in self._entries("meshes")]
         check_count(sum(triangles), MOST_TRIANGLES, "triangles in the meshes", self._source)
-        meshes = (node.get("mesh") for node in self._shown())
+        meshes: list[int | None] = [node.get("mesh") for node in self._shown()]
         total = sum(triangles[mesh] for mesh in meshes if mesh is not None)
         check_count(total, MOST_TRIANGLES, "triangles in the mesh", self._source)
 
-    def _list(self, name: str) -> list[Entry]:
+    def _entries(self, name: str) -> list[Entry]:
         return cast("list[Entry]", self._header.get(name, []))
 
     def _size(self, accessor: Entry) -> int:
@@ -100,9 +100,10 @@ class _Gltf:
         if "bufferView" not in accessor:  # they are zeros
             _check_held(count, self._held // item, what, self._source)
             return count * item
-        view = self._views[accessor["bufferView"]]
-        length = view["byteLength"] - accessor.get("byteOffset", 0)
-        stride = view.get("byteStride", item)
+        number: int = accessor["bufferView"]
+        view = self._views[number]
+        length: int = view["byteLength"] - accessor.get("byteOffset", 0)
+        stride: int = view.get("byteStride", item)
         _check_held(count, max((length - item) // max(stride, 1) + 1, 0), what, self._source)
         return count * item
 
@@ -110,16 +111,16 @@ class _Gltf:
         """Return a bound of the number of triangles in a mesh, and of a third of its vertices."""
         total = 0
         for primitive in cast("list[Entry]", mesh["primitives"]):
-            used = [primitive["attributes"].get("POSITION"), primitive.get("indices")]
-            counts = [self._accessors[index]["count"] for index in used if index is not None]
+            used: list[int | None] = [primitive["attributes"].get("POSITION"), primitive.get("indices")]
+            counts: list[int] = [self._accessors[index]["count"] for index in used if index is not None]
             total += max(counts, default=0) if primitive.get("mode") == 5 else max(counts, default=0) // 3
         return total
 
     def _shown(self) -> list[Entry]:
         """Return the nodes of the scene; check that they form trees, and how deep these are."""
-        nodes = self._list("nodes")
-        scenes = self._list("scenes")
-        level: list[int] = scenes[self._header.get("scene", 0)].get("nodes", []) if scenes else []
+        nodes = self._entries("nodes")
+        scenes, number = self._entries("scenes"), cast("int", self._header.get("scene", 0))
+        level: list[int] = scenes[number].get("nodes", []) if scenes else []
         met: list[int] = []
         depth = 0
         while level:

@@ -26,6 +26,7 @@ from ravemj.model.scene import AXES, NO_PARAMETERS, UNLIMITED, Axis, JointKind, 
 
 _KINDS: dict[str, JointKind] = {"hinge": "hinge", "slider": "slider", "hinge2": "hinge2", "spherical": "spherical"}
 _DEFAULT_LIMIT: dict[JointKind, float] = {"hinge": math.pi, "slider": 10.0, "hinge2": math.pi, "spherical": 100.0}
+_NAMED = 20  # links that an error lists
 _PLAIN_AXIS = Axis(ZERO)
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -54,7 +55,8 @@ class _JointReader:
         name = word(element, self.context.diagnostics)
         link = self.body.find_link_any_case(name)
         if link is None:
-            known = ", ".join(link.name for link in self.body.links) or "none"
+            more = ["…"] if len(self.body.links) > _NAMED else []
+            known = ", ".join([link.name for link in self.body.links[:_NAMED]] + more) or "none"
             raise SourceError(f"there is no Body '{name}' before this joint", element.source, f"there are: {known}")
         if len(self.links) > 1:
             message = f"the joint names a third Body, '{name}', which OpenRAVE takes for the second"

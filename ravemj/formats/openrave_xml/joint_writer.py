@@ -38,7 +38,7 @@ def needs_values(body: KinBody) -> bool:
 
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
     """Return the value at the listed poses; a joint that neither has DOFs nor follows others stays where it is."""
-    return axis.value if rests(body, body.all_joints[index]) else axis.reference
+    return axis.value if rests(body, index) else axis.reference
 
 
 def writable(body: KinBody, diagnostics: Diagnostics) -> KinBody:
@@ -63,12 +63,15 @@ class JointWriter:
         self._names = names
         self._poses = poses
 
-    def write(self, body: KinBody, index: int) -> None:
-        """Write a joint, given by its index among the active joints and then the passive ones."""
-        joint = body.all_joints[index]
-        rest = body.all_joints[index:]
+    def write_all(self, body: KinBody) -> None:
+        """Write the active joints and then the passive ones."""
+        joints = body.all_joints
         # Followers come behind the disabled joints, unless they are disabled themselves.
-        disabled = index >= len(body.joints) and any(other.mimic is None for other in rest)
+        last = max((index for index, joint in enumerate(joints) if joint.mimic is None), default=-1)
+        for index, joint in enumerate(joints):
+            self._write(body, index, joint, disabled=len(body.joints) <= index <= last)
+
+    def _write(self, body: KinBody, index: int, joint: Joint, *, disabled: bool) -> None:
         attributes = {
             "name": self._names.joints[index],
             "type": joint.kind,

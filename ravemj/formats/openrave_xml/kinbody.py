@@ -262,6 +262,7 @@ def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
     if "file" in element.attributes:  # errors-49
         message = "OpenRAVE throws away what it read from the file of an element that also has a type"
         context.diagnostics.warn("openrave-bug", message, element.source, "leave out the type")
+        body.forget_names()
         body.links.clear()
         body.joints.clear()
         body.manipulators.clear()

@@ -43,7 +43,12 @@ class _LinkScope(Placed):
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
         self.link.enabled = not is_false(element.attributes.get("enable", "true"))
         self.link.self_collision_ignored = is_false(element.attributes.get("selfcollision", "true"))
-        self.link.name = element.attributes.get("name", self.link.name)  # a Body in a Body renames the link (gap-20)
+        name = element.attributes.get("name", self.link.name)
+        if name != self.link.name:  # a Body in a Body renames the link (gap-20)
+            index = self.body.find_link(self.link.name)
+            if index is not None:
+                self.body.forget_names(index)
+            self.link.name = name
         if "file" in element.attributes:
             self._include(element)
         self.context.walk(element, LINK_TAGS, {}, self)
@@ -71,10 +76,11 @@ class _LinkScope(Placed):
             self.body, self.link, UNMOVED, None, self.context, geometry_scope, skip_geometry=self.skip_geometry
         )
         inner.read(element)
-        self.link.geometries = [
-            replace(geometry, T_link_geometry=inner.pose @ geometry.T_link_geometry)
-            for geometry in self.link.geometries
-        ]
+        if inner.pose != UNMOVED:
+            self.link.geometries = [
+                replace(geometry, T_link_geometry=inner.pose @ geometry.T_link_geometry)
+                for geometry in self.link.geometries
+            ]
         if older and inner.pose != UNMOVED:
             message = "the transform of a Body in a Body moves the shapes before it too"
             self.context.diagnostics.warn("openrave-bug", message, element.source, "put the inner Body first")

@@ -20,26 +20,32 @@ class PartNames:
         referenced = body.referenced_links
         self.links: list[str] = []
         known = {link.name.lower() for link in body.links}
+        taken, taken_any_case = set[str](), set[str]()
         for index, link in enumerate(body.links):
             name = link.name
-            in_any_case = any(name.lower() == other.lower() for other in self.links)
+            in_any_case = name.lower() in taken_any_case
             is_word = words(name) == [name] or not name
-            is_taken = (name and name in self.links) or (index in referenced and (in_any_case or not is_word))
+            is_taken = (name and name in taken) or (index in referenced and (in_any_case or not is_word))
             self.links.append(_renamed("link", link, body, known, diagnostics) if is_taken else name)
+            taken.add(self.links[-1])
+            taken_any_case.add(self.links[-1].lower())
         joints = [joint.name for joint in body.all_joints]
         active = set(joints[: len(body.joints)])
         listed = {joint for one in body.manipulators for joint in one.gripper_joints}  # in a list of words
         self.joints: list[str] = []
         known = {name.lower() for name in joints}
+        taken = set[str]()
         for index, joint in enumerate(body.all_joints):
             name = joint.name
-            is_taken = (name in active and name in self.joints) or (index in listed and words(name) != [name])
+            is_taken = (name in active and name in taken) or (index in listed and words(name) != [name])
             self.joints.append(_renamed("joint", joint, body, known, diagnostics) if is_taken else name)
+            taken.add(self.joints[-1])
         self._in_file = dict(zip(reversed(joints), reversed(self.joints), strict=True))  # of one name, the first counts
+        self._is_renamed = any(name != given for name, given in self._in_file.items())
 
     def equation(self, text: str) -> str:
         """Return an equation with the names that joints have in the file."""
-        if all(name == given for name, given in self._in_file.items()):
+        if not self._is_renamed:
             return text
         from ravemj.model.expressions import substitute  # noqa: PLC0415 - rarely wanted
 

@@ -37,6 +37,7 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
     """
     joints = body.joints[marks.joints :]
     renamed = {joint.name: prefix + joint.name for joint in joints if joint.name}
+    body.forget_names(marks.links)
     for part in (*body.links[marks.links :], *joints):
         part.name = prefix + part.name
     if not whole:

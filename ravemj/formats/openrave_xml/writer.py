@@ -115,9 +115,7 @@ class _Writer:
         poses = [settled.pose(pose) for pose in listed_poses(body)]
         for link, name, pose in zip(body.links, names.links, poses, strict=True):
             self._write_link(link, name, pose)
-        joints = JointWriter(self.out, self.diagnostics, names, poses)
-        for index in range(len(body.all_joints)):
-            joints.write(body, index)
+        JointWriter(self.out, self.diagnostics, names, poses).write_all(body)
         for first, second in body.adjacent:
             self.out.element("adjacent", f"{names.links[first]} {names.links[second]}")
 

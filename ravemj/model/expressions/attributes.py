@@ -1,15 +1,36 @@
 """How OpenRAVE's XML writes mimic equations: joint names in the text, and partial derivatives in one attribute."""
 
 import math
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from ravemj.model.expressions.errors import ExpressionError
 
 
-def joint_variables(names: Sequence[str]) -> dict[str, str]:
+class Replacements(dict[str, str]):
+    """What is put in the place of each name.
+
+    Attributes:
+        lengths: The lengths of the names, the largest first.
+    """
+
+    def __init__(self, names: Mapping[str, str]) -> None:
+        super().__init__(names)
+        self.lengths = sorted({len(name) for name in names if name}, reverse=True)
+
+    def found_in(self, text: str) -> Iterator[tuple[int, str]]:
+        """Yield the names in a text with their places, the longest of several that begin at one place."""
+        at = 0
+        while at < len(text):
+            parts = (text[at : at + length] for length in self.lengths)
+            name = next((part for part in parts if part in self), None)
+            if name is not None:
+                yield at, name
+            at += len(name or " ")
+
+
+def joint_variables(names: Sequence[str]) -> Replacements:
     """Return the variable that stands for each joint: ``joint0``, ``joint1``, ...; passive joints come last."""
-    return {name: f"joint{index}" for index, name in reversed(list(enumerate(names)))}
+    return Replacements({name: f"joint{index}" for index, name in reversed(list(enumerate(names)))})
 
 
 def substitute(text: str, names: Mapping[str, str]) -> str:
@@ -20,28 +41,28 @@ def substitute(text: str, names: Mapping[str, str]) -> str:
     ``joint0in(x)``, and the equation is lost. Names may have any characters (``/arm/j01``). What is no name stays,
     so equations may also say ``joint0``, and the second axis of joint ``u`` is ``u_1``.
     """
-    return _of_names(names).sub(lambda match: names[match[0]], text)
+    names = names if isinstance(names, Replacements) else Replacements(names)
+    parts: list[str] = []
+    behind = 0
+    for at, name in names.found_in(text):
+        parts += [text[behind:at], names[name]]
+        behind = at + len(name)
+    return "".join([*parts, text[behind:]])
 
 
-def before_substitution(error: ExpressionError, text: str, names: Mapping[str, str]) -> ExpressionError:
+def before_substitution(error: ExpressionError, text: str, names: Replacements) -> ExpressionError:
     """Return a mistake in a substituted equation as one in the text that ``substitute`` was given."""
     problem, grown = error.problem, 0
     position = error.position
-    for match in _of_names(names).finditer(text):
-        variable, start = names[match[0]], match.start() + grown
-        problem = problem.replace(repr(variable), repr(match[0]))
+    for at, name in names.found_in(text):
+        variable, start = names[name], at + grown
+        problem = problem.replace(repr(variable), repr(name))
         if start < error.position:
-            grown += len(variable) - len(match[0])
-            position = max(match.start(), error.position - grown)
+            grown += len(variable) - len(name)
+            position = max(at, error.position - grown)
     if "'joint" in problem and problem.split("'")[1] not in text:
         problem += " (names of joints count inside of words, too)"
     return ExpressionError(problem, text, position, error.expected)
-
-
-def _of_names(names: Mapping[str, str]) -> re.Pattern[str]:
-    """Return a pattern that finds the longest of the names first, and nothing where there is none."""
-    longest_first = sorted(filter(None, names), key=len, reverse=True)
-    return re.compile("|".join(map(re.escape, longest_first)) or r"(?!)")
 
 
 def partials(text: str) -> dict[str, str]:
