@@ -8,11 +8,13 @@ folder removes its temporary files.
 import os
 import platform
 import shutil
+import tempfile
 from collections.abc import Collection, Generator, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
+from ravemj.core.forks import in_this_process
 from ravemj.core.signals import on_signal, signals_delayed
 from ravemj.errors import OutputError
 
@@ -174,11 +176,24 @@ def _temporary(path: AnyPath) -> Generator[Path]:
     """Yield a name beside a target; what has it at the end of the block is removed."""
     temporary = _real(path).with_name(f".ravemj-{_realm()}-{os.getpid()}-{os.urandom(4).hex()}.tmp")
     _remove_left_over(temporary.parent)
-    with on_signal(lambda: _remove(temporary)):
+    remove = in_this_process(lambda: _remove(temporary))
+    with on_signal(remove):
         try:
             yield temporary
         finally:
-            _remove(temporary)
+            remove()
+
+
+@contextmanager
+def temporary_folder() -> Generator[str]:
+    """Yield a folder that is removed at the end of the block, by this process alone."""
+    folder = tempfile.mkdtemp(prefix="ravemj-")
+    remove = in_this_process(lambda: shutil.rmtree(folder, ignore_errors=True))
+    with on_signal(remove):
+        try:
+            yield folder
+        finally:
+            remove()
 
 
 @cache

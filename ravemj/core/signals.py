@@ -53,7 +53,8 @@ def on_signal(function: Callable[[], object]) -> Generator[None]:
     try:
         yield
     finally:
-        _functions.remove(function)
+        if function in _functions:  # not in a fork, which leaves the files of its parent alone
+            _functions.remove(function)
 
 
 @contextmanager
@@ -64,7 +65,8 @@ def signals_delayed() -> Generator[None]:
     try:
         yield
     finally:
-        _delays.remove(block)
+        if block in _delays:
+            _delays.remove(block)
         if _delayed and not _delays:
             signal.raise_signal(_delayed.pop())
 
@@ -122,5 +124,14 @@ def _end(number: int, frame: object) -> None:
     finally:
         os._exit(128 + number)
 
+
+def _forget() -> None:
+    """Forget in a fork what the parent does: its temporary files, and blocks of its other threads."""
+    _functions.clear()
+    _delays.clear()
+
+
+if hasattr(os, "register_at_fork"):  # not on Windows
+    os.register_at_fork(after_in_child=_forget)
 
 heed_signals()

@@ -11,6 +11,7 @@ from threading import Lock, Thread
 from weakref import WeakKeyDictionary
 
 from ravemj.core.flags import Flag
+from ravemj.core.forks import in_child
 from ravemj.core.locks import StateLock, before_end
 
 _LOG = logging.getLogger("ravemj")
@@ -120,6 +121,11 @@ class Clock:
 
 
 _threads: WeakKeyDictionary[Thread, Flag] = WeakKeyDictionary()
+
+
+@in_child
+def _forget_threads() -> None:
+    _threads.clear()
 
 
 @before_end

@@ -3,12 +3,12 @@
 import re
 import warnings
 from collections.abc import Callable
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
+from ravemj.core.caching import cached_property
 from ravemj.errors import CompileError, Diagnostics, Source
 from ravemj.model.inertia import principal_frame, principal_moments
 from ravemj.model.scene import Inertial, KinBody, Scene

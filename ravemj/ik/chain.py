@@ -7,11 +7,11 @@ A chain knows no links and no file format.
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.caching import cached_property
 from ravemj.ik.vectors import Bools, Floats, skew
 
 Turns = Sequence[Floats] | Floats

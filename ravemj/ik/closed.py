@@ -1,12 +1,12 @@
 """Closed-form solvers: a family's answers, checked by forward kinematics of the true arm, and refined."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import chain
 from string import ascii_lowercase
 
 import numpy as np
 
+from ravemj.core.caching import cached_property
 from ravemj.ik.chain import Chain, Turns
 from ravemj.ik.families.loops import Family
 from ravemj.ik.families.one_pose import OnePose

@@ -6,11 +6,12 @@ solves for angles needs no trigonometric function before the end.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ravemj.core.caching import cached_property
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]

@@ -2,12 +2,12 @@
 
 from collections.abc import Generator, Iterable, Iterator
 from enum import Enum
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ravemj.core.blocks import block, restoring
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision import arms
 from ravemj.engine.collision.findings import Checker, Findings

@@ -4,8 +4,8 @@ Joints are counted as in a body's list: active ones, then passive ones.
 """
 
 import itertools
-from functools import cached_property
 
+from ravemj.core.caching import cached_property
 from ravemj.core.graphs import Pair, ShortestPaths, connected_components, ordered_pair
 from ravemj.model.scene import KinBody, Manipulator
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from ravemj.core.arguments import also_named
 from ravemj.core.blocks import exit_in_c
+from ravemj.core.forks import disown, in_child
 from ravemj.engine.simulation import Simulation, both_locks
 from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.enums import CloningOptions
@@ -27,6 +28,13 @@ if TYPE_CHECKING:
 
 _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
+
+
+@in_child
+def _disown_all() -> None:
+    for env in RaveGetEnvironments():
+        disown(env, but=("Destroy", "close"))
+    _environments.clear()
 
 
 class Environment(Loading, Saving, Collision, Drawing, Viewing):

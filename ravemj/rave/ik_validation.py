@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ravemj.core.blocks import block
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.findings import Findings
 from ravemj.errors import ErrorCode, RavemjError

@@ -5,11 +5,11 @@ for hundreds of them. Work goes in chunks that fit the processor's cache, and me
 """
 
 from collections.abc import Iterator
-from functools import cached_property
 
 import mujoco
 import numpy as np
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats
 from ravemj.engine.batch.chain import Chain
 from ravemj.engine.batch.kinematic_state import KinematicState, cross

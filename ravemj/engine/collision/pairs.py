@@ -1,11 +1,10 @@
 """Pairs of geoms, and which of them are near each other."""
 
-from functools import cached_property
-
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
 from ravemj.engine.simulation.world_model import WorldModel

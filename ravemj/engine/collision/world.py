@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import mujoco
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.blocks import block, restoring
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Detection, Pairs
 from ravemj.engine.collision.rays import RayCaster

@@ -6,11 +6,11 @@ spherical joints. By virtual work the generalised forces of the DOFs are ``P^T``
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints, rows_from_wxyz
 from ravemj.engine.dynamics.tree import Tree
 from ravemj.engine.kinematics import NO_QPOS, BodyKinematics, SphericalJoint

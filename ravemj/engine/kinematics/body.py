@@ -1,13 +1,13 @@
 """Joint values and link poses of one body, in a MuJoCo model of this body alone."""
 
 import itertools
-from functools import cached_property
 from types import EllipsisType
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, wxyz_from_rows
 from ravemj.engine.compiled import Compiled, write_inertial
 from ravemj.engine.kinematics.displacement import fix_to_parents

@@ -3,8 +3,10 @@
 import heapq
 from collections.abc import Generator, Mapping
 from typing import TYPE_CHECKING
+from weakref import WeakSet
 
 from ravemj.core.blocks import block
+from ravemj.core.forks import disown, in_child
 from ravemj.core.locks import StateLock
 from ravemj.core.transforms import Vec3
 from ravemj.engine.simulation.body import BodyState
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
     from ravemj.engine.physics import Physics
     from ravemj.engine.simulation.world_model import WorldModel
 
+_simulations: "WeakSet[Simulation]" = WeakSet()
+
 DEFAULT_GRAVITY: Vec3 = (0.0, 0.0, -9.797930195020351)
 """OpenRAVE's, where a file has no physics engine."""
 
@@ -31,6 +35,7 @@ class Simulation:
     """
 
     def __init__(self) -> None:
+        _simulations.add(self)
         self.lock = StateLock()  # held by every reader and writer of the model's state, such as the threads of viewers
         self.drawings = Drawings()  # what scripts draw beside the bodies; needs no lock
         self.published = Published()  # what viewers show while the lock is held; needs none
@@ -282,3 +287,12 @@ def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
     first, second = sorted((one, other), key=id)
     with first.lock, second.lock:
         yield
+
+
+@in_child
+def _disown_all() -> None:
+    for simulation in [*_simulations]:
+        for body in simulation.bodies:
+            disown(body)
+        disown(simulation)
+    _simulations.clear()

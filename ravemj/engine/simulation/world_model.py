@@ -1,10 +1,10 @@
 """The MuJoCo model of all bodies of an environment."""
 
 from collections.abc import Iterable
-from functools import cached_property
 
 import mujoco
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Ints
 from ravemj.engine.compiled import Compiled, write_inertial
 from ravemj.engine.kinematics import NO_QPOS

@@ -1,6 +1,5 @@
 """The reader of PLY, OFF, GLB and glTF, formats that are rare with OpenRAVE: it uses trimesh."""
 
-import functools
 import importlib
 import io
 import json
@@ -9,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
 from ravemj.formats.meshes.declared_counts import check_counts
@@ -56,7 +56,7 @@ class _References(Mapping[str, bytes]):
             raise KeyError(name)
         return found.data
 
-    @functools.cached_property
+    @cached_property
     def _buffers(self) -> set[str]:
         data = self._file.data
         text = data[20 : 20 + int.from_bytes(data[12:16], "little")] if data.startswith(b"glTF") else data

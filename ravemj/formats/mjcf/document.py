@@ -1,9 +1,9 @@
 """The whole MJCF document."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Literal, NamedTuple
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import ZERO, conjugate, rotate
 from ravemj.errors import Diagnostics, Source
 from ravemj.formats.mjcf.equality import EqualityWriter

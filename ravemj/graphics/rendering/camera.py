@@ -8,13 +8,13 @@ renderers convert, nobody else needs to.
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints, normalize, rows_from_wxyz
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.style import drawn_geoms

@@ -21,6 +21,8 @@ import weakref
 from collections.abc import Callable, Generator
 from typing import Protocol, TypeVar
 
+from ravemj.core.forks import NEW_PROCESS, in_child
+from ravemj.core.locks import end
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering.egl_check import check_egl, variable_restored
 
@@ -64,6 +66,8 @@ class OffscreenContext:
 
     def __init__(self, backend: str) -> None:
         self.backend = backend
+        if _is_fork:
+            raise RenderingError(f"OpenGL cannot draw in a fork of a process in which it drew: {NEW_PROCESS}")
         if {backend, *_used} > {"osmesa"}:
             raise RenderingError(f"{backend} cannot draw in a process that {' and '.join(_used)} draws in already")
         if backend not in _used:
@@ -183,8 +187,25 @@ def _order() -> tuple[str, ...]:
 
 
 def _close_all() -> None:
+    end()  # before that, no thread may draw
     for resource in list(_open):
         resource.close()
+
+
+@in_child
+def _disown_all() -> None:
+    """Let nothing free the contexts of the parent, not even the end of the child: their threads are not here."""
+    global _is_fork, _lock
+    _is_fork, _lock = _is_fork or bool(_used), threading.RLock()
+    for thing in (*_open, *_not_freed):
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
+    _open.clear()
+    _not_freed.clear()
+    if "mujoco.egl" in sys.modules:
+        atexit.unregister(sys.modules["mujoco.egl"]._terminate_display)
+    libc = ctypes.CDLL(None)
+    if _is_fork and hasattr(libc, "on_exit"):  # OSMesa would wait for its threads
+        libc.on_exit(libc._exit, None)
 
 
 def _check_osmesa() -> None:
@@ -215,6 +236,7 @@ def _make_glfw(context_class: type[_GLContext]) -> _GLContext:
 _CHECKS: dict[str, Callable[[], None]] = {"egl": check_egl, "osmesa": _check_osmesa, "glfw": _check_glfw}
 _open: "weakref.WeakSet[Closeable]" = weakref.WeakSet()
 _used: set[str] = set()
+_is_fork = False  # of a process that has drawn
 _not_freed: set[_GLContext] = set()  # keeps garbage collection from freeing a context before what was made in it
 _remembered: list[str] = []
 _lock = threading.RLock()

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.blocks import block
+from ravemj.core.forks import in_child
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera, bounding_sphere
 from ravemj.graphics.rendering.drawing_geoms import add_drawing_geoms
@@ -50,6 +51,12 @@ _painting = threading.Lock()
 """Held while the texture of a model has a background's colour."""
 
 _LOG = logging.getLogger("ravemj")
+
+
+@in_child
+def _free_painting() -> None:
+    global _painting  # noqa: PLW0603 - of the process
+    _painting = threading.Lock()
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,11 @@ import tempfile
 import threading
 import weakref
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ravemj.core.forks import in_this_process
 from ravemj.gui.interaction import Notices
 
 _LOG = logging.getLogger("ravemj")
@@ -63,7 +65,7 @@ class Upload:
 
     def __init__(self) -> None:
         self._folder = tempfile.mkdtemp(prefix="ravemj-")
-        self._remove = weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
+        self._remove = weakref.finalize(self, in_this_process(partial(shutil.rmtree, self._folder, ignore_errors=True)))
         self._size = 0
         self.paths: list[str] = []
 

@@ -4,9 +4,13 @@ import functools
 import threading
 from typing import Any
 
+from ravemj.core.forks import NEW_PROCESS, in_child
 from ravemj.errors import RenderingError
 from ravemj.gui.interaction import Button, Event, Key, Leave, Move, Press, Release, Type, Wheel
 from ravemj.gui.viewers.x_connection import XConnection
+
+_is_used = False
+_is_fork = False  # of a process that has opened windows
 
 _dispatching = threading.Lock()
 """Held while GLFW hands out events: all windows share one queue, and each has a thread of its own."""
@@ -42,6 +46,8 @@ class GlfwWindow:
         self._rgb: tuple[int, int, int] | None = None
         self._cursor = ""
         self._cursors: dict[str, Any] = {}
+        if _is_fork:
+            raise RenderingError(f"no window can be opened in a fork of a process that opened some: {NEW_PROCESS}")
         self._x = _x_connection(glfw)
         if self.is_broken:
             raise RenderingError("no window can be opened: the connection to the display broke; a new process may do")
@@ -228,12 +234,21 @@ class GlfwWindow:
 
 
 @functools.cache
+@in_child
+def _leave_windows() -> None:
+    """Leave the windows to the parent."""
+    global _is_fork, _dispatching
+    _is_fork, _dispatching = _is_fork or _is_used, threading.Lock()
+
+
 def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has no types
     """Return GLFW's connection to its X server, which all windows share; None on other systems.
 
     Raises:
         RenderingError: there is no display.
     """
+    global _is_used  # noqa: PLW0603 - of the process
+    _is_used = True
     if not glfw.init():
         raise RenderingError("no window can be opened: GLFW finds no display")
     if not hasattr(glfw, "get_platform") or glfw.get_platform() != glfw.PLATFORM_X11:

@@ -1,6 +1,5 @@
 """A viewer with a window, drawn by a thread of its own while the script goes on."""
 
-import atexit
 import logging
 import re
 import threading
@@ -12,6 +11,8 @@ import numpy as np
 
 from ravemj.core.arrays import checked_vector
 from ravemj.core.flags import Flag
+from ravemj.core.forks import in_child
+from ravemj.core.locks import before_end
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, RavemjError, RenderingError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
@@ -252,8 +253,13 @@ def _end(thread: threading.Thread) -> None:
             ended.wait()
 
 
-@atexit.register
+@before_end
 def _end_all() -> None:
     """Wait for windows whose viewers went in their own threads: Python must not end while OpenGL draws."""
     for thread in list(_running):
         _end(thread)
+
+
+@in_child
+def _forget_all() -> None:
+    _running.clear()

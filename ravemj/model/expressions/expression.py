@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
 
 import numpy as np
 
+from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats
 from ravemj.model.expressions.calculus import Algebra, derivative
 from ravemj.model.expressions.functions import FUNCTIONS, nth

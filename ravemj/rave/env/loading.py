@@ -5,7 +5,6 @@
 
 import logging
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ravemj.core.arguments import checked_kind
+from ravemj.core.output import temporary_folder
 from ravemj.engine.compiled import Compiled
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
@@ -354,7 +354,7 @@ class Loading(Description):
             formathint: The suffix of the format, for instance ``stl``.
             atts: As for ``ReadTrimeshURI``.
         """
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             path = os.path.join(folder, f"mesh.{formathint.lstrip('.')}")
             with open(path, "wb") as file:
                 file.write(data if isinstance(data, bytes) else data.encode())

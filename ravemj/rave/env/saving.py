@@ -1,13 +1,13 @@
 """Saves the bodies of an environment to files."""
 
 import os
-import tempfile
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
+from ravemj.core.output import temporary_folder
 from ravemj.core.transforms import ZERO
 from ravemj.engine.simulation.world import DEFAULT_GRAVITY
 from ravemj.engine.snapshot import snapshot
@@ -158,7 +158,7 @@ class Saving(Description):
         if filetype not in _FILE_TYPES:
             known = ", ".join(_FILE_TYPES)
             raise ArgumentError(f"WriteToMemory: filetype is {filetype!r}; there are {known}")
-        with tempfile.TemporaryDirectory() as folder:
+        with temporary_folder() as folder:
             path = Path(folder, f"scene{_FILE_TYPES[filetype]}")
             self.Save(path, options, atts)
             return path.read_bytes()

@@ -1,10 +1,10 @@
 """Serves the page's files and its connections, to those who know the secret in the address."""
 
-import atexit
 import contextlib
 import gzip
 import http
 import logging
+import os
 import re
 import secrets
 import socket
@@ -19,6 +19,8 @@ from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
 from ravemj.core.flags import Flag
+from ravemj.core.forks import in_child
+from ravemj.core.locks import before_end
 from ravemj.errors import ArgumentError, RenderingError
 from ravemj.gui.viewers.web.document import document
 from ravemj.gui.viewers.web.embedding import checked_origins, frame_ancestors, origins_of_environment
@@ -93,6 +95,7 @@ class PageServer:
         self._listening = _listen(host, port)
         self.port = int(self._listening.getsockname()[1])
         self._threads: set[threading.Thread] = set()
+        self._connections: set[socket.socket] = set()
         self._strangers: dict[threading.Thread, socket.socket] = {}  # who has not said the secret yet, the oldest first
         self._pages: set[threading.Thread] = set()
         self._guesses = Guesses()
@@ -141,6 +144,13 @@ class PageServer:
         self._server.serve_forever()  # it ends at once, which ``shutdown`` waits for
         self._server.shutdown()
 
+    def forget(self) -> None:
+        """Close this process's copies of the sockets, whatever other processes do with them."""
+        self.closed.set()
+        for each in (self._listening, *self._connections):
+            with contextlib.suppress(OSError):  # it is closed
+                os.close(each.detach())
+
     def _accept(self) -> None:
         """Start threads for connections; those of ``Server.serve_forever`` would be waited for without end."""
         while not self.closed.is_set():
@@ -171,10 +181,12 @@ class PageServer:
 
     def _serve(self, connection: socket.socket, address: object) -> None:
         thread = threading.current_thread()
+        self._connections.add(connection)
         try:
             if not _is_refused(connection):
                 self._server.handler(connection, address)
         finally:
+            self._connections.discard(connection)
             self._threads.discard(thread)
             self._pages.discard(thread)
             self._strangers.pop(thread, None)
@@ -240,11 +252,19 @@ class PageServer:
         return scheme in schemes and name != "" and name in names
 
 
-@atexit.register
+@before_end
 def _close_all() -> None:
     """Wait for pages whose viewers went in their own threads: Python must not end while OpenGL draws."""
     for server in _servers.copy():
         server.close()
+
+
+@in_child
+def _forget_all() -> None:
+    """Close the copies of the sockets that the child has, so that a port is free when the parent closes it."""
+    for server in _servers.copy():
+        server.forget()
+    _servers.clear()
 
 
 def checked_token(token: str) -> str:

@@ -15,6 +15,7 @@ from websockets.frames import CloseCode
 from websockets.sync.server import ServerConnection
 
 from ravemj.core.flags import Flag
+from ravemj.core.forks import in_this_process
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.rendering.style import AS_IT_IS
@@ -92,7 +93,7 @@ class WebViewer(Viewer):
         )
         self._ended = self.server.closed
         self.url = self.server.url(host)
-        self._end = weakref.finalize(self, self.server.close)
+        self._end = weakref.finalize(self, in_this_process(self.server.close))
 
     def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
         """Set the camera of all pages; see ``Viewer.SetCamera``."""
