@@ -171,7 +171,8 @@ function connectControls(player) {
   element("joints").addEventListener("click", showValues);
   element("joints").hidden = !cells.length;
   element("home").addEventListener("click", () => player.look(player.first));
-  canvas.addEventListener("keydown", (event) => {
+  window.addEventListener("keydown", (event) => {
+    if (![document.body, canvas].includes(event.target)) return;  // keys of buttons and sliders are theirs
     if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
     keys[event.key]();
     event.preventDefault();
