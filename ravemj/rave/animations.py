@@ -39,6 +39,7 @@ def animate(
         raise ArgumentError(f"expected from {_LOWEST_FPS} to {_HIGHEST_FPS} frames a second, found {fps}")
     with env:
         followed = None if motion is None else followed_motion(env, motion, robot)
+        is_fitted = camera is None and env.GetViewer() is None and env.renderer.file_camera() is None
         if camera is not None:
             view = Camera.from_matrix(camera)
         elif followed is None:
@@ -49,10 +50,9 @@ def animate(
         recording = _recorded(env, shown, followed, fps)
         title = ", ".join(body.scene.name for body in shown) or "ravemj"
         colour = env.background if background is None else checked_colour(background)
+        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, colour, title)
         compiled, drawings = env.simulation.compiled(), env.simulation.drawings.primitives()
-        return Animation(
-            animation_page(compiled.model, compiled.data, recording, Appearance(view, colour, title), drawings)
-        )
+        return Animation(animation_page(compiled.model, compiled.data, recording, appearance, drawings))
 
 
 def _recorded(env: "Environment", bodies: Sequence[BodyState], motion: BodyMotion | None, fps: float) -> Recording:

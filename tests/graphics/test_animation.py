@@ -190,10 +190,10 @@ class Player:
         self.page.evaluate("time => { ravemj.isPlaying = false; ravemj.seek(time); }", time)
 
     def camera(self) -> Camera:
-        rotation, position = self.page.evaluate("[ravemj.view.rotation, ravemj.view.position]")
+        rotation, position, fovy = self.page.evaluate("[ravemj.view.rotation, ravemj.view.position, ravemj.view.fovy]")
         T_world_camera = np.eye(4)
         T_world_camera[:3, :3], T_world_camera[:3, 3] = np.reshape(rotation, (3, 3)), position
-        return Camera(T_world_camera)
+        return Camera(T_world_camera, fovy=fovy)
 
     def size(self) -> tuple[int, int]:
         return tuple(self.page.evaluate("[ravemj.canvas.width, ravemj.canvas.height]"))
@@ -210,10 +210,12 @@ class Player:
 def opened(tmp_path_factory, webgl_browser):
     """Open the file of an environment in a browser without a network."""
 
-    def open_page(text: str, before: str = "", **context) -> Player:
+    def open_page(text: str, before: str = "", viewport=(320, 291), **context) -> Player:
         path = tmp_path_factory.mktemp("page") / "a.html"
         path.write_text(text, encoding="utf-8")
-        context = webgl_browser.new_context(viewport={"width": 320, "height": 291}, offline=True, **context)
+        context = webgl_browser.new_context(
+            viewport=dict(zip(("width", "height"), viewport, strict=True)), offline=True, **context
+        )
         context.add_init_script(before)
         page = context.new_page()
         page.troubles, page.requests = [], []
@@ -255,6 +257,26 @@ def assert_same_silhouette(player: Player, env) -> None:
 
 class TestInABrowser:
     pytestmark = NEEDS_A_BROWSER
+
+    @pytest.mark.parametrize("viewport", [(390, 844), (844, 390), (600, 650)])
+    @pytest.mark.parametrize("camera", [None, NEAR])
+    def test_narrow_pages_show_all_that_a_picture_shows(self, env, robot, opened, viewport, camera):
+        robot.SetDOFValues([1.2, 0])
+        player = opened(env.animation(camera=camera).html, viewport=viewport)
+        width, height = player.size()
+        chosen = env.default_camera(4 / 3) if camera is None else Camera.from_matrix(camera)
+        smallest = 1 if camera is None else 4 / 3
+        wider = max(1, smallest * height / width)
+        assert player.camera().fovy == pytest.approx(2 * np.arctan(wider * np.tan(chosen.fovy / 2)))
+        tips = [(link @ [0.2, 0, 0, 1])[:3] for link in robot.GetLinkTransformations()[1:]]
+        if camera is None:
+            pixels, _ = player.camera().project(tips, width, height)
+            assert (pixels > 0).all()
+            assert (pixels < [width, height]).all()
+        player.page.set_viewport_size({"width": 1200, "height": 600})
+        await_that(lambda: player.page.evaluate("ravemj.view.fovy") == pytest.approx(chosen.fovy))
+        player.page.keyboard.press("Home")
+        assert player.page.evaluate("ravemj.view.fovy") == pytest.approx(chosen.fovy)
 
     def test_it_shows_the_poses_of_the_motion_from_every_side(self, env, robot, opened):
         motion = swing(env)
@@ -328,7 +350,7 @@ class TestInABrowser:
         page = player.page
         page.click("#play")
         assert not page.evaluate("ravemj.isPlaying")
-        page.focus("#view")
+        page.evaluate("document.activeElement.blur()")  # as when the page has been opened, before any click
         page.keyboard.press("Space")
         assert page.evaluate("ravemj.isPlaying")
         page.keyboard.press("ArrowRight")

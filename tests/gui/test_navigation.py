@@ -344,6 +344,20 @@ def test_every_key_is_a_control_and_in_the_help(hand):
     assert hand.gui.overlay().help == ()
 
 
+def test_escape_closes_the_help_and_leaves_the_mode(hand):
+    hand.press_key("h")
+    for is_repeated in (False, True):  # a key that is held repeats
+        hand.gui.handle(Key("escape"))
+        assert (hand.gui.overlay().help, hand.gui.mode) == ((), Mode.CAMERA), is_repeated
+    hand.gui.handle(Key("escape", False))
+    hand.press_key("escape")
+    assert hand.gui.mode is Mode.INTERACTION
+    hand.press_key("b")
+    hand.press_key("escape")
+    assert hand.gui.mode is Mode.CAMERA, "the tree is no cover"
+    assert hand.gui.overlay().tree
+
+
 @pytest.mark.parametrize("size", [(320, 240), (480, 320), (655, 500), (960, 720), (1920, 1080)])
 def test_a_window_has_all_of_the_help_which_scrolls_and_goes_away_by_a_click(hand, size):
     hand.gui.handle(Resize(*size))

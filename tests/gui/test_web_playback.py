@@ -122,7 +122,7 @@ def test_everything_can_be_reached_and_done_by_keys(desk):
     playback.pause()
     playback.seek(50.0)
     await_that(lambda: button(desk, "Play").is_visible(), "no controls")
-    desk.page.focus("#view")
+    desk.page.evaluate("document.activeElement.blur()")  # as when the page has been opened, before any click
     desk.page.keyboard.press("ArrowRight")
     await_that(lambda: playback.time == pytest.approx(50 + 1 / 30), "the arrow does not step")
     desk.page.keyboard.press("Space")
@@ -181,6 +181,34 @@ def test_sliders_turn_joints_and_show_what_scripts_do(desk):
     fold(desk, False)
     desk.other_robot.SetDOFValues([-1.0, 0.5])
     desk.await_robot()
+
+
+def test_escape_ends_typing_and_leaves_the_mode(desk):
+    fold(desk, unfolded=True)
+    number = desk.page.get_by_role("textbox", name="Joint1, value")
+    await_that(lambda: number.input_value().endswith(" rad"), "no value")
+    before, values = number.input_value(), desk.robot.GetDOFValues().tolist()
+    number.fill("0.5")
+    number.press("Escape")
+    assert number.input_value() == before
+    assert desk.page.evaluate("document.activeElement.id") == "view"
+    desk.page.keyboard.press("b")
+    search = desk.page.get_by_role("searchbox")
+    search.fill("arm1")
+    assert not row(desk, "Base").is_visible()
+    search.press("Escape")
+    assert search.input_value() == ""
+    assert row(desk, "Base").is_visible()
+    assert desk.page.evaluate("document.activeElement.id") == "view"
+    desk.page.keyboard.press("b")
+    await_that(lambda: not desk.page.locator("#tree").is_visible(), "keys are for the view again")
+    assert desk.page.get_attribute("body", "data-mode") == "camera"
+    assert desk.robot.GetDOFValues().tolist() == values
+    desk.page.keyboard.press("h")
+    desk.page.locator("#help").wait_for(state="visible")
+    desk.page.keyboard.press("Escape")
+    desk.page.locator("#help").wait_for(state="hidden")
+    assert desk.page.get_attribute("body", "data-mode") == "camera"
 
 
 def test_numbers_are_typed_in_the_unit_that_is_shown(desk):

@@ -37,9 +37,18 @@ class Recording(NamedTuple):
 
 
 class Appearance(NamedTuple):
-    """How the page begins: where it looks from, on what background (0 to 1), and what it is called."""
+    """How the page begins.
+
+    Attributes:
+        camera: The camera.
+        aspect: The smallest width, divided by the height, of a picture that shows all that the camera should show.
+            Narrower pages have a larger vertical angle.
+        background: Red, green and blue from 0 to 1.
+        title: The title.
+    """
 
     camera: Camera
+    aspect: float
     background: tuple[float, float, float]
     title: str
 
@@ -136,6 +145,7 @@ def _pack_view(package: Package, model: mujoco.MjModel, data: mujoco.MjData, app
         "position": camera.position.tolist(),
         "fovy": camera.fovy if camera.calibration is None else math.radians(45),
         "distance": max(distance, 0.1 * radius),
+        "aspect": appearance.aspect,
     }
     package.document["background"] = list(appearance.background)
 

@@ -269,7 +269,9 @@ class Hand:
         if self.panel.is_typing:
             self.panel.key(name)
             return
-        if name == "escape" and name not in self._keys:
+        if name == "escape" and self._controls.unfolded == "help":
+            self._controls.unfolded = ""
+        elif name == "escape" and name not in self._keys:
             self._set_mode(Mode.INTERACTION if self.mode is Mode.CAMERA else Mode.CAMERA)
         elif name not in self._keys:
             self.panel.key(name)

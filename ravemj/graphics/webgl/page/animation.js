@@ -17,7 +17,7 @@ class Player {
     this.speed = 1;
     this.isPlaying = this.duration > 0;
     this.marked = -1;
-    new ResizeObserver(() => { this.isDue = true; }).observe(canvas);
+    new ResizeObserver(() => this.fit()).observe(canvas);
     requestAnimationFrame((now) => this.step(now, now));
   }
 
@@ -28,6 +28,15 @@ class Player {
     this.renderer.load({ content, array });
     const poses = array(content.still.poses);
     content.still.bodies.forEach((body, i) => this.renderer.place(body, ...poses.subarray(7 * i, 7 * i + 7)));
+    this.isDue = true;
+  }
+
+  /** Widen the vertical angle where the page is narrower than the picture that the view was chosen for. */
+  fit() {
+    const { fovy, aspect } = this.content.view, { clientWidth, clientHeight } = this.canvas;
+    const wider = Math.max(1, aspect * clientHeight / Math.max(clientWidth, 1));
+    const angle = 2 * Math.atan(wider * Math.tan(0.5 * fovy));
+    [this.first, this.view] = [this.first, this.view].map((view) => new View({ ...view, fovy: angle }));
     this.isDue = true;
   }
 
@@ -170,7 +179,8 @@ function connectControls(player) {
   element("joints").addEventListener("click", showValues);
   element("joints").hidden = !cells.length;
   element("home").addEventListener("click", () => player.look(player.first));
-  canvas.addEventListener("keydown", (event) => {
+  window.addEventListener("keydown", (event) => {
+    if (![document.body, canvas].includes(event.target)) return;  // keys of buttons and sliders are theirs
     if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
     keys[event.key]();
     event.preventDefault();

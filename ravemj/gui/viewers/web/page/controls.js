@@ -75,6 +75,9 @@ function createSlider(name) {
     if (Number.isFinite(number)) send({ type: "operate", name, value: Math.max(-1e5, Math.min(1e5, number * perUnit)) });
     output.blur();
   });
+  output.addEventListener("keydown", (event) => {  // what was there stays
+    if (event.key === "Escape") output.value = output.dataset.text;
+  });
   row.append(title, input, output);
   return entry;
 }
@@ -94,6 +97,7 @@ function updateControl(entry, control) {
       const unit = output.dataset.unit = control.text.split(" ").pop();
       const [low, high] = [control.lower, control.upper].map((end) => (unit === "deg" ? 180 / Math.PI : 1) * end);
       title.title = `${control.label}: ${low.toFixed(2)} to ${high.toFixed(2)} ${unit}`;
+      output.dataset.text = control.text;
       if (document.activeElement !== output) output.value = control.text;
     }
     return;
@@ -139,9 +143,10 @@ document.getElementById("help").addEventListener("click", () => send({ type: "op
 // --- keys of the view, while there is a motion, or simulation time
 
 const KEYS = { " ": ["play", "run"], ArrowLeft: ["back"], ArrowRight: ["forward", "step"] };
-document.getElementById("view").addEventListener("keydown", (event) => {
+window.addEventListener("keydown", (event) => {
   const name = (KEYS[event.key] || []).find((one) => entries.has(one));
-  if (!name || event.ctrlKey || event.altKey || event.metaKey) return;
+  const isForControl = event.target !== document.body && event.target.id !== "view";
+  if (!name || isForControl || event.ctrlKey || event.altKey || event.metaKey) return;
   event.preventDefault();
   if (!event.repeat || !["play", "run"].includes(name)) send({ type: "operate", name, value: 0 });
 });

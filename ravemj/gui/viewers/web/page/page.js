@@ -192,7 +192,8 @@ view.addEventListener("wheel", (event) => {
 
 const KNOWN_KEYS = /^(Escape|[a-z0-9?=+-]|Home|F1)$/i;  // Space and arrows are for what has the focus
 window.addEventListener("keydown", (event) => {
-  const isTyping = event.target.matches("input:not([type=range])") && event.key !== "Escape";
+  const isTyping = event.target.matches("input:not([type=range])");
+  if (isTyping && event.key === "Escape") view.focus({ focusVisible: false });
   if (!KNOWN_KEYS.test(event.key) || isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
   if (event.key === "F1" || event.key === "Home") event.preventDefault();
   if (!event.repeat) send({ type: "key", name: event.key, pressed: true });

@@ -60,6 +60,10 @@ function moveFocus(from, step) {  // from the search or a row to the next one th
 
 tree.addEventListener("keydown", (event) => {
   const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+  if (event.key === "Escape" && event.target === search) {
+    search.value = "";
+    filterRows();
+  }
   if (step) moveFocus(event.target, step);
   else if (event.key === "Enter" && event.target === search) {
     const first = [...rows.children].find((row) => !row.hidden);
