@@ -13,6 +13,7 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay, Resize
+from ravemj.gui.interaction.shortcuts import page_sections
 from ravemj.gui.viewers.dropping import Upload
 from ravemj.gui.viewers.recorder import free_path
 from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness, period
@@ -269,11 +270,14 @@ class Client:
         size = max(int(width * shrink), 1), max(int(height * shrink), 1)
         return Format(*size, samples=level.samples, scale=shrink)
 
-    def send_file(self, connection: Connection, style: PageStyle) -> None:
+    def send_picture(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
         content = encoding.resting(self._picture(self.interaction.overlay(), style), is_exact=True)
-        file = {"task": "save", "name": free_path(".png").name, "data": base64.b64encode(content).decode()}
-        connection.send(json.dumps(file))
+        self.send_file(connection, free_path(".png").name, content)
+
+    def send_file(self, connection: Connection, name: str, content: bytes) -> None:
+        """Have the browser save a file."""
+        connection.send(json.dumps({"task": "save", "name": name, "data": base64.b64encode(content).decode()}))
 
     def send_text(self, connection: Connection, text: str) -> None:
         """Have the browser put a text on the clipboard."""
@@ -314,7 +318,7 @@ class Client:
             "title": style.title,
             "cursor": overlay.cursor,
             "controls": overlay.controls,
-            "help": overlay.help,
+            "help": page_sections() if overlay.help else (),
             "tree": overlay.tree,
             "chosen": overlay.chosen,
         }
