@@ -12,6 +12,7 @@ import ravemj
 from ravemj.graphics.rendering import Camera, bounding_sphere
 from ravemj.gui.interaction import Button, Fingers, Key, Mode, Move, Operate, Press, Release, Resize, Tool, Use, Wheel
 from ravemj.gui.interaction.cube import Cube
+from ravemj.gui.interaction.figures import figures
 from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.interaction.navigation import GLIDE, SIDES
 from ravemj.gui.interaction.shortcuts import DISPLAY, GESTURES, KEYS, OTHERS, VIEW, as_markdown, key_text
@@ -325,6 +326,24 @@ def test_right_clicks_and_panels_wait(held):
     assert gui.steer([on_panel]) == [on_panel]
     pull = Press(400, 300, Button.RIGHT)
     assert gui.steer([pull]) == [pull]
+
+
+def test_static_bodies_have_no_ellipsoids_which_would_cover_all(hand):
+    def extent(names):
+        shown = figures(env.simulation, frozenset(names), 1.0)
+        corners = np.concatenate([figure.triangles.corners.reshape(-1, 3) for figure in shown])
+        return np.ptp(corners, axis=0).max()
+
+    env = ravemj.load(ravemj.model_path("pendulum"))
+    before = extent({"masses"})
+    env.LoadData(
+        '<KinBody name="floor"><Body name="a" type="dynamic"><Geom type="box"><extents>30 30 0.1</extents></Geom>'
+        "<Mass type='mimicgeom'/></Body></KinBody>"
+    )
+    floor = env.GetKinBody("floor")
+    assert extent({"masses"}) > 10 * before, "what moves has one"
+    floor.GetLinks()[0].SetStatic(True)
+    assert extent({"masses"}) < 3 * before
 
 
 # --- help

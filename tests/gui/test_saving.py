@@ -16,6 +16,7 @@ from waiting import PATIENCE, await_that
 import ravemj
 from ravemj.gui.viewers import recorder
 from ravemj.gui.viewers.recorder import FrameSource, free_path
+from ravemj.gui.viewers.window import WindowViewer
 
 SIZE = 320, 240
 SWING = ravemj.Motion.line([0, 0], [np.pi, 0], 0.4)
@@ -153,6 +154,22 @@ def test_a_viewer_that_closes_ends_its_video_and_leaves_whole_files(viewer, tmp_
     for file in tmp_path.iterdir():
         assert imageio.v3.imread(file).size
     assert not any(thread.name == "ravemj saving" for thread in threading.enumerate())
+
+
+def test_a_video_that_no_page_takes_is_logged(viewer, env, caplog):
+    page = env.serve_viewer()
+    page._keep_video(page.interaction, "ravemj-1.mp4", b"")
+    env.SetViewer("")
+    assert "the video ravemj-1.mp4 is lost: no page was there to take it" in caplog.text
+
+
+def test_copying_raises_no_warning(viewer):
+    re.purge()  # which has compiled expressions, and warns while it compiles them
+    copied = []
+    window = SimpleNamespace(pixel_ratio=1.0, copy_text=copied.append)
+    WindowViewer._grant(viewer, "viewer.SetCamera([[1, 0], [0, 1]])", window)
+    assert copied == ["viewer.SetCamera([[1, 0], [0, 1]])"]
+    assert "Copied viewer.SetCamera([...])" in viewer.interaction.controls.notices.lines
 
 
 def test_a_video_does_not_keep_a_forgotten_environment(models, tmp_path, monkeypatch):

@@ -117,6 +117,13 @@ def test_who_is_asked_before_something_is_selected_is_asked_here_too(env):
     assert hand.selection is None
 
 
+def test_rows_that_a_search_leaves_in_a_window_are_not_indented(hand):
+    assert any(row.text.startswith("  ") for row in hand.gui.controls.rows("")[1:])
+    found = hand.gui.controls.rows("a")[1:]
+    assert found
+    assert not any(row.text.startswith(" ") for row in found)
+
+
 @pytest.mark.parametrize("name", ["body", "body x", "body 9", "link 1 99", "joint 1 99", "link 1 -1", "tree 1"])
 def test_rows_that_are_not_there_select_nothing(hand, name):
     hand.gui.handle(Operate(name))

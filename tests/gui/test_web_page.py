@@ -13,13 +13,14 @@ import numpy as np
 import pytest
 from browsers import ASLANT, CLEAR, NEEDS_A_BROWSER, SIZE, Desk, assert_apart
 from command_line import Served, colour_of
-from conftest import MODELS
+from conftest import MODELS, REPOSITORY
 from waiting import await_that
 
 import ravemj
 from ravemj.gui.interaction import Button, Move, Press, Release, Tool, Use
 from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import JointHandle
+from ravemj.gui.interaction.shortcuts import TOUCH_GESTURES
 
 pytestmark = NEEDS_A_BROWSER
 BOTH = pytest.mark.parametrize("desk", ["browser", "webgl_browser"], indirect=True)
@@ -141,6 +142,39 @@ class TestCameraMode:
         desk.await_picture()
         assert np.allclose(desk.viewer.GetCameraTransform(), ASLANT, atol=1e-3)
         assert desk.viewer.GetSelectedBody() is None
+
+
+def test_the_help_of_a_phone_begins_with_what_fingers_do(own_desk):
+    def titles(page):
+        page.keyboard.press("h")
+        page.locator("#help").wait_for(state="visible")
+        return page.locator("#help h2").all_inner_texts()
+
+    def opened(**context):
+        page = own_desk.context.browser.new_context(**context).new_page()
+        page.goto(own_desk.viewer.url)
+        page.wait_for_selector("[data-crisp]")
+        return page
+
+    with_mouse = opened()
+    assert titles(with_mouse)[-1] == "Touch screen"
+    with_mouse.close()
+    phone = opened(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    assert titles(phone)[0] == "Touch screen"
+    first = phone.locator("#help section").first.inner_text()
+    for gesture in TOUCH_GESTURES:
+        assert gesture.to in first
+        assert gesture.do in first
+        assert f"| {gesture.to} | {gesture.do} |" in (REPOSITORY / "docs" / "viewer.md").read_text(encoding="utf-8")
+    phone.close()
+
+
+def test_long_names_break_behind_what_separates_their_words(own_desk):
+    name = "left_gripper/finger.tipLink-0"
+    own_desk.page.evaluate("name => { showName(document.getElementById('toast'), name); }", name)
+    toast = own_desk.page.locator("#toast")
+    assert toast.text_content() == name
+    assert toast.inner_html().split("<wbr>") == ["left_", "gripper/", "finger.", "tip", "Link-", "0"]
 
 
 class TestInteractionMode:

@@ -265,13 +265,33 @@ def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):
     await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
 
 
-def test_a_video_is_written_into_the_working_folder(desk, tmp_path):
+def test_a_video_is_downloaded_too(desk, tmp_path):
     desk.viewer.play(ravemj.Motion.line([0, 0], [2.0, -1.0], 0.3))
+    with desk.page.expect_download() as download:
+        button(desk, "MP4").click()
+    assert re.fullmatch(r"ravemj-\d{8}-\d{6}\.mp4", download.value.suggested_filename)
+    download.value.save_as(tmp_path / "a.mp4")
+    assert imageio.v3.imread(tmp_path / "a.mp4").shape == (10, SIZE[1], SIZE[0], 3)
+    assert [file.name for file in tmp_path.iterdir()] == ["a.mp4"], "the server keeps none"
+    await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
+
+
+def test_a_video_ends_with_the_last_tab_and_the_tab_that_comes_back_gets_it(desk, tmp_path, caplog):
+    desk.viewer.playback.clear()
+    await_that(lambda: not desk.page.locator("#motion").is_visible(), "there is a motion")
+    notices = desk.viewer.interaction.controls.notices
+    other = desk.open_page()
     button(desk, "MP4").click()
-    await_that(lambda: list(tmp_path.glob("*.mp4")), "there is no video")
-    (file,) = tmp_path.iterdir()
-    assert imageio.v3.imread(file).shape == (10, SIZE[1], SIZE[0], 3)
-    await_that(lambda: f"Saved {file.name} in {tmp_path}" in desk.page.inner_text("#text"), "the page does not say it")
+    await_that(lambda: notices.recording, "no recording")
+    other.close()
+    await_that(lambda: len(desk.viewer._clients) == 1, "the other tab stays")
+    assert notices.recording, "a tab is there"
+    with desk.page.expect_download() as download:
+        desk.page.reload()
+    assert download.value.suggested_filename.endswith(".mp4")
+    await_that(lambda: not notices.recording, "the recording goes on")
+    assert list(tmp_path.iterdir()) == []
+    desk.page.wait_for_selector("[data-crisp]")
 
 
 def test_the_camera_is_copied_as_a_line_to_paste(desk):
@@ -358,7 +378,10 @@ def test_the_tree_selects_in_the_picture_and_the_picture_in_the_tree(desk):
     desk.viewer.interaction.select(None)
     await_that(lambda: selected(desk) == [], "the marks stay")
     search = desk.page.get_by_role("searchbox")
+    indents = "[...document.querySelectorAll('#tree [role=treeitem]')].map(row => getComputedStyle(row).paddingLeft)"
+    assert len(set(desk.page.evaluate(indents))) > 1
     search.fill("ARM")
+    assert set(desk.page.evaluate(indents)) == {"6px"}, "what is found has no depth"
     assert not row(desk, "Base").is_visible()
     search.press("ArrowDown")
     desk.page.keyboard.press("ArrowDown")

@@ -161,7 +161,7 @@ class Controls:
             Control(
                 node.name,
                 f"{node.kind.title()} {node.text}",
-                2 * node.depth * " " + node.text,
+                ("" if words else 2 * node.depth * " ") + node.text,
                 is_on=node.name in chosen,
                 group="tree",
             )

@@ -116,6 +116,8 @@ def _masses(simulation: Simulation, radius: float) -> list[Primitives]:
         massive = [link.inertial.mass > _SMALLEST_MASS for link in body.scene.links]
         centers = _centers(body)[massive]
         found.append(drawing.spheres(centers, 0.5 * _CONTACT * radius, np.tile(_MASS, (len(centers), 1))))
+        if all(link.static for link in body.scene.links):  # a floor's ellipsoid would cover all that stands on it
+            continue
         for link, T_world_link in zip(body.scene.links, body.link_transforms(), strict=True):
             if link.inertial.mass > _SMALLEST_MASS:
                 found.append(_ellipsoid(link.inertial).placed(T_world_link))

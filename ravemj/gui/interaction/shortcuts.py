@@ -1,5 +1,6 @@
 """What can be done with the mouse and the keys: one table, for the keys, the menus, the help and the manual."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 
@@ -109,6 +110,16 @@ GESTURES = {
 }
 """The gestures of the tutorial, and more."""
 
+TOUCH = "Touch screen"
+TOUCH_GESTURES = (
+    Gesture("turn", "move one finger"),
+    Gesture("shift and zoom", "move two fingers: what is under them stays there"),
+    Gesture("select an object, and go to interaction mode", "tap it"),
+    Gesture("select the joint above a link, or change the size of the cylinder", "a long press, as Ctrl + click"),
+    Gesture("move what is selected", "drag the cube or the cylinder, in interaction mode; beside it the view turns"),
+)
+"""What fingers do on pages; windows have none."""
+
 _KEY_NAMES = {"home": "Home", " ": "Space", "arrowleft": "Left", "arrowright": "Right", "f1": "F1"}
 
 
@@ -123,9 +134,18 @@ Section = tuple[str, tuple[tuple[str, str], ...]]
 
 def sections() -> tuple[Section, ...]:
     """Return the help."""
-    gestures = ((title, tuple((row.to, row.do) for row in rows)) for title, rows in GESTURES.items())
+    gestures = ((title, _rows(rows)) for title, rows in GESTURES.items())
     keys = (("View", VIEW), ("Display", DISPLAY), ("More keys", OTHERS))
     return *gestures, *((title, tuple((row.label, key_text(row.keys)) for row in rows)) for title, rows in keys)
+
+
+def page_sections() -> tuple[Section, ...]:
+    """Return the help of pages, whose last section is that of fingers."""
+    return *sections(), (TOUCH, _rows(TOUCH_GESTURES))
+
+
+def _rows(gestures: Iterable[Gesture]) -> tuple[tuple[str, str], ...]:
+    return tuple((gesture.to, gesture.do) for gesture in gestures)
 
 
 def as_markdown() -> str:

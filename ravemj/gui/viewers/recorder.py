@@ -4,6 +4,7 @@ import itertools
 import logging
 import math
 import os
+import tempfile
 import threading
 import time
 import weakref
@@ -71,15 +72,30 @@ class Recorder:
         """Save a picture."""
         self._start(free_path(".png"), lambda path: _write_picture(path, source))
 
-    def record(self, source: FrameSource, playback: Playback) -> None:
-        """Begin a video of a motion if there is one, else of what happens; or end the one that is under way."""
+    def record(
+        self, source: FrameSource, playback: Playback, deliver: Callable[[str, bytes], None] | None = None
+    ) -> None:
+        """Begin a video of a motion if there is one, else of what happens; or end the one that is under way.
+
+        Args:
+            source: Draws the frames.
+            playback: The motion that is played.
+            deliver: Called with the name and the content of the complete file; None: it goes to the working folder.
+        """
         if self._recorder is not None and self._recorder.is_alive():
             self._stop.set()
             return
         self._stop.clear()
         times = self._frames_of_clock() if playback.motion is None else _frames_of_motion(playback)
         self._notices.recording = True
-        self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, source))
+        if deliver is None:
+            self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, source))
+        else:
+            self._recorder = self._thread(lambda: self._deliver_video(times, source, deliver))
+
+    def stop(self) -> None:
+        """End a video that is under way; it becomes complete in its own time."""
+        self._stop.set()
 
     def end(self) -> None:
         """End a video, and wait until all is written; not for long, since a script may hold what is drawn."""
@@ -89,16 +105,21 @@ class Recorder:
             thread.join(max(end - time.monotonic(), 0.0))
 
     def _start(self, path: Path, write: Callable[[Path], object]) -> threading.Thread:
+        def save() -> None:
+            write(path)
+            folder = os.path.abspath(path.parent)
+            _LOG.info("saved %s in %s", path, folder)
+            self._notices.say(f"Saved {path} in {folder}")
+
+        return self._thread(save)
+
+    def _thread(self, work: Callable[[], None]) -> threading.Thread:
         def run() -> None:
             try:
-                write(path)
+                work()
             except RavemjError as error:
                 _LOG.error("%s", error.message)
                 self._notices.say(error.message)
-            else:
-                folder = os.path.abspath(path.parent)
-                _LOG.info("saved %s in %s", path, folder)
-                self._notices.say(f"Saved {path} in {folder}")
             finally:
                 self._threads.discard(threading.current_thread())
 
@@ -115,6 +136,12 @@ class Recorder:
         finally:
             self._notices.recording = False
             source.close()
+
+    def _deliver_video(self, times: Iterator[bool], source: FrameSource, deliver: Callable[[str, bytes], None]) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / free_path(".mp4").name
+            self._write_video(path, times, source)
+            deliver(path.name, path.read_bytes())
 
     def _frames(self, times: Iterator[bool], source: FrameSource) -> Iterator[Frame]:
         frame = None

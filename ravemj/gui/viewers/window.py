@@ -207,7 +207,8 @@ class WindowViewer(Viewer):
             self._recorder.record(source, self.playback)
         else:
             window.copy_text(request)
-            self.interaction.controls.notices.say(f"Copied {re.sub(r'[[].*]', '[...]', request)}")
+            shortened = re.sub(r"\[.*\]", "[...]", request)
+            self.interaction.controls.notices.say(f"Copied {shortened}")
             _LOG.info("%s", request)
 
 

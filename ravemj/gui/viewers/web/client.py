@@ -13,6 +13,7 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay, Resize
+from ravemj.gui.interaction.shortcuts import page_sections
 from ravemj.gui.viewers.recorder import free_path
 from ravemj.gui.viewers.sharpness import CRISP, LARGEST_SIDE, LEAST_SIDE, REST, Level, Sharpness, bounded_size, period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
@@ -270,11 +271,14 @@ class Client:
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, LARGEST_SIDE / max(width, height), 1.0) * level.scale
         return Format(*bounded_size(shrink * width, shrink * height), samples=level.samples, scale=shrink)
 
-    def send_file(self, connection: Connection, style: PageStyle) -> None:
+    def send_picture(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
         content = encoding.resting(self._picture(self.interaction.overlay(), style), is_exact=True)
-        file = {"task": "save", "name": free_path(".png").name, "data": base64.b64encode(content).decode()}
-        connection.send(json.dumps(file))
+        self.send_file(connection, free_path(".png").name, content)
+
+    def send_file(self, connection: Connection, name: str, content: bytes) -> None:
+        """Have the browser save a file."""
+        connection.send(json.dumps({"task": "save", "name": name, "data": base64.b64encode(content).decode()}))
 
     def send_text(self, connection: Connection, text: str) -> None:
         """Have the browser put a text on the clipboard."""
@@ -315,7 +319,7 @@ class Client:
             "title": style.title,
             "cursor": overlay.cursor,
             "controls": overlay.controls,
-            "help": overlay.help,
+            "help": page_sections() if overlay.help else (),
             "tree": overlay.tree,
             "chosen": overlay.chosen,
             "tab": self.tab,

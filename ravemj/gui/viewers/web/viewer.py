@@ -8,6 +8,7 @@ import time
 import weakref
 from collections.abc import Iterable
 from contextlib import suppress
+from functools import partial
 
 from numpy.typing import ArrayLike
 from websockets.exceptions import ConnectionClosed
@@ -78,6 +79,7 @@ class WebViewer(Viewer):
         self._uploads: dict[ServerConnection, PageUploads] = {}
         self._quota = UploadQuota()
         self._views: dict[str, Interaction] = {}
+        self._videos: list[tuple[Interaction, str, bytes]] = []  # whoever asked for them, and files for the browser
         self._lock = threading.Lock()
         self._scenes = Scenes()
         self._ended = Flag()  # open: a page may come before the server is returned
@@ -122,6 +124,8 @@ class WebViewer(Viewer):
         """Close the viewer and its pages."""
         self._end()
         super().close()
+        for _, name, _ in self._videos:
+            _LOG.warning("the video %s is lost: no page was there to take it", name)
 
     def announce(self) -> None:
         """Show the page below the cell of a notebook; elsewhere, log its address."""
@@ -182,6 +186,8 @@ class WebViewer(Viewer):
                 self.interaction.look_as(client.interaction.view)
         if picture is not None:
             self._image_callbacks.call(picture)
+        for name, content in self._videos_for(client.interaction):
+            client.send_file(connection, name, content)
         for request in client.interaction.controls.take_requests():
             self._grant(request, client, connection, style)
         if client.pieces:
@@ -203,19 +209,36 @@ class WebViewer(Viewer):
         """Do what a button asked for that needs the page, or writes here."""
         if request is Request.PICTURE:
             try:
-                client.send_file(connection, style)
+                client.send_picture(connection, style)
             except RavemjError as error:
                 client.interaction.controls.notices.say(error.message)
         elif request is Request.VIDEO:
-            self._recorder.record(FrameSource(client.interaction, self._renderer, self._background), self.playback)
+            source = FrameSource(client.interaction, self._renderer, self._background)
+            self._recorder.record(source, self.playback, partial(self._keep_video, client.interaction))
         else:
             client.send_text(connection, request)
             _LOG.info("%s", request)
+
+    def _keep_video(self, interaction: Interaction, name: str, content: bytes) -> None:
+        """Keep a video until the page that asked for it takes it, or another one if that has gone."""
+        with self._lock:
+            self._videos.append((interaction, name, content))
+
+    def _videos_for(self, interaction: Interaction) -> list[tuple[str, bytes]]:
+        """Return the videos that a page gets, and forget them."""
+        with self._lock:
+            others = {client.interaction for client in self._clients.values()} - {interaction}
+            found = [(name, content) for asker, name, content in self._videos if asker not in others]
+            self._videos = [video for video in self._videos if video[0] in others]
+        return found
 
     def dismiss(self, connection: ServerConnection) -> None:
         """Forget a page that has left, in the thread that drew for it."""
         with self._lock:
             client, uploads = self._clients.pop(connection, None), self._uploads.pop(connection, None)
+            is_last = not self._clients
+        if is_last:
+            self._recorder.stop()
         if uploads is not None:
             uploads.close()
         if client is not None:

@@ -85,7 +85,7 @@ function createSlider(name) {
 function updateControl(entry, control) {
   if (entry.input) {
     const { input, title, output } = entry;
-    if (title.textContent !== control.label) title.textContent = control.label;
+    if (title.textContent !== control.label) showName(title, control.label);
     [input.min, input.max] = [control.lower, control.upper];
     const isHeld = input.matches(":active") || performance.now() - entry.touched < QUIET;
     if (!isHeld) input.value = control.value;
@@ -125,6 +125,7 @@ function showHelp(sections) {
   if (help.hidden || help.childElementCount) return;
   const columns = document.createElement("div");
   help.append(columns);
+  if (matchMedia("(pointer: coarse)").matches) sections = [sections[sections.length - 1], ...sections.slice(0, -1)];
   for (const [title, rows] of sections) {
     const heading = document.createElement("h2"), list = document.createElement("dl");
     heading.textContent = title;
@@ -161,7 +162,7 @@ function doTask({ task, name, data, text }) {
 function save(name, data) {
   const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([bytes], { type: "image/png" }));
+  link.href = URL.createObjectURL(new Blob([bytes], { type: name.endsWith(".mp4") ? "video/mp4" : "image/png" }));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);

@@ -35,13 +35,20 @@ function createRow([name, text, kind, depth]) {
   row.setAttribute("aria-level", depth + 1);
   row.style.setProperty("--depth", Math.min(depth, 12));
   row.title = `${kind} ${text}`;
-  row.textContent = `${MARKS[kind]} ${text}`;
+  showName(row, `${MARKS[kind]} ${text}`);
   row.addEventListener("click", () => send({ type: "operate", name, value: 0 }));
   return row;
 }
 
+function showName(element, name) {  // long names break behind what separates their words
+  element.replaceChildren(...name.split(/(?<=[_./:-])|(?<=[a-z])(?=[A-Z])/).flatMap((part, i) => {
+    return i ? [document.createElement("wbr"), part] : [part];
+  }));
+}
+
 function filterRows() {  // show only rows whose names contain all words of the search
   const words = search.value.toLowerCase().split(/\s+/);
+  rows.classList.toggle("is-flat", search.value.trim() !== "");
   let first = null;
   for (const row of rows.children) {
     const name = row.textContent.toLowerCase();
