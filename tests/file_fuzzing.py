@@ -4,6 +4,7 @@
 """
 
 import base64
+import copy
 import io
 import json
 import random
@@ -96,8 +97,8 @@ def _change_byte(data: bytearray, source: random.Random) -> None:
 def _repeat_entries(data: bytearray, source: random.Random) -> None:
     """Let several entries of the directory lead to one member."""
     start, end = data.find(_CENTRAL), data.rfind(_END)
-    if 0 <= start < end:
-        times = source.choice([2, 3, 100, 3000])
+    times = source.choice([2, 3, 100, 3000])
+    if 0 <= start < end and times * (end - start) < 10**6:
         data[start:end] = data[start:end] * times
         if source.random() < 0.8:
             count = min(times * len(re.findall(re.escape(_CENTRAL), data[start:end])), 0xFFFF)
@@ -167,7 +168,7 @@ def _change_value(content: dict[str, Any], source: random.Random) -> None:
     if kind < 0.6:
         holder[key] = source.choice(COUNTS)
     elif kind < 0.75:
-        holder[key] = source.choice(OTHERS)
+        holder[key] = copy.deepcopy(source.choice(OTHERS))
     elif kind < 0.85:
         del holder[key]
     elif isinstance(holder[key], list):

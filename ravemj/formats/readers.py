@@ -111,10 +111,10 @@ def _read_collada(
         if not content.bodies and content.others:
             message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
             context.diagnostics.error("no-kinematics", message, source, "read it with ReadKinBodyURI")
-        found = (*content.bodies, *content.others)
+        found, names = (*content.bodies, *content.others), _Names()
         give(given, found)
         for built in found:
-            built.name = _unused(built.name or "body", {body.name for body in bodies})
+            built.name = names.give(built.name or "body")
             bodies.append(built.freeze(context.diagnostics))
             if built.refusal is not None:
                 raise built.refusal
@@ -127,10 +127,20 @@ def _read_collada(
     return Reading(scene, context.diagnostics, failure, access.files, renames=True)
 
 
-def _unused(name: str, taken: set[str]) -> str:
-    """Return a name, with a number behind it where it is taken."""
-    numbered = (f"{name}{count}" for count in range(len(taken) + 1))
-    return name if name not in taken else next(other for other in numbered if other not in taken)
+class _Names:
+    """The names that bodies of a file have got, each with the next number to put behind it."""
+
+    def __init__(self) -> None:
+        self._next: dict[str, int] = {}
+
+    def give(self, name: str) -> str:
+        """Return a name, with a number behind it if it is taken, and take it."""
+        unused = name
+        while unused in self._next:
+            unused = f"{name}{self._next[name]}"
+            self._next[name] += 1
+        self._next[unused] = 0
+        return unused
 
 
 def _without_scheme(uri: str) -> str:

@@ -6,7 +6,7 @@ Joints are counted as in a body's list: active ones, then passive ones.
 import itertools
 
 from ravemj.core.caching import cached_property
-from ravemj.core.graphs import Pair, ShortestPaths, connected_components, ordered_pair
+from ravemj.core.graphs import Pair, ShortestPaths, connected_components, nodes_between, ordered_pair
 from ravemj.model.scene import KinBody, Manipulator
 
 
@@ -24,6 +24,7 @@ class Connections:
         self._count = len(body.links)
         ends = list(itertools.accumulate((len(joint.axes) for joint in body.joints), initial=0))
         self.dofs = [tuple(range(*pair)) for pair in itertools.pairwise(ends)]
+        self._between: dict[int, set[int]] = {}
         self._above: dict[int, tuple[int, ...]] = {}
         self._moving: dict[int, frozenset[int]] = {}
 
@@ -52,6 +53,12 @@ class Connections:
     def _placing(self) -> dict[int, int]:
         """For each link that a joint places this joint."""
         return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
+
+    def between(self, link: int) -> set[int]:
+        """Return the links on simple paths of joints from link 0 to a link."""
+        if link not in self._between:
+            self._between[link] = nodes_between(self.ends, self._count, 0, link)
+        return self._between[link]
 
     def above(self, link: int) -> tuple[int, ...]:
         """Return the joints that place a link and the links that it hangs on, the nearest first."""

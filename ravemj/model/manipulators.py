@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass, field
 
-from ravemj.core.graphs import nodes_between
 from ravemj.core.transforms import Pose, Vec3, dot, scale
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.model import chains, scene
@@ -71,8 +70,7 @@ def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
     effector = manipulator.effector
     if effector is None:
         return
-    edges = [(joint.parent, joint.child) for joint in body.all_joints]
-    between = nodes_between(edges, len(body.links), 0, effector)
+    between = chains.connections(body).between(effector)
     for dof in manipulator.arm_dofs:
         joint = body.joint_of_dof(dof)
         moved = [

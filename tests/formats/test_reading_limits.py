@@ -267,6 +267,7 @@ GLTF = {
         "several places",
     ),
     "a circle": ({"nodes": [{"mesh": 0, "children": [1]}, {"children": [0]}]}, "several places"),
+    "long transforms": ({"nodes": [{"mesh": 0, "scale": [1] * 20_000}]}, "scale of a node has not 3 numbers"),
     "deep": ({"nodes": [*({"children": [k + 1]} for k in range(200)), {"mesh": 0}]}, "151 nodes inside one another"),
     "longer than its buffer": ({"bufferViews": [{"buffer": 0, "byteLength": 10**9}]}, "the buffers have"),
 }

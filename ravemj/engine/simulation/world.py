@@ -50,6 +50,7 @@ class Simulation:
         self._places: list[BodyState | None] = []
         self._gaps: list[int] = []  # a heap of the free places among these, and of some that are no longer free
         self._by_name: dict[str, BodyState] = {}
+        self._next_numbers: dict[str, int] = {}  # from which on ``free_name`` looks for a free one
         self._world: WorldModel | None = None
         self._collisions: CollisionWorld | None = None
 
@@ -112,9 +113,13 @@ class Simulation:
             heapq.heappush(self._gaps, body.index - 1)
             while self._places and self._places[-1] is None:
                 self._places.pop()
-            del self._by_name[body.scene.name]
+            self._forget_name(body)
             body.index = 0
             return True
+
+    def _forget_name(self, body: BodyState) -> None:
+        del self._by_name[body.scene.name]
+        self._next_numbers.clear()
 
     def holds(self, body: BodyState) -> bool:
         """Return whether a body is in the world."""
@@ -138,7 +143,7 @@ class Simulation:
         with self.lock:
             if self.holds(body):
                 self.check_name(body, name)
-                del self._by_name[body.scene.name]
+                self._forget_name(body)
                 self._by_name[name] = body
             elif not name:
                 raise RavemjError("a body's name should not be empty", ErrorCode.Assert)
@@ -157,10 +162,11 @@ class Simulation:
 
     def free_name(self, name: str) -> str:
         """Return the name, or one made of it by a number, that no body has."""
-        number, free = 0, name or "_"
+        number, free = self._next_numbers.get(name, 0), name or "_"
         while free in self._by_name:
             free = f"{name}{number}"
             number += 1
+        self._next_numbers[name] = max(number - 1, 0)
         return free
 
     def clear(self) -> None:

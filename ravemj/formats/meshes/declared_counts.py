@@ -11,6 +11,7 @@ _DEEPEST = 150  # nodes of glTF inside one another, as in COLLADA
 _OFF_COUNTS = re.compile(rb"OFF\s+(?:#[^\n\r]*\s+)*(-?\d+)[ \t]+(-?\d+)")
 _COMPONENT_BYTES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 _COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_TRANSFORMS = {"matrix": 16, "translation": 3, "rotation": 4, "scale": 3}
 _GLB_HEAD = 20  # bytes before the JSON of a GLB file, of which the last eight are its length and kind
 
 Entry = dict[str, Any]
@@ -130,4 +131,9 @@ class _Gltf:
             level = [child for index in level for child in nodes[index].get("children", [])]
             if len(met) + len(level) > len(nodes):
                 raise SourceError("a node stands in several places, and glTF allows one", self._source)
-        return [nodes[index] for index in met]
+        shown = [nodes[index] for index in met]
+        for node in shown:
+            for name, size in _TRANSFORMS.items():
+                if len(node.get(name) or range(size)) != size:  # trimesh makes a matrix of whatever size
+                    raise SourceError(f"the {name} of a node has not {size} numbers", self._source)
+        return shown

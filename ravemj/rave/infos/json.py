@@ -8,9 +8,9 @@ are [w, x, y, z, tx, ty, tz], and arrays are lists.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportUnknownMemberType=false
 # pyright: reportUnknownLambdaType=false
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import Enum
-from typing import Any, NamedTuple, Protocol, cast
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -153,30 +153,66 @@ def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None =
     """
 
     def read(items: Sequence[Json], scale: float, present: Sequence[Described]) -> list[Described]:
-        found, read_before = list(present), list[Described]()
+        found, read_before = _Called(present), dict[int, Described]()
         for item in items:
             if not isinstance(item, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] - what files hold
                 raise TypeError(f"is {item!r}, and should be an object")
-            known = next((one for one in found if _is_called(one, item)), None)
+            known = found.first(item)
+            if known is not None:
+                found.remove(known)
             if item.get("__deleted__"):
-                found = [one for one in found if one is not known]
                 continue
-            if any(one is known for one in read_before):
+            if id(known) in read_before:
                 raise ValueError(f"two are called '{item.get('id') or item['name']}'; give each a name of its own")
             changed = known or (robot if robot and item.get("isRobot") else kind)()
-            read_before.append(changed)
+            read_before[id(changed)] = changed
             changed.DeserializeJSON(item, scale)
-            if known is None:
-                found.append(changed)
-        return found
+            found.add(changed)
+        return found.listed()
 
     return Form(lambda values, scale: [one.SerializeJSON(scale) for one in values], read)
 
 
-def _is_called(one: Described, item: Json) -> bool:
-    fields = cast("Mapping[str, Any]", vars(one))
-    by_id, by_name = (item.get(key) and item.get(key) == fields.get(f"_{key}") for key in ("id", "name"))
-    return bool(by_id or by_name)
+class _Called:
+    """A list of infos, found by their ids and names."""
+
+    def __init__(self, infos: Sequence[Described]) -> None:
+        self._place_of: dict[int, int] = {}  # also of infos that were removed and may come back, by identity
+        self._at: dict[int, Described] = {}
+        self._called: dict[tuple[str, object], set[int]] = {}
+        for info in infos:
+            self.add(info)
+
+    def add(self, info: Described) -> None:
+        """Add an info at the end, or where it was before."""
+        place = self._place_of.setdefault(id(info), len(self._place_of))
+        self._at[place] = info
+        for key in _calls("_", vars(info)):
+            self._called.setdefault(key, set()).add(place)
+
+    def remove(self, info: Described) -> None:
+        """Remove an info, which has the id and the name that it had when it was added."""
+        place = self._place_of[id(info)]
+        del self._at[place]
+        for key in _calls("_", vars(info)):
+            self._called[key].discard(place)
+
+    def first(self, item: Json) -> Described | None:
+        """Return the first info that has the id or the name of an item."""
+        places = [place for key in _calls("", item) for place in self._called.get(key, ())]
+        return self._at[min(places)] if places else None
+
+    def listed(self) -> list[Described]:
+        """Return the infos in their order."""
+        return [info for _, info in sorted(self._at.items(), key=lambda item: item[0])]
+
+
+def _calls(prefix: str, fields: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+    """Yield the id and the name among some fields, unless they are empty."""
+    for name in ("id", "name"):
+        value = fields.get(prefix + name)
+        if value and isinstance(value, str):
+            yield name, value
 
 
 def named(names: Mapping[Any, str]) -> Form:
