@@ -9,7 +9,16 @@
 ``CamelCase`` names are OpenRAVE's, with OpenRAVE's meaning; ``snake_case`` names are ravemj's own.
 """
 
-import ravemj.core.signals  # noqa: F401  # pyright: ignore[reportUnusedImport] - first, so that Ctrl-C ends commands from here on
+import os
+import sys
+
+try:
+    # First, so that Ctrl-C ends commands from here on.
+    import ravemj.core.signals  # noqa: F401  # pyright: ignore[reportUnusedImport]
+except KeyboardInterrupt:
+    if os.path.basename(sys.argv[0]) in ("ravemj", "ravemj.exe", "-m"):  # the command, before that is imported
+        os._exit(130)
+    raise
 
 # isort: split
 

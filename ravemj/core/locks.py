@@ -9,11 +9,12 @@ import sys
 import time
 from collections.abc import Callable, Generator
 from threading import RLock, current_thread, main_thread
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 from weakref import WeakValueDictionary
 
 from ravemj.core.blocks import block
 from ravemj.core.forks import disown, in_child
+from ravemj.errors import ErrorCode, RavemjError
 
 if TYPE_CHECKING:
     _Lock = RLock
@@ -54,6 +55,13 @@ class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for 
         except BaseException:
             self.release_if_held()
             raise
+
+    def __reduce__(self) -> NoReturn:
+        message = "an environment, and what is in it, cannot be pickled"
+        way_out = (
+            'load the model in the other process, from a file that env.Save("scene.dae") writes; arrays can be sent'
+        )
+        raise RavemjError(f"{message}: {way_out}", ErrorCode.InvalidState)
 
     if sys.version_info >= (3, 14):  # handles signals after an ``__enter__`` in C, before the block begins
         __enter__ = hold

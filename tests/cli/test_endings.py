@@ -361,3 +361,23 @@ def test_scripts_have_signals_as_in_python(tmp_path):
 def test_plan_names_all_that_it_writes(name):
     with pytest.raises(ArgumentError, match=r"is none of \.csv, \.npz, \.png, .*\.mp4, .*a folder"):
         check_output(name)
+
+
+INTERRUPTED = """
+import sys
+class Interrupting:
+    def find_spec(self, name, path=None, target=None):
+        if name == "ravemj.core.signals":
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Interrupting())
+sys.argv = [sys.argv[1]]
+import ravemj
+"""
+
+
+@pytest.mark.parametrize(("program", "code"), [("/bin/ravemj", 130), ("-m", 130), ("script.py", 2)])
+def test_an_interrupt_before_the_first_line_of_a_command_is_quiet(program, code):
+    """A script that imports ravemj gets Python's own answer."""
+    done = subprocess.run([sys.executable, "-c", INTERRUPTED, program], capture_output=True, text=True, check=False)
+    assert done.returncode in {code, -code}
+    assert ("KeyboardInterrupt" in done.stderr) == (code == 2)

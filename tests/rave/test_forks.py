@@ -1,7 +1,9 @@
 """What works in a fork, and what raises an error there."""
 
+import copy
 import multiprocessing
 import os
+import pickle
 import random
 import subprocess
 import sys
@@ -141,6 +143,13 @@ def test_pools_of_forks_take_arrays(env, robot):
         warnings.simplefilter("ignore", DeprecationWarning)
         with multiprocessing.get_context("fork").Pool(2) as pool:
             assert pool.map(squared, [robot.GetDOFValues() + 1, np.ones(3)]) == [2, 3]
+
+
+@pytest.mark.parametrize("thing", ["environment", "robot", "link"])
+@pytest.mark.parametrize("send", [pickle.dumps, copy.deepcopy])
+def test_what_cannot_be_pickled_says_what_to_do(env, robot, thing, send):
+    with pytest.raises(ravemj.openrave_exception, match=r"cannot be pickled: load the model in the other process"):
+        send({"environment": env, "robot": robot, "link": robot.GetLinks()[0]}[thing])
 
 
 def test_a_fork_inside_a_block(env, robot):
