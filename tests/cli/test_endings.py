@@ -357,7 +357,7 @@ def test_scripts_have_signals_as_in_python(tmp_path):
     assert (done.returncode, done.stdout) == (-15, "caught\ncaught\n-15\n")
 
 
-@pytest.mark.parametrize("name", ["motion.xyz", "motion.html", "motion.txt"])
+@pytest.mark.parametrize("name", ["motion.xyz", "motion.htm", "motion.txt"])
 def test_plan_names_all_that_it_writes(name):
-    with pytest.raises(ArgumentError, match=r"is none of \.csv, \.npz, \.png, .*\.mp4, .*a folder"):
+    with pytest.raises(ArgumentError, match=r"is none of \.csv, \.npz, \.png, .*\.html, .*\.mp4, .*a folder"):
         check_output(name)
