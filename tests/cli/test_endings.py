@@ -359,7 +359,7 @@ def test_scripts_have_signals_as_in_python(tmp_path):
 
 @pytest.mark.parametrize("name", ["motion.xyz", "motion.htm", "motion.txt"])
 def test_plan_names_all_that_it_writes(name):
-    with pytest.raises(ArgumentError, match=r"is none of \.csv, \.npz, \.png, .*\.mp4, .*a folder"):
+    with pytest.raises(ArgumentError, match=r"is none of \.csv, \.npz, \.png, .*\.html, .*\.mp4, .*a folder"):
         check_output(name)
 
 
