@@ -2,9 +2,12 @@
 
 Python does not stop daemon threads when it ends. One that comes back from MuJoCo or OpenGL after that crashes the
 process. So the end of Python takes all ``StateLock`` s for good: threads that compute finish, others wait for ever.
+A thread that keeps a lock is ended by ``SystemExit``.
 """
 
 import atexit
+import ctypes
+import re
 import sys
 import time
 from collections.abc import Callable, Generator
@@ -22,7 +25,10 @@ else:
     _Lock = type(RLock())
 
 LAST_CALL = 1.0
-"""How long [s] the end of Python waits for threads that compute, in all."""
+"""How long [s] the end of Python waits for threads that compute, and then for those that it ends."""
+
+_EACH = 0.05
+"""How long [s] it waits at least for a thread that it has ended; another may have been waiting for the same lock."""
 
 _locks: "WeakValueDictionary[int, StateLock]" = WeakValueDictionary()
 _before_end: list[Callable[[], object]] = []
@@ -97,11 +103,24 @@ def end() -> None:
     for function in reversed(_before_end):
         function()
     _is_ending = True
-    deadline = time.monotonic() + LAST_CALL
+    patience = time.monotonic() + LAST_CALL
     for reference in _locks.valuerefs():
         lock = reference()
-        if lock is not None and lock.acquire(timeout=max(0.0, deadline - time.monotonic())):
-            _taken.append(lock)
+        if lock is None:
+            continue
+        _taken.append(lock)
+        while not lock.acquire(timeout=max(_EACH, patience - time.monotonic())):
+            if time.monotonic() > patience + LAST_CALL:
+                break
+            _end_holder(lock)
+
+
+def _end_holder(lock: StateLock) -> None:
+    """Have ``SystemExit`` raised in the thread that holds a lock, once it is out of C."""
+    found = re.search(r"owner=(\d+)", repr(lock))
+    if found:
+        holder = ctypes.c_ulong(int(found[1]))
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(holder, ctypes.py_object(SystemExit))
 
 
 @in_child

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.locks import StateLock
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import (
@@ -59,7 +60,8 @@ class Format(NamedTuple):
 class SimulationRenderer:
     """Draws a simulation; each thread keeps the renderer of its last picture, for the next one.
 
-    The simulation is locked while its state is copied, and free while the picture is drawn.
+    The simulation is locked while its state is copied, and free while the picture is drawn: another ``StateLock``
+    makes the end of Python wait for that.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -100,9 +102,10 @@ class SimulationRenderer:
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
             self._kept.shown, self._kept.published = (shown, style), self._simulation.published.number
         widened = shown.widened(finer * form.scale)
-        if finer == 1:
-            return renderer.render(self._kept.data, camera, background, widened, style)
-        picture = renderer.render(self._kept.data, camera.enlarged(finer), background, widened, style)
+        with StateLock():
+            if finer == 1:
+                return renderer.render(self._kept.data, camera, background, widened, style)
+            picture = renderer.render(self._kept.data, camera.enlarged(finer), background, widened, style)
         return _averaged(picture, finer)
 
     def depth(self, camera: Camera, form: Format) -> NDArray[np.float32]:
@@ -119,7 +122,8 @@ class SimulationRenderer:
             compiled = self._simulation.compiled()
             renderer = self._current(form)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
-        return measure(renderer, self._kept.data)
+        with StateLock():
+            return measure(renderer, self._kept.data)
 
     def render_again(self, camera: Camera, background: ArrayLike, form: Format) -> Frame | None:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
@@ -133,9 +137,10 @@ class SimulationRenderer:
         if self._kept.published != published.number:
             self._kept.published = published.number
             published.copy_to(self._kept.data, self._kept.model)
-        self._kept.renderer.resize(form.width, form.height, form.samples)
         shown, style = self._kept.shown
-        return self._kept.renderer.render(self._kept.data, camera, background, shown.widened(form.scale), style)
+        with StateLock():
+            self._kept.renderer.resize(form.width, form.height, form.samples)
+            return self._kept.renderer.render(self._kept.data, camera, background, shown.widened(form.scale), style)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""

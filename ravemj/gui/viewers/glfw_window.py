@@ -233,7 +233,6 @@ class GlfwWindow:
             self._glfw.poll_events()
 
 
-@functools.cache
 @in_child
 def _leave_windows() -> None:
     """Leave the windows to the parent."""
@@ -241,6 +240,7 @@ def _leave_windows() -> None:
     _is_fork, _dispatching = _is_fork or _is_used, threading.Lock()
 
 
+@functools.cache
 def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has no types
     """Return GLFW's connection to its X server, which all windows share; None on other systems.
 
