@@ -363,7 +363,7 @@ def test_plan_names_all_that_it_writes(name):
         check_output(name)
 
 
-INTERRUPTED = """
+AT_IMPORT = """
 import sys
 class Interrupting:
     def find_spec(self, name, path=None, target=None):
@@ -378,6 +378,6 @@ import ravemj
 @pytest.mark.parametrize(("program", "code"), [("/bin/ravemj", 130), ("-m", 130), ("script.py", 2)])
 def test_an_interrupt_before_the_first_line_of_a_command_is_quiet(program, code):
     """A script that imports ravemj gets Python's own answer."""
-    done = subprocess.run([sys.executable, "-c", INTERRUPTED, program], capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, "-c", AT_IMPORT, program], capture_output=True, text=True, check=False)
     assert done.returncode in {code, -code}
     assert ("KeyboardInterrupt" in done.stderr) == (code == 2)
