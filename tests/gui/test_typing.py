@@ -8,6 +8,7 @@ from test_playback import Panel, chain
 
 import ravemj
 from ravemj.gui.interaction import Button, Key, Leave, Mode, Move, Operate, Press, Resize, Type
+from ravemj.gui.viewers.window_overlay import OverlayPainter
 
 
 class Keyboard(Panel):
@@ -185,16 +186,18 @@ def test_what_is_selected_in_the_picture_is_scrolled_to():
 @pytest.mark.parametrize("width", [SIZE[0], 480, 400])
 def test_long_names_are_cut_in_the_middle_and_whole_under_the_pointer(width):
     env = ravemj.Environment()
-    env.LoadData(chain(30).replace("a_joint_with_a_long_name", "a_joint_with_a_name_that_no_row_has_any_room_for"))
+    env.LoadData(
+        chain(30).replace("a_joint_with_a_long_name", "a_joint_with_a_name_so_long_that_no_row_has_any_room_for_it")
+    )
     keyboard = opened(env, "tree")
     keyboard.gui.handle(Resize(width, SIZE[1]))
     keyboard.press("search")
     keyboard.type("room")
     place, shown = keyboard.middle("joint 1 7"), [panel for panel in keyboard.gui.overlay().panels if panel.is_left]
-    assert all(7 * len(panel.text.strip()) < panel.rect.width for panel in shown)
+    assert all(OverlayPainter()._width(panel.text) < panel.rect.width - 8 for panel in shown)
     assert any(".." in panel.text and panel.text.endswith("_7") for panel in shown)
     keyboard.gui.handle(Move(*place))
-    assert "Joint a_joint_with_a_name_that_no_row_has_any_room_for_7" in keyboard.gui.overlay().lines
+    assert "Joint a_joint_with_a_name_so_long_that_no_row_has_any_room_for_it_7" in keyboard.gui.overlay().lines
 
 
 def test_only_the_left_button_begins_to_type(keyboard):

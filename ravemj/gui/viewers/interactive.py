@@ -67,7 +67,7 @@ class Interactive(ApiObject):
         interaction: Takes events of mouse and keys; ``ravemj.gui.interaction`` says how.
     """
 
-    _internal = ("environment",)
+    _internal = ("announce", "environment")
 
     environment: "weakref.ref[Any] | None" = None
 
@@ -75,6 +75,9 @@ class Interactive(ApiObject):
         self._simulation = simulation
         self._selection_callbacks = Callbacks()
         self.interaction = Interaction(simulation, camera, size, self._may_select)
+
+    def announce(self) -> None:
+        """Tell people where the viewer is, once it belongs to an environment; windows are seen by themselves."""
 
     def GetEnv(self) -> Any:  # noqa: ANN401 - the API stands above viewers
         """Return the environment that the viewer was made for."""

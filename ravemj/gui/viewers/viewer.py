@@ -49,7 +49,7 @@ class Viewer(Interactive):
         interaction: Takes events of mouse and keys; windows hand in theirs.
     """
 
-    _internal = ("announce", "environment", "take_over")
+    _internal = ("environment", "take_over")
 
     def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
         self._renderer = renderer
@@ -330,9 +330,6 @@ class Viewer(Interactive):
             ArgumentError: this is no colour.
         """
         self._background = checked_colour(color)
-
-    def announce(self) -> None:
-        """Tell people where the viewer is, once it belongs to an environment; windows are seen by themselves."""
 
     def take_over(self, view: View | None = None) -> None:
         """Take note that bodies were added.
