@@ -17,7 +17,7 @@ from ravemj.core.transforms import Floats
 from ravemj.planning.edges import LINE, Edges
 from ravemj.planning.trees import Tree
 
-_PATIENCE = 40
+_PATIENCE = 20
 """After so many blocked lines of the smaller tree, the other one has a turn: perhaps it finds the way in."""
 
 _WHOLE_LINES = 50
