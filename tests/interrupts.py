@@ -36,6 +36,7 @@ def _interrupt(action: Callable[[], object], number: int = 0) -> int:
     except KeyboardInterrupt:
         assert count >= number > 0
     finally:
+        number = 0  # whatever runs from here on, as callbacks of garbage collection do, is not interrupted
         sys.settrace(traced)
         signal.signal(signal.SIGINT, before)
     return count

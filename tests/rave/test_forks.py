@@ -213,7 +213,7 @@ with new_file("a.txt") as path, temporary_folder() as folder:
             gc.collect()
         if child == 0:
             sys.exit(3)
-        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
     path.write_text("written")
     print(os.path.isdir(folder), os.path.isdir(upload._folder))
 print(open("a.txt").read(), urllib.request.urlopen(page).status, env.GetRobots()[0].GetDOFValues())
