@@ -40,7 +40,7 @@ class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for 
     """A reentrant lock for all calls that compute in C. Hold it by ``with``, which no interrupt can leave locked."""
 
     def __init__(self) -> None:
-        while _is_ending and current_thread() is not main_thread():
+        while is_left_to_end():
             time.sleep(LAST_CALL)
         _locks[id(self)] = self
 
@@ -86,6 +86,11 @@ class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for 
             yield self.acquire(timeout=timeout)
         finally:
             self.release_if_held()
+
+
+def is_left_to_end() -> bool:
+    """Return whether Python ends and this is another thread, which must free nothing in C any more."""
+    return _is_ending and current_thread() is not main_thread()
 
 
 def before_end(function: Callable[[], object]) -> Callable[[], object]:

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.locks import is_left_to_end
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import Renderer
 from ravemj.graphics.rendering.camera import Camera
@@ -92,13 +93,17 @@ class GlRenderer(Renderer):
     def close(self) -> None:
         """Free the context and what is in it; a second call does nothing."""
         stage, self._gl_scene = self._gl_scene, None
-        if stage is not None:
-            try:
-                with self._context.current():
-                    stage.close()
-            except RenderingError:
-                _never_freed.append(stage)  # freeing it here would free what the window in this thread holds
-            self._context.close()
+        if stage is None:
+            return
+        if is_left_to_end():  # the main thread may just close the display
+            _never_freed.append(stage)
+            return
+        try:
+            with self._context.current():
+                stage.close()
+        except RenderingError:
+            _never_freed.append(stage)  # freeing it here would free what the window in this thread holds
+        self._context.close()
 
     def __del__(self) -> None:
         self.close()
