@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import ravemj
 from ravemj import CollisionOptions, CollisionReport, KinBody, Ray
-from ravemj.engine.collision import detection, world
+from ravemj.engine.collision import pairs, world
 from ravemj.engine.collision.moving import moving_test
 from ravemj.geometry_functions import CheckOBBCollision, OrientedBox
 
@@ -758,7 +758,7 @@ class TestManyPairs:
         assert (env.model.body_contype[1:] > 0).all()
 
     def test_more_contacts_than_fit_into_memory(self, env, snake, monkeypatch):
-        monkeypatch.setattr(detection, "_MOST_CONTACTS", 0.0)
+        monkeypatch.setattr(pairs, "_MOST_CONTACTS", 0.0)
         for number in range(5):
             snake.SetDOFValues(np.full(snake.GetDOF(), 0.3 * number))
             self.check(env, snake)

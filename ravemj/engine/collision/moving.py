@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from ravemj.core.blocks import restoring
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.collision.detection import Masks
 from ravemj.engine.collision.held import HeldRoots
-from ravemj.engine.collision.pairs import Pairs
+from ravemj.engine.collision.pairs import Masks, Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.engine.collision.world import MOST_AT_ONCE, CollisionWorld
 from ravemj.engine.kinematics import fixed_view

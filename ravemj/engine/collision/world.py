@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from ravemj.core.blocks import block, restoring
 from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.collision.detection import Detection, Masks
-from ravemj.engine.collision.pairs import Pairs
+from ravemj.engine.collision.pairs import Detection, Masks, Pairs
 from ravemj.engine.collision.rays import RayCaster
 from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
