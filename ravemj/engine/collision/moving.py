@@ -166,9 +166,10 @@ class _MovingTest:
 
     def __init__(self, world: CollisionWorld, body: BodyState, place: _Placement, chosen: _Chosen) -> None:
         self._model, self._data = world.model.model, world.model.data
-        self._place, self._world, self._detect = place, world, world.detection.detect_overlaps
+        self._place, self._world = place, world
         self._held = HeldRoots(world, body) if body.grabs else None
         self._meant, self._masks, self._is_all, self._rest, _ = chosen
+        self._detect = world.detection.overlaps(self._masks)
 
     def __call__(self, values: Floats) -> bool:
         """Return whether the body collides."""
@@ -176,7 +177,7 @@ class _MovingTest:
         self._place(values)
         if self._held is None:
             mujoco.mj_kinematics(model, data)
-            self._detect(self._masks)
+            self._detect()
         else:
             self._detect_with(self._held)
         if data.ncon:
@@ -208,5 +209,5 @@ class _MovingTest:
             mujoco.mj_kinematics(self._model, self._data)
             if held.are_late:
                 mujoco.mj_kinematics(self._model, self._data)
-            self._detect(self._masks)
+            self._detect()
         self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again

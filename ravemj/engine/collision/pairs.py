@@ -1,6 +1,7 @@
 """Pairs of geoms, which of them are near each other, and MuJoCo's collision detection of them."""
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
+from functools import partial
 from typing import NamedTuple
 
 import mujoco
@@ -109,18 +110,19 @@ class Detection:
         option, flags = self._option, self._option.enableflags
         try:
             option.enableflags = flags | _OVERRIDE
-            self.detect_overlaps(masks)
+            self._detect_masked(masks)
         finally:  # no signal is handled in it
             option.enableflags = flags
         count = self._data.ncon
         self._found = _NO_GEOMS if not count else self._data.contact.geom.copy() if count < self._most else None
         return self._found
 
-    def detect_overlaps(self, masks: Masks) -> None:
-        """Look for hulls that overlap now."""
-        if masks is self.all:
-            mujoco.mj_collision(self._model, self._data)
-            return
+    def overlaps(self, masks: Masks) -> Callable[[], None]:
+        """Return a function that looks for hulls that overlap now."""
+        everything = partial(mujoco.mj_collision, self._model, self._data)
+        return everything if masks is self.all else partial(self._detect_masked, masks)
+
+    def _detect_masked(self, masks: Masks) -> None:
         try:
             self._types[...], self._affinities[...] = masks
             mujoco.mj_collision(self._model, self._data)
