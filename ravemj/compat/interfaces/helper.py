@@ -9,7 +9,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
 from ravemj.rave.environment import Environment
-from ravemj.rave.module import Module
+from ravemj.rave.interface import Module
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory

@@ -8,14 +8,11 @@ import logging
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ravemj.rave.interface import asked_for
-from ravemj.rave.module import Command, Module
+from ravemj.rave.interface import Command, Module, asked_for
 from ravemj.rave.modules.base_manipulation import BaseManipulation
-from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, commands_of
+from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, Tokens, commands_of, scene_module
 from ravemj.rave.modules.motions import Manipulation
-from ravemj.rave.modules.scene_saver import scene_module
 from ravemj.rave.modules.task_manipulation import TaskManipulation
-from ravemj.rave.modules.tokens import Tokens
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -16,7 +16,7 @@ from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.motions import Manipulation, Postprocessing, SearchOptions
 from ravemj.rave.planning.names import is_planner
-from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 

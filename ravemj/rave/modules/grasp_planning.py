@@ -15,7 +15,7 @@ from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.motions import SearchOptions
-from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.planning.values import STEP_LENGTH
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization

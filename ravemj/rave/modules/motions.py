@@ -15,7 +15,7 @@ from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
-from ravemj.rave.planning.status import PlannerStatus, PlanningError
+from ravemj.rave.planning.planner import PlannerStatus, PlanningError
 from ravemj.rave.planning.values import STEP_LENGTH, Values, hand_of
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification

@@ -16,7 +16,7 @@ from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspPlan, GraspQuery, plan_grasp
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.planning.parameters import PlannerParameters
-from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.planning.values import hand_of
 from ravemj.rave.trajectory import Trajectory
 
