@@ -1,7 +1,7 @@
 """Modules, under OpenRAVE's names: they plan and execute motions.
 
 ``motions`` plans and executes a motion; ``base_manipulation`` and ``task_manipulation`` are the motions of the modules
-of these names. ``commands`` offers them as text commands, which ``tokens`` parses.
+of these names. ``commands`` offers them as text commands.
 """
 
 import logging

@@ -4,7 +4,6 @@ import logging
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.motions import RefusedError, allowed_ends, find_path, refusal
-from ravemj.planning.edges import Allowed, Edges
+from ravemj.planning.edges import Allowed
 from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
 from ravemj.planning.problem import Problem
 from ravemj.planning.randomized_astar import search_by_cost
@@ -92,14 +91,12 @@ class PathPlanner(Planner):
             problem = self._stated(values)
             if isinstance(problem, PlannerStatus):
                 return problem
-            search = find_path(problem, lambda problem: self._search(problem, values))
+            spacing = 0.0 if values.postprocessing[0] else _SPACING * values.numbers["_fsteplength"]
+            search = find_path(problem, lambda problem: self._search(problem, values), spacing)
         self._search_made = search
         if search.path is None:
             return self._ended(search)
-        spaced = search.path
-        if not values.postprocessing[0]:
-            spaced = _spaced(problem.edges, spaced, values.numbers["_fsteplength"])
-        traj.set_waypoints(Waypoints(values.groups, spaced))
+        traj.set_waypoints(Waypoints(values.groups, search.path))
         return self._processed(values, traj, search)
 
     @abstractmethod
@@ -193,18 +190,6 @@ def _more_goals(values: Values, allowed: Allowed) -> MoreGoals | None:
         return goal
 
     return MoreGoals(next_goal, sampler.probability)
-
-
-def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
-    """Return a path with additional waypoints on its lines, at most ``_SPACING`` step lengths apart."""
-    space = edges.space
-    rows = [path[:1]]
-    for start, end in pairwise(path):
-        far = space.distance(end, start)
-        count = max(1, int(np.ceil(far / (_SPACING * step_length)))) if step_length > 0 else 1
-        parts = np.arange(1, count)[:, None] / count
-        rows += [start + parts * space.difference(end, start), end[None]]
-    return np.concatenate(rows)
 
 
 _LOG = logging.getLogger("ravemj")

@@ -11,8 +11,8 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.bodies import Bodies, Conditions, space_of
+from ravemj.manipulation.options import STEP_LENGTH
 from ravemj.manipulation.tool import MovedTool
-from ravemj.planning.edges import STEP
 from ravemj.planning.retiming.segments import Limits
 from ravemj.planning.rrt import MoreGoals
 from ravemj.planning.space import Coordinates, Space
@@ -151,10 +151,6 @@ def _numbers(name: str, content: str, count: int = 0) -> list[float]:
     if (count and len(numbers) != count) or any(math.isnan(number) for number in numbers):
         raise ArgumentError(f"<{name}>: '{content}' should be {count or 'any number of'} numbers")
     return numbers
-
-
-STEP_LENGTH = float(np.float32(STEP))
-"""OpenRAVE's default step length, which it keeps in single precision."""
 
 
 def _empty() -> Floats:
