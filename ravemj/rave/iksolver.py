@@ -29,7 +29,7 @@ from ravemj.rave.interface import Interface, asked_for
 from ravemj.rave.specification import IkParameterization
 
 if TYPE_CHECKING:
-    from ravemj.ik import IKSolver, Task
+    from ravemj.ik import ArmSolutions, Task
     from ravemj.model import scene
     from ravemj.rave.environment import Environment
     from ravemj.rave.manipulator import Manipulator
@@ -108,7 +108,7 @@ class FilteredSearch(ArmSearch):
     def __init__(
         self,
         manip: "Manipulator",
-        solver: "IKSolver",
+        solver: "ArmSolutions",
         goal: Goal,
         free: Floats | None,
         options: int,
@@ -318,12 +318,12 @@ class IkSolver(Interface):
                 return arm
         raise RavemjError(f"the arm '{self._arm_name}' of the solver '{self._xmlid}' was removed")
 
-    def derived(self) -> "IKSolver":
+    def derived(self) -> "ArmSolutions":
         """Return what computes, for the arm as it is now."""
         solver = self.arm_solver.of(self._owner().simulation_state.scene, self._description())
         return solver if self._steps is None else replace(solver, steps=self._steps)
 
-    def _free_values(self, solver: "IKSolver", shares: ArrayLike | None) -> Floats | None:
+    def _free_values(self, solver: "ArmSolutions", shares: ArrayLike | None) -> Floats | None:
         """Return the values of free joints, shape (k,), that are given as shares of their ranges; None: any."""
         given = np.zeros(0) if shares is None else checked_numbers(shares, "freevalues")
         if not given.size:
