@@ -253,7 +253,6 @@ class IkSolver(Interface):
     """
 
     _internal = (
-        "arm_solver",
         "attach",
         "copy_for",
         "derived",
@@ -276,7 +275,7 @@ class IkSolver(Interface):
         self.kind = kind
         from ravemj.ik.arms import ArmSolver
 
-        self.arm_solver = ArmSolver(task_of(kind), free)
+        self._arm_solver = ArmSolver(task_of(kind), free)
         self._steps = None if steps is None else tuple(steps)
         self._filters: list[Filter] = []
         self._robot: Robot | None = None
@@ -294,7 +293,7 @@ class IkSolver(Interface):
         if robot.GetEnv() is not self._env:
             raise ArgumentError(f"SetIkSolver: the solver '{self._xmlid}' was made for another environment")
         description = next(one for one in robot.simulation_state.scene.manipulators if one.name == arm)
-        self.arm_solver.of(robot.simulation_state.scene, description)
+        self._arm_solver.of(robot.simulation_state.scene, description)
         self._robot, self._arm_name = robot, arm
 
     def set_steps(self, steps: Sequence[float] | None) -> None:
@@ -320,7 +319,7 @@ class IkSolver(Interface):
 
     def derived(self) -> "ArmSolutions":
         """Return what computes, for the arm as it is now."""
-        solver = self.arm_solver.of(self._owner().simulation_state.scene, self._description())
+        solver = self._arm_solver.of(self._owner().simulation_state.scene, self._description())
         return solver if self._steps is None else replace(solver, steps=self._steps)
 
     def _free_values(self, solver: "ArmSolutions", shares: ArrayLike | None) -> Floats | None:
@@ -438,8 +437,8 @@ class IkSolver(Interface):
 
     def copy_for(self, robot: "Robot") -> "IkSolver":
         """Return a solver for the same arm of another robot like this, with the default steps of free joints."""
-        copy = IkSolver(robot.GetEnv(), self._xmlid, self.kind, self.arm_solver.free)
-        copy.arm_solver = self.arm_solver.copy()
+        copy = IkSolver(robot.GetEnv(), self._xmlid, self.kind, self._arm_solver.free)
+        copy._arm_solver = self._arm_solver.copy()
         copy.attach(robot, self._arm_name)
         return copy
 
