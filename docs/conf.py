@@ -41,6 +41,6 @@ nitpick_ignore_regex = [  # pages of others, which a build without network knows
     ("py:class", r"Animation|View"),  # results with a line or two to say
     (
         "py:class",
-        r"BodyCollision|DescribedSensor|IkBatch|IKSolver|ravemj\.core\.handles\.Handle|IkParameterizationData|Simulation|SimulationRenderer|_\w+",
+        r"BodyConfiguration|BodyPart|DescribedSensor|IkBatch|ArmSolutions|ravemj\.core\.handles\.Handle|IkParameterizationData|Simulation|SimulationRenderer|_\w+",
     ),  # below the API
 ]

@@ -55,8 +55,6 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-names.install(__name__)
-
 __all__ = [
     "ArgumentError",
     "CompileError",

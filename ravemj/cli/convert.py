@@ -74,10 +74,9 @@ def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
         raise OutputError("--base, --actuators and --decompose are for MJCF; leave them out")
     if any(Path(file).exists() and Path(options.output).resolve() == Path(file).resolve() for file in env.files):
         raise OutputError(f"cannot write {options.output}: the model was read from it")
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("always", RavemjWarning)
-        env.Save(options.output, atts={"format": kind, "meshes": options.meshes})
-    _report([item.message.diagnostic for item in found if isinstance(item.message, RavemjWarning)], options)
+    found = Diagnostics()
+    env.write(options.output, env.SelectionOptions.Everything, {"format": kind, "meshes": options.meshes}, found)
+    _report([*found], options)
     print(f"wrote {options.output}")
     return 0
 

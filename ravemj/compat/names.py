@@ -42,8 +42,7 @@ class Renamed(MetaPathFinder, Loader):
     ) -> ModuleSpec | None:
         """Return a spec for a name that stands for another one, else None."""
         del path, target
-        root, _, rest = fullname.partition(".")
-        if root != self.root or (real := real_name(root, rest)) == fullname or not _exists(real):
+        if fullname.partition(".")[0] != self.root or not _exists(real_name(fullname)):
             return None
         return ModuleSpec(fullname, self)
 
@@ -52,18 +51,25 @@ class Renamed(MetaPathFinder, Loader):
         take_over(module.__name__)
 
 
-def real_name(root: str, rest: str) -> str:
-    """Return the name of ravemj's module for ``root.rest``."""
+def real_name(name: str) -> str:
+    """Return the name of ravemj's module for ``openravepy`` or one of its modules."""
+    rest = name.partition(".")[2]
     if not rest:
-        return "ravemj.compat.openravepy" if root == OPENRAVEPY else root
-    in_compat = PUBLIC + ONLY_OPENRAVEPY if root == OPENRAVEPY else PUBLIC
-    return f"ravemj.compat.{rest}" if rest.partition(".")[0] in in_compat else f"ravemj.{rest}"
+        return "ravemj.compat.openravepy"
+    return f"ravemj.compat.{rest}" if rest.partition(".")[0] in PUBLIC + ONLY_OPENRAVEPY else f"ravemj.{rest}"
 
 
 def take_over(name: str) -> None:
     """Register ravemj's module under another name."""
-    root, _, rest = name.partition(".")
-    sys.modules[name] = importlib.import_module(real_name(root, rest))
+    sys.modules[name] = importlib.import_module(real_name(name))
+
+
+def share(name: str) -> None:
+    """Register a package of ``ravemj.compat`` under the name of a module of ``ravemj``, and its modules likewise."""
+    real = name.replace("ravemj.", "ravemj.compat.", 1)
+    importlib.import_module(real)
+    for known in [known for known in sys.modules if known == real or known.startswith(f"{real}.")]:
+        sys.modules[name + known.removeprefix(real)] = sys.modules[known]
 
 
 def install(root: str) -> None:

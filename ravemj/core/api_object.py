@@ -8,28 +8,6 @@ from typing import ClassVar
 from ravemj.core.argument_errors import explained
 from ravemj.core.signatures import show_as_written
 
-_HOT = frozenset(
-    {
-        "CalculateActiveJacobian",
-        "CheckCollision",
-        "CheckSelfCollision",
-        "ComputeInverseDynamics",
-        "ComputeJacobianAxisAngle",
-        "ComputeJacobianTranslation",
-        "GetDOFLimits",
-        "GetDOFValues",
-        "GetDOFVelocities",
-        "SetActiveDOFValues",
-        "SetDOFValues",
-        "SetTransform",
-    }
-)
-"""Methods that loops call all the time. They check their arguments themselves; a wrapper would cost 0.1 µs a call."""
-
-
-_OFTEN_MADE = frozenset({"AABB", "ArmPart", "CollisionPairInfo", "Geometry", "Member", "Ray"})
-"""Classes whose objects are made all the time, mostly by ravemj itself; their constructors are as ``_HOT`` methods."""
-
 
 class _ApiType(type):
     """Gives classes the same ``dir`` as their objects: IPython completes an object by the union of both."""
@@ -47,6 +25,10 @@ class ApiObject(metaclass=_ApiType):
 
     _internal: ClassVar[tuple[str, ...]] = ()
 
+    _often_called: ClassVar[tuple[str, ...]] = ()
+    """Methods that loops call all the time; ``__init__`` where ravemj makes many objects. They check their arguments
+    themselves, since a wrapper would cost 0.1 µs a call."""
+
     _names_wrong_arguments: ClassVar[bool] = True
 
     def __init_subclass__(cls, **kwargs: object) -> None:
@@ -56,9 +38,9 @@ class ApiObject(metaclass=_ApiType):
         """
         super().__init_subclass__(**kwargs)
         if cls._names_wrong_arguments:
-            skipped = {*cls._internal, *_HOT}
+            skipped = _all_of(cls, "_internal") | _all_of(cls, "_often_called")
             for name, method in tuple(vars(cls).items()):
-                is_public = name[0] != "_" or (name == "__init__" and cls.__name__ not in _OFTEN_MADE)
+                is_public = name[0] != "_" or name == "__init__"
                 if isinstance(method, FunctionType) and is_public and name not in skipped and _takes(method):
                     setattr(cls, name, explained(method))
         show_as_written(cls)
@@ -77,5 +59,10 @@ def _takes(method: FunctionType) -> bool:
 
 
 def _listed(kind: type, names: Iterable[str]) -> list[str]:
-    internal = {name for base in kind.__mro__ for name in vars(base).get("_internal", ())}
+    internal = _all_of(kind, "_internal")
     return [name for name in names if name.startswith("__") or not (name[0] == "_" or name in internal)]
+
+
+def _all_of(kind: type, attribute: str) -> set[str]:
+    """Return the names in an attribute of a class and of its bases."""
+    return {name for base in kind.__mro__ for name in vars(base).get(attribute, ())}

@@ -18,6 +18,8 @@ class Ray(ApiObject):
         >>> ray = Ray([0, 0, 2], [0, 0, -5])  # reaches down to z = -3
     """
 
+    _often_called = ("__init__",)
+
     def __init__(self, pos: ArrayLike = ZERO, dir: ArrayLike = ZERO) -> None:
         self._pos = arguments.vec3(pos, "pos")
         self._dir = arguments.vec3(dir, "dir")
@@ -44,6 +46,8 @@ class AABB(ApiObject):
         >>> box = robot.ComputeAABB()
         >>> top = box.pos()[2] + box.extents()[2]
     """
+
+    _often_called = ("__init__",)
 
     def __init__(self, pos: ArrayLike = ZERO, extents: ArrayLike = ZERO) -> None:
         self._pos = arguments.vec3(pos, "pos")

@@ -11,19 +11,21 @@ import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnused
 
 # isort: split
 
+import warnings
+
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm, Solutions
 from ravemj.ik.derive import Certificate, derive
 from ravemj.ik.numeric import Nearest, NumericSolver
 from ravemj.ik.self_motion import null_space, null_space_path, sweep
-from ravemj.ik.solver import IKSolver, make_solver
+from ravemj.ik.solver import ArmSolutions, make_solver
 from ravemj.ik.tasks import Task
 
 __all__ = [
+    "ArmSolutions",
     "Certificate",
     "Chain",
     "ClosedForm",
-    "IKSolver",
     "Nearest",
     "NumericSolver",
     "Solutions",
@@ -34,3 +36,11 @@ __all__ = [
     "null_space_path",
     "sweep",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """Return ``ArmSolutions`` for its old name ``IKSolver``, which goes with the next version."""
+    if name != "IKSolver":
+        raise AttributeError(f"module 'ravemj.ik' has no attribute '{name}'")
+    warnings.warn("ravemj.ik.IKSolver is now called ravemj.ik.ArmSolutions", DeprecationWarning, stacklevel=2)
+    return ArmSolutions

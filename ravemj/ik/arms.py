@@ -10,7 +10,7 @@ from ravemj.core.transforms import Pose, Vec3, rotate
 from ravemj.ik.chain import Chain
 from ravemj.ik.numeric import NumericSolver
 from ravemj.ik.redundancy import default_free, default_steps
-from ravemj.ik.solver import IKSolver, make_solver
+from ravemj.ik.solver import ArmSolutions, make_solver
 from ravemj.ik.tasks import Task
 from ravemj.model.joints import directions_at, relative_pose
 from ravemj.model.manipulators import chain as joints_between
@@ -83,9 +83,9 @@ class ArmSolver:
     def __init__(self, task: Task, free: Sequence[int] | None = None) -> None:
         self.task, self.free = task, free
         self._of: tuple[object, ...] = ()
-        self._solver: IKSolver | None = None
+        self._solver: ArmSolutions | None = None
 
-    def of(self, body: KinBody, manipulator: Manipulator) -> IKSolver:
+    def of(self, body: KinBody, manipulator: Manipulator) -> ArmSolutions:
         """Return the solver, up to date; a change of limits needs no new one.
 
         Raises:
@@ -106,7 +106,7 @@ class ArmSolver:
             other._solver = replace(self._solver, numeric=NumericSolver(self._solver.chain, self.task))
         return other
 
-    def _derived(self, chain: Chain) -> IKSolver:
+    def _derived(self, chain: Chain) -> ArmSolutions:
         usual = self.free
         if usual is None and self.task is not Task.TRANSFORM:
             usual = default_free(chain, self.task.value, self.task.dof)
@@ -116,7 +116,7 @@ class ArmSolver:
         return replace(solver, steps=default_steps(chain, solver.free))
 
 
-def _with_limits(solver: IKSolver | None, chain: Chain) -> IKSolver | None:
+def _with_limits(solver: ArmSolutions | None, chain: Chain) -> ArmSolutions | None:
     """Return a solver with the limits of a chain; None if the chain differs in more than these."""
     if solver is None or solver.chain.reach != chain.reach or solver.chain.dof != chain.dof:
         return None

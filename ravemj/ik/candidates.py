@@ -5,13 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from ravemj.ik.limits import all_turns, distances, nearest_turns
-from ravemj.ik.solver import FIRST, NEXT, IKSolver
+from ravemj.ik.solver import FIRST, NEXT, ArmSolutions
 from ravemj.ik.tasks import goal_poses
 from ravemj.ik.vectors import Floats
 
 
 def nearest_first(
-    solver: IKSolver,
+    solver: ArmSolutions,
     goal: Floats,
     seed: Floats,
     *,
@@ -36,7 +36,7 @@ def nearest_first(
         yield from turned[np.argsort(distances(solver.chain, turned, seed, weights), kind="stable")]
 
 
-def _groups(solver: IKSolver, goal: Floats, seed: Floats, free: Floats | None, *, limits: bool) -> Iterator[Floats]:
+def _groups(solver: ArmSolutions, goal: Floats, seed: Floats, free: Floats | None, *, limits: bool) -> Iterator[Floats]:
     """Yield solutions in [-pi, pi], shape (K, n), that come one group after the other."""
     if solver.closed is None:
         pose = goal_poses(solver.chain, solver.task, goal)
@@ -61,11 +61,11 @@ def _groups(solver: IKSolver, goal: Floats, seed: Floats, free: Floats | None, *
         yield _descended(solver, goal, seed)
 
 
-def _descended(solver: IKSolver, goal: Floats, seed: Floats) -> Floats:
+def _descended(solver: ArmSolutions, goal: Floats, seed: Floats) -> Floats:
     return solver.descent(goal_poses(solver.chain, solver.task, goal), seed)
 
 
-def shortfall(solver: IKSolver, goal: Floats, free: Floats | None = None) -> tuple[bool, bool]:
+def shortfall(solver: ArmSolutions, goal: Floats, free: Floats | None = None) -> tuple[bool, bool]:
     """Return whether a goal is out of reach for a value of free joints, and whether limits exclude solutions."""
     if solver.closed is None:
         return True, False

@@ -7,7 +7,7 @@ from ravemj.ik import redundancy
 from ravemj.ik.chain import Chain
 from ravemj.ik.limits import distances, nearest_turns
 from ravemj.ik.numeric import ACCURATE
-from ravemj.ik.solver import IKSolver
+from ravemj.ik.solver import ArmSolutions
 from ravemj.ik.tasks import Task, goal_poses
 from ravemj.ik.vectors import Floats
 
@@ -36,7 +36,13 @@ def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: 
 
 
 def null_space_path(
-    solver: IKSolver, goal: ArrayLike, start: Floats, along: Floats, *, step: float = 0.05, length: float = 2 * np.pi
+    solver: ArmSolutions,
+    goal: ArrayLike,
+    start: Floats,
+    along: Floats,
+    *,
+    step: float = 0.05,
+    length: float = 2 * np.pi,
 ) -> Floats:
     """Return configurations along a path that leaves a goal reached: through the null space, from a start on.
 
@@ -80,7 +86,7 @@ def null_space_path(
     return np.array(rows)
 
 
-def sweep(solver: IKSolver, goal: ArrayLike, seed: Floats, *, step: float = 0.01) -> Floats:
+def sweep(solver: ArmSolutions, goal: ArrayLike, seed: Floats, *, step: float = 0.01) -> Floats:
     """Return configurations that reach a goal and change continuously while the free joint takes its values.
 
     Args:
@@ -108,7 +114,7 @@ def sweep(solver: IKSolver, goal: ArrayLike, seed: Floats, *, step: float = 0.01
     return np.array([*below[::-1], middle, *above])
 
 
-def _followed(solver: IKSolver, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
+def _followed(solver: ArmSolutions, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
     """Return configurations for values of the free joint, each the one nearest to that before it, while there are."""
     assert solver.closed is not None
     found = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])

@@ -31,7 +31,7 @@ FIRST, NEXT = 12, 96
 
 
 @dataclass(frozen=True, eq=False)
-class IKSolver:
+class ArmSolutions:
     """Solves one kind of goal for one arm. Made by ``make_solver``.
 
     Attributes:
@@ -199,7 +199,7 @@ def make_solver(
     *,
     free: Sequence[int] | None = None,
     steps: Sequence[float] | None = None,
-) -> IKSolver:
+) -> ArmSolutions:
     """Find out how an arm is solved: by the first family that proves itself, else by a search.
 
     Args:
@@ -223,5 +223,5 @@ def make_solver(
             given = tuple(sizes if steps is None else steps)
             if len(given) != len(joints) or not all(step > 0 for step in given):
                 raise ValueError(f"steps {given} for free joints {joints}: expected one above 0 for each")
-            return IKSolver(chain, task, *derived, joints, given, numeric)
-    return IKSolver(chain, task, None, None, (), (), numeric)
+            return ArmSolutions(chain, task, *derived, joints, given, numeric)
+    return ArmSolutions(chain, task, None, None, (), (), numeric)

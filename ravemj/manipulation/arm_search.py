@@ -20,7 +20,7 @@ from ravemj.model.scene import Manipulator
 # ruff: noqa: PLC0415
 
 if TYPE_CHECKING:
-    from ravemj.ik import IKSolver
+    from ravemj.ik import ArmSolutions
 
 
 class Reason(Enum):
@@ -76,7 +76,7 @@ class ArmSearch:
         self,
         body: BodyState,
         arm: Manipulator,
-        solver: "IKSolver",
+        solver: "ArmSolutions",
         goal: Floats,
         checks: Checks,
         checker: Checker,

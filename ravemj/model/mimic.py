@@ -108,17 +108,33 @@ def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
 
 
 class Multiple(NamedTuple):
-    """The equation ``slope * x + offset``, which nearly all mimic joints have.
+    """The equation ``slope * x + offset`` within limits, which nearly all mimic joints have.
 
     Attributes:
         leader: The joint whose first value is x.
         slope: What it is multiplied by.
         offset: What is added.
+        lower: Lower limit of the result [rad or m].
+        upper: Upper limit of the result [rad or m].
     """
 
     leader: int
     slope: float
     offset: float
+    lower: float
+    upper: float
+
+    def follow(self, x: float, *, clamp: bool = True) -> float:
+        """Return the value of the mimic joint, within its limits if ``clamp``."""
+        value = self.slope * x + self.offset
+        if not clamp:
+            return value
+        value = self.lower if value < self.lower else value
+        return self.upper if value > self.upper else value
+
+    def follow_many(self, x: Floats) -> Floats:
+        """Return the values of the mimic joint for many configurations, within its limits, shape (n,)."""
+        return np.clip(self.slope * x + self.offset, self.lower, self.upper)
 
 
 class MimicJoint(NamedTuple):
@@ -128,7 +144,7 @@ class MimicJoint(NamedTuple):
         joint: Its index among the active joints followed by the passive ones.
         expression: The function, of ``joint0``, ``joint1``, …
         multiple: The same as a multiple of one joint's value, if it is that.
-        evaluate: The same, of the first values of all joints.
+        evaluate: The value of any other equation, from the first values of all joints.
         lower: Its lower limit [rad or m].
         upper: Its upper limit; a circular joint has none.
     """
@@ -136,7 +152,7 @@ class MimicJoint(NamedTuple):
     joint: int
     expression: "Expression"
     multiple: Multiple | None
-    evaluate: Callable[[Sequence[float]], float]
+    evaluate: Callable[[Sequence[float]], float] | None
     lower: float
     upper: float
 
@@ -158,11 +174,12 @@ class MimicJoints:
 
         ``values`` are the first ones of each joint [rad or m], active joints and then passive ones.
         """
-        for index, _, _, evaluate, lower, upper in self.joints:
-            value = evaluate(values)
-            if clamp:
-                value = min(max(value, lower), upper)
-            values[index] = value
+        for index, _, multiple, evaluate, lower, upper in self.joints:
+            if multiple is not None:
+                values[index] = multiple.follow(values[multiple.leader], clamp=clamp)
+            elif evaluate is not None:
+                value = evaluate(values)
+                values[index] = min(max(value, lower), upper) if clamp else value
 
     def evaluate_many(self, values: list[Floats]) -> None:
         """Do the same for many configurations: an array of shape (N,) for each joint."""
@@ -181,8 +198,4 @@ def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:
         return MimicJoint(index, equation, None, compiled, *limits)
     offset, ((name, slope),) = equation.affine.offset, equation.affine.slopes.items()
     leader = int(name.removeprefix("joint"))
-
-    def evaluate(values: Sequence[float]) -> float:
-        return slope * values[leader] + offset
-
-    return MimicJoint(index, equation, Multiple(leader, slope, offset), evaluate, *limits)
+    return MimicJoint(index, equation, Multiple(leader, slope, offset, *limits), None, *limits)

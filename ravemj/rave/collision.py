@@ -55,6 +55,8 @@ class CollisionChecker(Interface):
     OpenRAVE: what is inside one without touching a triangle does not collide.
     """
 
+    _often_called = ("CheckCollision", "CheckSelfCollision")
+
     _internal = (
         "answer",
         "collides",

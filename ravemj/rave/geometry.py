@@ -32,6 +32,8 @@ class Geometry(ApiObject):
         ...     geometry.SetDiffuseColor([1, 0, 0])
     """
 
+    _often_called = ("__init__",)
+
     Type = GeometryType
 
     def __init__(self, parent: object, state: BodyState, link: int, index: int, group: str | None = None) -> None:

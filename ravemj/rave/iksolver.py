@@ -29,7 +29,7 @@ from ravemj.rave.interface import Interface, asked_for
 from ravemj.rave.specification import IkParameterization
 
 if TYPE_CHECKING:
-    from ravemj.ik import IKSolver, Task
+    from ravemj.ik import ArmSolutions, Task
     from ravemj.model import scene
     from ravemj.rave.environment import Environment
     from ravemj.rave.manipulator import Manipulator
@@ -108,7 +108,7 @@ class FilteredSearch(ArmSearch):
     def __init__(
         self,
         manip: "Manipulator",
-        solver: "IKSolver",
+        solver: "ArmSolutions",
         goal: Goal,
         free: Floats | None,
         options: int,
@@ -253,7 +253,6 @@ class IkSolver(Interface):
     """
 
     _internal = (
-        "arm_solver",
         "attach",
         "copy_for",
         "derived",
@@ -276,7 +275,7 @@ class IkSolver(Interface):
         self.kind = kind
         from ravemj.ik.arms import ArmSolver
 
-        self.arm_solver = ArmSolver(task_of(kind), free)
+        self._arm_solver = ArmSolver(task_of(kind), free)
         self._steps = None if steps is None else tuple(steps)
         self._filters: list[Filter] = []
         self._robot: Robot | None = None
@@ -294,7 +293,7 @@ class IkSolver(Interface):
         if robot.GetEnv() is not self._env:
             raise ArgumentError(f"SetIkSolver: the solver '{self._xmlid}' was made for another environment")
         description = next(one for one in robot.simulation_state.scene.manipulators if one.name == arm)
-        self.arm_solver.of(robot.simulation_state.scene, description)
+        self._arm_solver.of(robot.simulation_state.scene, description)
         self._robot, self._arm_name = robot, arm
 
     def set_steps(self, steps: Sequence[float] | None) -> None:
@@ -318,12 +317,12 @@ class IkSolver(Interface):
                 return arm
         raise RavemjError(f"the arm '{self._arm_name}' of the solver '{self._xmlid}' was removed")
 
-    def derived(self) -> "IKSolver":
+    def derived(self) -> "ArmSolutions":
         """Return what computes, for the arm as it is now."""
-        solver = self.arm_solver.of(self._owner().simulation_state.scene, self._description())
+        solver = self._arm_solver.of(self._owner().simulation_state.scene, self._description())
         return solver if self._steps is None else replace(solver, steps=self._steps)
 
-    def _free_values(self, solver: "IKSolver", shares: ArrayLike | None) -> Floats | None:
+    def _free_values(self, solver: "ArmSolutions", shares: ArrayLike | None) -> Floats | None:
         """Return the values of free joints, shape (k,), that are given as shares of their ranges; None: any."""
         given = np.zeros(0) if shares is None else checked_numbers(shares, "freevalues")
         if not given.size:
@@ -438,8 +437,8 @@ class IkSolver(Interface):
 
     def copy_for(self, robot: "Robot") -> "IkSolver":
         """Return a solver for the same arm of another robot like this, with the default steps of free joints."""
-        copy = IkSolver(robot.GetEnv(), self._xmlid, self.kind, self.arm_solver.free)
-        copy.arm_solver = self.arm_solver.copy()
+        copy = IkSolver(robot.GetEnv(), self._xmlid, self.kind, self._arm_solver.free)
+        copy._arm_solver = self._arm_solver.copy()
         copy.attach(robot, self._arm_name)
         return copy
 

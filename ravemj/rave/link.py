@@ -26,6 +26,8 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 class Link(Member):
     """A link: one rigid part of a body. ``body.GetLinks()`` returns the links."""
 
+    _often_called = ("SetTransform",)
+
     _internal = ("scene_with_group",)
 
     Geometry = Geometry

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 class Member(ApiObject):
     """A link or joint of a body. Two objects are equal if they stand for the same link or joint of the same body."""
 
+    _often_called = ("__init__",)
+
     def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:
         self._parent = parent
         self._state = state

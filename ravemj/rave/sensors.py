@@ -47,6 +47,8 @@ class DescribedSensor(Interface):
         attached: The attached sensor of a robot that it belongs to, or None.
     """
 
+    _often_called = ("SetTransform",)
+
     _interface_type = InterfaceType.sensor
     _internal = ("attached", "description", "device", "take_state")
 

@@ -24,7 +24,7 @@ sys.path[:0] = [str(ROOT)]
 
 from ravemj.core.transforms import Floats, pose_of  # noqa: E402 - after the path is set
 from ravemj.formats.readers import read_file  # noqa: E402
-from ravemj.ik import Chain, IKSolver, NumericSolver, Task, make_solver  # noqa: E402
+from ravemj.ik import ArmSolutions, Chain, NumericSolver, Task, make_solver  # noqa: E402
 from ravemj.ik.arms import chain_of  # noqa: E402
 from ravemj.ik.residuals import ToolMotion, residual_and_jacobian  # noqa: E402
 from ravemj.ik.tasks import ANGLES, HEADINGS, goal_poses  # noqa: E402
@@ -205,7 +205,7 @@ def _level(chain: Chain, task: Task, values: Floats) -> Floats:
     return np.array([row for row in found if row is not None])
 
 
-def _answers(solver: IKSolver, values: Floats, goals: Floats) -> list[str]:
+def _answers(solver: ArmSolutions, values: Floats, goals: Floats) -> list[str]:
     """Return what solves goals, the free joints, the shares, the worst error and the median time."""
     chain = solver.chain
     limited = np.isfinite(chain.lower + chain.upper)
@@ -259,12 +259,12 @@ def random_values(chain: Chain, count: int) -> Floats:
     return np.random.default_rng(SEED).uniform(low, high, (count, chain.dof))
 
 
-def kind(solver: IKSolver) -> str:
+def kind(solver: ArmSolutions) -> str:
     """Return in a few words what solves an arm."""
     return "search" if solver.closed is None else f"{solver.closed.family.name}: {solver.closed.family.equations}"
 
 
-def own_values(solver: IKSolver, values: Floats, goals: Floats) -> str:
+def own_values(solver: ArmSolutions, values: Floats, goals: Floats) -> str:
     """Return the share of configurations that are among the solutions of their goals; free joints keep their values."""
     if solver.closed is None:
         return ""

@@ -6,12 +6,16 @@ What is expected of them is what Python 2.7.18 and NumPy 1.13.3 gave.
 import collections
 import os
 import re
+import shutil
+import subprocess
 import sys
 import time
 import traceback
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
+import fissix
 import numpy as np
 import pytest
 from command_line import ravemj_command
@@ -20,6 +24,7 @@ from hypothesis import strategies as st
 
 from ravemj.compat import openravepy, python2
 from ravemj.compat.python2.division import divide
+from ravemj.compat.python2.translation import FIXERS
 
 
 def run(source: str, path: str = "old.py") -> dict[str, Any]:
@@ -543,3 +548,30 @@ def test_run_without_the_option_names_it(folder):
     assert done.stderr.splitlines()[-1].endswith("helper.py is Python 2; ravemj run --py2 new.py translates it")
     (folder / "wrong.py").write_text("def f(:\n")
     assert "--py2" not in ravemj_command(folder, "run", "wrong.py").stderr
+
+
+def newest_python():
+    """The newest Python that is installed, at least the one that runs."""
+    for minor in range(sys.version_info.minor + 9, sys.version_info.minor, -1):
+        found = shutil.which(f"python3.{minor}")
+        if found and not subprocess.run([found, "-c", ""], capture_output=True, check=False).returncode:
+            return found
+    return sys.executable
+
+
+def test_scripts_are_translated_on_the_newest_python(tmp_path):
+    """fissix, whose last release is of 2024, works there: alone, since the packages of ravemj are for this Python."""
+    for name in ("fissix", "appdirs.py"):
+        source = Path(fissix.__file__).parent.parent / name
+        if source.exists():
+            (tmp_path / name).symlink_to(source)
+    code = (
+        "import sys; from fissix.refactor import RefactoringTool; fixes, text = sys.argv[1:]; "
+        "tool = RefactoringTool(['fissix.fixes.fix_' + name for name in fixes.split()]); "
+        "done = str(tool.refactor_string(text, 'script')); compile(done, 'script', 'exec'); print(done)"
+    )
+    script = "try:\n    print 'two', 0777 <> 1\nexcept KeyError, error:\n    raise ValueError, `error`\n"
+    command = [newest_python(), "-W", "ignore", "-c", code, FIXERS + " except numliterals", script]
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment, cwd=tmp_path)
+    assert done.stdout.splitlines()[1] == "    print('two', 0o777 != 1)"

@@ -19,7 +19,7 @@ import ravemj
 from ravemj.cli.checking import check
 from ravemj.errors import RavemjWarning
 from ravemj.formats.file_access import FileAccess
-from ravemj.formats.meshes import cache, read_mesh
+from ravemj.formats.meshes import read_mesh
 
 pytestmark = pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
 
@@ -370,14 +370,7 @@ def test_warnings_of_dropped_files_name_no_folders(places):
 
 
 class TestTheCache:
-    @pytest.fixture(autouse=True)
-    def later(self, monkeypatch):
-        monkeypatch.setattr(cache, "CLOCK_TICK", -(10**12))
-
-    @pytest.mark.parametrize("shortcuts", [True, False])
-    def test_holds_nothing_for_those_who_must_not_read_it(self, places, shortcuts, monkeypatch, tmp_path):
-        if not shortcuts:
-            monkeypatch.setattr(cache, "pack_shortcut", lambda entry, stamps: b"")
+    def test_holds_nothing_for_those_who_must_not_read_it(self, places, monkeypatch, tmp_path):
         monkeypatch.delenv("OPENRAVE_DATA")
         mesh = places.write("materials", "../out/{}")
         wide, narrow = FileAccess.opened(str(tmp_path / "a.xml")), FileAccess.opened(mesh)

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ik_arms import PANDA, PUMA, UR5, WAM, arm
 
+from ravemj import ik
 from ravemj.formats.readers import read_file
 from ravemj.ik import Chain, NumericSolver, Task, make_solver
 from ravemj.ik.arms import chain_of
@@ -440,3 +441,10 @@ class TestScenes:
             chain_of(body, replace(body.manipulators[0], base=None))
         with pytest.raises(ValueError, match="no joint"):
             chain_of(body, replace(body.manipulators[0], effector=body.manipulators[0].base))
+
+
+def test_the_old_name_of_arm_solutions_warns():
+    with pytest.warns(DeprecationWarning, match=r"now called ravemj\.ik\.ArmSolutions"):
+        assert ik.IKSolver is ik.ArmSolutions
+    with pytest.raises(AttributeError, match="no attribute 'IkSolver'"):
+        _ = ik.IkSolver

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import ravemj
+from ravemj.compat import names
 
 PACKAGE = Path(ravemj.__file__).parent
 
@@ -47,7 +48,9 @@ def modules():
 
 
 def room(path: Path) -> str:
-    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+    """The box of a module; those that give packages of ``compat`` the names of ``ravemj`` belong to its front."""
+    first = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+    return "__init__" if first in names.PUBLIC else first
 
 
 def imports(path: Path):
@@ -163,6 +166,11 @@ def quoted(node: ast.AST) -> int:
 def test_mujoco_is_imported_by_the_engine_and_above(path):
     if room(path) in WITHOUT_MUJOCO:
         assert not any(name.split(".")[0] == "mujoco" for name in imports(path))
+
+
+def test_fissix_is_imported_by_what_translates_python_2_alone():
+    users = {module_name(path) for path in modules() if any(name.split(".")[0] == "fissix" for name in imports(path))}
+    assert users == {"compat.python2.translation"}
 
 
 def test_the_architecture_draws_the_rooms():

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fissix.pytree import Node
     from fissix.refactor import RefactoringTool
 
-_FIXERS = """
+FIXERS = """
 asserts exec execfile exitfunc funcattrs metaclass methodattrs ne nonzero print raise repr throw unicode
 """
 """Those of fissix that change syntax; names are given by ``builtin``, ``methods`` and ``modules``."""
@@ -70,7 +70,7 @@ def _has_true_division(module: ast.AST) -> bool:
 def _tool() -> "RefactoringTool":
     from fissix import refactor  # noqa: PLC0415 - slow to import
 
-    return refactor.RefactoringTool([f"fissix.fixes.fix_{name}" for name in _FIXERS.split()])
+    return refactor.RefactoringTool([f"fissix.fixes.fix_{name}" for name in FIXERS.split()])
 
 
 def _tree(text: str, path: str) -> "Node":

@@ -135,8 +135,8 @@ class _Placement:
         self._target, self._indices = fixed_view(self._qpos, self._places)
         self.is_plain = bool((self._places >= 0).all()) and (multiples is not None or not followed & set(dofs))
         self._followers = [
-            (self._dofs.index(dof), *equation, self._part.qpos.start + kinematics.inner_index(index))
-            for dof, *equation, index in multiples or ()
+            (self._dofs.index(dof), multiple, self._part.qpos.start + kinematics.inner_index(index))
+            for dof, multiple, index in multiples or ()
             if dof in self._dofs
         ]
 
@@ -149,15 +149,15 @@ class _Placement:
                 self._model.pose_stamp += 1
             return
         self._target[self._indices] = values
-        for column, slope, offset, lower, upper, index in self._followers:
-            self._qpos[index] = min(max(slope * values.item(column) + offset, lower), upper)
+        for column, multiple, index in self._followers:
+            self._qpos[index] = multiple.follow(values.item(column))
 
     def qpos_of_many(self, values: Floats) -> Floats:
         """Return ``qpos`` of the world for many configurations, shape (n, nq), where the placement is plain."""
         qpos = np.tile(self._qpos, (len(values), 1))
         qpos[:, self._places] = values
-        for column, slope, offset, lower, upper, index in self._followers:
-            qpos[:, index] = np.clip(slope * values[:, column] + offset, lower, upper)
+        for column, multiple, index in self._followers:
+            qpos[:, index] = multiple.follow_many(values[:, column])
         return qpos
 
 

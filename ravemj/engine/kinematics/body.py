@@ -16,7 +16,7 @@ from ravemj.engine.kinematics.shown_values import ShownValues
 from ravemj.engine.kinematics.spherical import SphericalJoint
 from ravemj.model.joints import measured_values
 from ravemj.model.limits import Limits
-from ravemj.model.mimic import MimicJoints
+from ravemj.model.mimic import MimicJoints, Multiple
 from ravemj.model.scene import KinBody
 
 NO_QPOS = -1
@@ -130,11 +130,9 @@ class BodyKinematics:
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self._mimic_qpos = {one.joint: places[0] for one in self.mimic.joints if (places := self.joint_qpos[one.joint])}
         self._multiples = [
-            (self.first_dofs[leader], slope, offset, one.lower, one.upper, self._mimic_qpos[one.joint])
+            (self.first_dofs[one.multiple.leader], one.multiple, self._mimic_qpos[one.joint])
             for one in self.mimic.joints
-            if one.joint in self._mimic_qpos and one.multiple is not None
-            for leader, slope, offset in [one.multiple]
-            if leader < len(self.first_dofs)
+            if one.joint in self._mimic_qpos and one.multiple and one.multiple.leader < len(self.first_dofs)
         ]
         self._are_multiples = len(self._multiples) == len(self.mimic.joints)
 
@@ -195,12 +193,8 @@ class BodyKinematics:
         """Write the values of the mimic joints."""
         if self._are_multiples:
             plain, qpos = values.tolist(), self.qpos
-            for dof, slope, offset, lower, upper, place in self._multiples:
-                value = slope * plain[dof] + offset
-                if clamp:
-                    value = lower if value < lower else value
-                    value = upper if value > upper else value
-                qpos[place] = value
+            for dof, multiple, place in self._multiples:
+                qpos[place] = multiple.follow(plain[dof], clamp=clamp)
             return
         known = self.first_values(values)
         self.mimic.evaluate(known, clamp=clamp)
@@ -217,11 +211,8 @@ class BodyKinematics:
         return active + [passive[0] for passive in self._passive_values]
 
     @property
-    def multiples(self) -> list[tuple[int, float, float, float, float, int]] | None:
-        """The mimic joints as multiples of DOFs; None where there are others.
-
-        For each one the DOF, the factor, what is added, both limits [rad or m], and its place in ``qpos``.
-        """
+    def multiples(self) -> list[tuple[int, Multiple, int]] | None:
+        """The mimic joints as multiples of DOFs: the DOF, the equation and the index in ``qpos``; None for others."""
         return self._multiples if self._are_multiples else None
 
     def passive_values(self, index: int) -> Floats:

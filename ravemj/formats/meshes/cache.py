@@ -4,11 +4,6 @@ An entry (``.mesh``) is named after the hash of the file, the end of its name an
 no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and counts only while
 they are the same.
 
-A shortcut (``.path``) saves reading and hashing a file to find its entry, as the index of git does: it is named after
-the file's path and the stamps of the readers' source, holds the stamps of the file and of those that it refers to, and
-counts while they are the same. A file that was changed just now may be changed again within the same tick of the
-clock, so it gets none.
-
 Whatever goes wrong here is logged at debug level and never stops a mesh from being read.
 
 ``RAVEMJ_CACHE`` names the folder, or ``off`` for none; otherwise it is ``$XDG_CACHE_HOME/ravemj`` or
@@ -24,13 +19,12 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
 
 from ravemj.core.signals import signals_delayed
 from ravemj.formats import file_access
 from ravemj.formats.file_access import FileAccess
-from ravemj.formats.meshes.entries import Parts, follow_shortcut, pack_entry, pack_shortcut, unpack_entry
-from ravemj.formats.meshes.files import ReferencedFiles, changed_at, digest_of, read_bytes, stamp_of
+from ravemj.formats.meshes.entries import Parts, pack_entry, unpack_entry
+from ravemj.formats.meshes.files import ReferencedFiles, digest_of, read_bytes
 from ravemj.model.scene import mesh
 
 _log = logging.getLogger(__name__)
@@ -39,13 +33,10 @@ MAX_BYTES = 1 << 30
 """The cache is pruned to this size, those files first that were used least recently."""
 
 _PRUNE_EVERY = 64  # files written by this process between two checks of the size
-CLOCK_TICK = 2 * 10**9  # ns; the coarsest clock of a file system
 _RECENT = 24 * 3600  # s; a file that was used that recently is not marked again
 _READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
 
 _written = 0
-
-_T = TypeVar("_T")
 
 
 def cached_file(
@@ -68,20 +59,10 @@ def cached_file(
     if folder is None:
         parts, references = read(read_bytes(path))
         return parts, references.digests
-    began, stamp = time.time_ns(), stamp_of(path)
-    place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
-    shortcut = f"{folder}/{_name(readers_stamp(), kind.encode(), os.fsencode(place))}.path"
-    entry = _loaded(shortcut, follow_shortcut) if stamp else None
-    found = _loaded(f"{folder}/{entry}", unpack_entry) if entry else None
     home = os.path.dirname(os.path.abspath(path))
-    permits = functools.partial(access.permits_part, folder=home)
-    if found and all(map(permits, found[1])):
-        return found
-    parts, entry, references = _by_content(folder, read_bytes(path), kind, home, read, permits)
-    stamps = {**references.stamps, place: stamp}
-    settled = (stamp_of(name) == known and changed_at(known) + CLOCK_TICK < began for name, known in stamps.items())
-    if stamp and references.refused is None and all(settled):
-        _store(Path(shortcut), pack_shortcut(entry, stamps))
+    parts, references = _by_content(
+        folder, read_bytes(path), kind, home, read, functools.partial(access.permits_part, folder=home)
+    )
     return parts, references.digests
 
 
@@ -116,8 +97,8 @@ def _by_content(
     home: str,
     read: Callable[[bytes], tuple[Parts, ReferencedFiles]],
     permits: Callable[[str], bool],
-) -> tuple[Parts, str, ReferencedFiles]:
-    """Return the parts, the name of their entry, and the files that they come from besides this one.
+) -> tuple[Parts, ReferencedFiles]:
+    """Return the parts, and the files that they come from besides this one.
 
     Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files. All
     of them have to be permitted.
@@ -125,17 +106,15 @@ def _by_content(
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
     for entry in (alone, at_home):
-        found = _loaded(f"{folder}/{entry}", unpack_entry)
+        found = _loaded(f"{folder}/{entry}")
         if found:
             parts, digests = found
-            references = ReferencedFiles(digests, {path: stamp_of(path) for path in digests})
             if all(permits(path) and digest_of(path) == digest for path, digest in digests.items()):
-                return parts, entry, references
+                return parts, ReferencedFiles(digests)
     parts, references = read(content)
-    entry = at_home if references.digests else alone
     if references.refused is None:
-        _store(folder / entry, pack_entry(parts, references.digests))
-    return parts, entry, references
+        _store(folder / (at_home if references.digests else alone), pack_entry(parts, references.digests))
+    return parts, references
 
 
 def _name(readers: bytes, *parts: bytes) -> str:
@@ -158,14 +137,6 @@ def readers_digest() -> bytes:
     return digest.digest()
 
 
-@functools.cache
-def readers_stamp() -> bytes:
-    """Return a hash of the stamps of that source, which is faster than reading it."""
-    with contextlib.suppress(OSError):
-        return hashlib.sha256("\n".join(f"{path} {stamp_of(path)}" for path in reader_sources()).encode()).digest()
-    return b""
-
-
 def reader_sources() -> list[str]:
     """Return the paths of the modules beside this one, of that with class ``Mesh``, and of the policy on files."""
     folders = sorted(os.walk(os.path.dirname(__file__)))
@@ -173,13 +144,13 @@ def reader_sources() -> list[str]:
     return [*(name for name in names if name.endswith(".py")), mesh.__file__, file_access.__file__]
 
 
-def _loaded(file: str, unpack: Callable[[bytes], _T]) -> _T | None:
-    """Return the content of a cache file, or None if it is missing or damaged."""
+def _loaded(file: str) -> tuple[Parts, dict[str, str]] | None:
+    """Return the content of an entry, or None if it is missing or damaged."""
     try:
         descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time
         try:
             status = os.fstat(descriptor)
-            unpacked = unpack(os.read(descriptor, status.st_size))
+            unpacked = unpack_entry(os.read(descriptor, status.st_size))
         finally:
             os.close(descriptor)
     except FileNotFoundError:
@@ -225,7 +196,7 @@ def prune(folder: Path, max_bytes: int = MAX_BYTES) -> None:
     with os.scandir(folder) as entries:
         for entry in entries:
             with contextlib.suppress(OSError):  # another process was faster
-                if entry.name.endswith((".mesh", ".path", ".tmp")):
+                if entry.name.endswith((".mesh", ".path", ".tmp")):  # earlier versions wrote .path
                     status = entry.stat()
                     sizes.append((status.st_mtime, status.st_size, entry.path))
     total = sum(size for _, size, _ in sizes)

@@ -2,8 +2,8 @@
 
 NumPy's own format would take several times as long to load, and pickles can run code.
 
-An entry is the parts of a mesh, with what takes time to find out about them. A shortcut says which entry belongs to
-files as long as their stamps stay. Both begin with ``_MAGIC`` and the CRC-32 of the rest.
+An entry is the parts of a mesh, with what takes time to find out about them. It begins with ``_MAGIC`` and the CRC-32
+of the rest.
 """
 
 import json
@@ -11,7 +11,6 @@ import zlib
 
 import numpy as np
 
-from ravemj.formats.meshes.files import stamp_of
 from ravemj.formats.meshes.hulls import collision_form, store_form
 from ravemj.formats.meshes.parts import MeshPart
 from ravemj.model.scene import Mesh
@@ -64,22 +63,6 @@ def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
         store_form(mesh, form)
         parts.append(MeshPart(mesh, tuple(diffuse), tuple(ambient), transparency))
     return tuple(parts), digests
-
-
-def pack_shortcut(entry: str, stamps: dict[str, str]) -> bytes:
-    """Return the content of a shortcut to an entry, given the files that it comes from and what ``stamp_of`` says."""
-    return _sealed(json.dumps((entry, stamps)).encode())
-
-
-def follow_shortcut(content: bytes) -> str | None:
-    """Return the name of the entry that a shortcut leads to, or None if one of its files has changed since.
-
-    Raises:
-        ValueError: The content is damaged.
-    """
-    _check(content)
-    entry, stamps = json.loads(content[_START:].decode())
-    return entry if all([stamp_of(path) == stamp for path, stamp in stamps.items()]) else None
 
 
 def _sealed(content: bytes) -> bytes:

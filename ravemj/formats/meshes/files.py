@@ -20,12 +20,10 @@ class ReferencedFiles:
 
     Attributes:
         digests: SHA-256 of each as it lies on the disk, by path; empty for those that cannot be read.
-        stamps: What ``stamp_of`` said of each before it was read.
         refused: Why one of them must not be read; None if all of them may.
     """
 
     digests: dict[str, str] = field(default_factory=dict[str, str])
-    stamps: dict[str, str] = field(default_factory=dict[str, str])
     refused: SourceError | None = None
     _contents: dict[str, bytes] = field(default_factory=dict[str, bytes])
     _bytes_left: int = field(default_factory=most_bytes)
@@ -33,7 +31,6 @@ class ReferencedFiles:
     def read(self, path: str) -> bytes | None:
         """Return a file's decompressed content, or None if it cannot be read or all files together get too large."""
         if path not in self.digests and len(self.digests) < _MAX_REFERENCES:
-            self.stamps[path] = stamp_of(path)
             self.digests[path] = ""
             try:
                 raw = read_bytes(path)
@@ -106,23 +103,6 @@ def digest_of(path: str) -> str:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except SourceError:
         return ""
-
-
-def stamp_of(path: str) -> str:
-    """Return a stamp of a file, which changes when the file does; empty for one that is missing.
-
-    It has the inode, the size, and the times of the last changes of content and status [ns].
-    """
-    try:
-        status = os.stat(path)
-    except (OSError, ValueError):  # ValueError: a zero byte in the name
-        return ""
-    return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
-
-
-def changed_at(stamp: str) -> int:
-    """Return the time of the last change in a stamp [ns]; 0 for a missing file."""
-    return max(map(int, stamp.split()[2:]), default=0)
 
 
 def read_bytes(path: str) -> bytes:

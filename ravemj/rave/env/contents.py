@@ -53,6 +53,8 @@ CollisionCallback = Callable[[CollisionReport, bool], int]
 class Contents(EnvironmentPart):
     """The bodies, sensors and modules of an environment; collision checks of bodies, links and rays."""
 
+    _often_called = ("CheckCollision",)
+
     _internal = (
         "collision_callbacks",
         "wrap",

@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from ravemj.core.output import new_file
-from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
+from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError
 from ravemj.formats.data_folders import existing
 from ravemj.formats.limits import json_bytes
 from ravemj.model import scene
@@ -29,11 +29,13 @@ def is_json(path: str) -> bool:
     return path.lower().endswith(SUFFIX)
 
 
-def save_json(info: EnvironmentBaseInfo, path: str, content: scene.Scene, skipped: Sequence[str]) -> None:
+def save_json(
+    info: EnvironmentBaseInfo, path: str, content: scene.Scene, skipped: Sequence[str], diagnostics: Diagnostics
+) -> None:
     """Write bodies and the properties of their environment to a file; ``skipped`` are words of ``skipwrite``.
 
-    The info is changed. JSON has no place for the view and for sensors that no robot carries; warnings say that they
-    are left out.
+    The info is changed. JSON has no place for the view and for sensors that no robot carries; ``diagnostics`` get
+    warnings that they are left out.
 
     Raises:
         OutputError: the file cannot be written, or a number is not finite. An existing file stays as it is.
@@ -44,7 +46,6 @@ def save_json(info: EnvironmentBaseInfo, path: str, content: scene.Scene, skippe
         body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
         for word in skipped:
             _SKIPS[word](body)
-    diagnostics = Diagnostics()
     if content.view not in (None, View()):
         message = "background and camera are left out: JSON has no place for them"
         diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
@@ -53,7 +54,6 @@ def save_json(info: EnvironmentBaseInfo, path: str, content: scene.Scene, skippe
         message = f"sensors that no robot carries are left out: {names_of_sensors}; JSON has no place for them"
         diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML and COLLADA keep them")
     _warn_of_losses(diagnostics, path, content.bodies)
-    send_warnings(diagnostics)
     try:
         text = json.dumps(info.SerializeJSON(), allow_nan=False)
     except ValueError as error:

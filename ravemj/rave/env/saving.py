@@ -64,6 +64,8 @@ _VALUES = {
 class Saving(Description):
     """The methods that save models."""
 
+    _internal = ("write",)
+
     def Save(
         self,
         filename: str | os.PathLike[str],
@@ -102,13 +104,25 @@ class Saving(Description):
             >>> env.Save("scene.dae")
             >>> env.Save("robot.zae", env.SelectionOptions.Body, env.GetRobots()[0].GetName())
         """
+        diagnostics = Diagnostics()
+        self.write(filename, options, atts, diagnostics)
+        send_warnings(diagnostics)
+
+    def write(
+        self,
+        filename: str | os.PathLike[str],
+        options: int,
+        atts: SaveArguments | None,
+        diagnostics: Diagnostics,
+    ) -> None:
+        """Do what ``Save`` does, and add its warnings to ``diagnostics``."""
         from ravemj.formats.writers import external_bodies, save  # noqa: PLC0415 - slow to import, and rarely wanted
 
         checked_kind(filename, (str, os.PathLike), "Save: filename", "a path")
         path = os.fspath(filename)
         if path.lower().endswith(".msgpack"):
             raise UnsupportedError("Save", "MessagePack files")
-        given = _checked(atts)
+        given = _checked(atts, diagnostics)
         named = dict(given)
         skipped = [part for name, value in given if name == "skipwrite" for part in value.split()]
         self._check_alive()
@@ -125,13 +139,12 @@ class Saving(Description):
         names = [body.name for body in bodies]
         if named.get("format") == "json" or ("format" not in named and is_json(path)):
             content = Scene(tuple(bodies), view, sensors=sensors)
-            save_json(self.ExtractInfo(), path, content, skipped)
+            save_json(self.ExtractInfo(), path, content, skipped, diagnostics)
             return
         kind = cast("ModelFormat", named.get("format", "collada"))
         if self._metre != 1 and kind == "collada":
             raise UnsupportedError("Save", "COLLADA files in other units than the metre")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
-        diagnostics = Diagnostics()
         references = _external_names(given, names) if kind == "collada" else set[str]()
         external = external_bodies(path, Scene(tuple(bodies)), references, diagnostics, named.get("openravescheme"))
         for part in skipped:
@@ -140,7 +153,6 @@ class Saving(Description):
         gravity = None if gravity == DEFAULT_GRAVITY else gravity
         scene = Scene(tuple(bodies), shown, gravity, sensors, self.GetDescription())
         save(path, scene, diagnostics, kind, cast("MeshFormat", named.get("meshes", "stl")), external)
-        send_warnings(diagnostics)
 
     def WriteToMemory(
         self, filetype: str, options: int = SelectionOptions.Everything, atts: SaveArguments | None = None
@@ -164,7 +176,7 @@ class Saving(Description):
             return path.read_bytes()
 
 
-def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
+def _checked(atts: SaveArguments | None, diagnostics: Diagnostics) -> list[tuple[str, str]]:
     """Return the arguments as pairs of texts."""
     if isinstance(atts, str):
         return [("target", atts)]
@@ -174,9 +186,7 @@ def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
             raise ArgumentError(f"Save: atts: {pair!r} is not a pair of a name and a text")
     for name, value in pairs:
         if name in _NO_EFFECT:
-            diagnostics = Diagnostics()
             diagnostics.warn("ignored-option", f"Save: '{name}' has no effect: {_NO_EFFECT[name]}", FROM_SCRIPT)
-            send_warnings(diagnostics)
         elif name not in ("target", "externalref"):
             _check_words(name, value)
     return pairs

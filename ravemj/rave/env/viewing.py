@@ -107,6 +107,8 @@ class GraphHandle(Handle):
         >>> handle = None  # gone
     """
 
+    _often_called = ("SetTransform",)
+
     def __init__(self, drawings: Drawings, primitives: Primitives, text: str = "") -> None:
         key, self._drawing = drawings.add(primitives, text)
         super().__init__(drawings.remove, key)

@@ -57,6 +57,8 @@ class KinBody(BodyConfiguration, Interface):
         >>> body.GetLink("Arm1").GetTransform()
     """
 
+    _often_called = ("CheckSelfCollision",)
+
     _internal = (
         "active_dofs",
         "connect",

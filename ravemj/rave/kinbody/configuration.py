@@ -49,6 +49,16 @@ class BodyConfiguration(BodyPart):
     joint values in parts, or an ``out`` that lies on disk (``numpy.memmap``).
     """
 
+    _often_called = (
+        "ComputeInverseDynamics",
+        "ComputeJacobianAxisAngle",
+        "ComputeJacobianTranslation",
+        "GetDOFValues",
+        "GetDOFVelocities",
+        "SetDOFValues",
+        "SetTransform",
+    )
+
     def GetDOFValues(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the joint values.
 

@@ -42,6 +42,8 @@ class BodyPart(ApiObject):
     files belong to databases of models, which ravemj has none of: they are what scripts set, or empty.
     """
 
+    _often_called = ("GetDOFLimits",)
+
     _internal = (
         "extracted",
         "simulation_state",

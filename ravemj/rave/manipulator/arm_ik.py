@@ -25,7 +25,7 @@ from ravemj.rave.iksolver import IkSolver, split_options, task_of
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 
 if TYPE_CHECKING:
-    from ravemj.ik import IKSolver
+    from ravemj.ik import ArmSolutions
     from ravemj.rave.robot import Robot
 
 
@@ -59,6 +59,8 @@ class IkBatch(NamedTuple):
 
 class ArmIk(ApiObject):
     """The name and the pose of an arm, and inverse kinematics: joint values for goals, and motions that keep them."""
+
+    _often_called = ("__init__",)
 
     _internal = (
         "description",
@@ -302,7 +304,7 @@ class ArmIk(ApiObject):
 
     # Many goals at once
 
-    def ik_solver(self, iktype: IkParameterizationType = _Type.Transform6D) -> "IKSolver":
+    def ik_solver(self, iktype: IkParameterizationType = _Type.Transform6D) -> "ArmSolutions":
         """Return the solver of the arm, which is derived when it is first asked for.
 
         Args:
@@ -482,7 +484,7 @@ def _without_flag(arguments: tuple[object, ...], ikreturn: bool) -> tuple[tuple[
     return arguments, ikreturn
 
 
-def _branch_names(solver: "IKSolver", count: int) -> list[str]:
+def _branch_names(solver: "ArmSolutions", count: int) -> list[str]:
     """Return a name for each solution of a goal: the values of free joints, and the choices of the closed form."""
     if solver.closed is None:
         return [f"found {number + 1}" for number in range(count)]

@@ -60,7 +60,6 @@ class Robot(ActiveDofs):
         "active_choice",
         "affine_kinds",
         "arm_solvers",
-        "connected",
         "devices",
         "ik_solvers",
         "quaternion_limits",
@@ -86,7 +85,7 @@ class Robot(ActiveDofs):
         self.affine_kinds = default_kinds()
         self.quaternion_limits = np.array([np.pi, 0.0, 0.0, 0.0])
         self._active_manipulator = None
-        self.connected = ConnectedBodies(self)
+        self._connected = ConnectedBodies(self)
         self.devices = Devices(self)
         self.ik_solvers: dict[str, IkSolver] = {}
         self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
@@ -287,7 +286,7 @@ class Robot(ActiveDofs):
         super().InitFromKinBodyInfo(info)
         if isinstance(info, RobotBaseInfo):
             self._grippers = tuple(info._vGripperInfos)
-            self.connected = ConnectedBodies(self, info._vConnectedBodyInfos)
+            self._connected = ConnectedBodies(self, info._vConnectedBodyInfos)
         return True
 
     def remake(self, info: RobotBaseInfo) -> None:
@@ -319,9 +318,9 @@ class Robot(ActiveDofs):
             _vManipInfos=[ManipulatorInfo.of(body, arm) for arm in body.manipulators],
             _vAttachedSensorInfos=[AttachedSensorInfo.of(body, sensor) for sensor in body.sensors],
             _vGripperInfos=self.GetGripperInfos(),
-            _vConnectedBodyInfos=[body.GetInfo() for body in self.connected.bodies],
+            _vConnectedBodyInfos=[body.GetInfo() for body in self._connected.bodies],
         )
-        return self.connected.without_their_parts(info)
+        return self._connected.without_their_parts(info)
 
     def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
         """Copy another body, as ``KinBody.Clone`` does, and of a robot also the sensors and the user's choices.
@@ -345,7 +344,7 @@ class Robot(ActiveDofs):
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self.quaternion_limits = other.quaternion_limits.copy()
-        self.connected = other.connected.copy_for(self)
+        self._connected = other._connected.copy_for(self)
         self._active_manipulator = other._active_manipulator
         self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
         self.devices.take_over(other.devices)
@@ -368,7 +367,7 @@ class Robot(ActiveDofs):
 
     devices: Devices
     """The sensors that were used; others are not made."""
-    connected: ConnectedBodies
+    _connected: ConnectedBodies
     ik_solvers: dict[str, IkSolver]
     """The IK solvers, by the names of their manipulators."""
     _active_manipulator: str | None
@@ -613,15 +612,15 @@ class Robot(ActiveDofs):
 
     def GetConnectedBodies(self) -> list[ConnectedBody]:
         """Return the bodies that can be connected, active or not."""
-        return list(self.connected.bodies)
+        return list(self._connected.bodies)
 
     def GetConnectedBody(self, bodyname: str) -> ConnectedBody | None:
         """Return the connected body called ``bodyname``, or None."""
-        return next((body for body in self.connected.bodies if body.GetName() == bodyname), None)
+        return next((body for body in self._connected.bodies if body.GetName() == bodyname), None)
 
     def GetConnectedBodyActiveStates(self) -> list[int]:
         """Return for each connected body whether it is active: 1, or 0 for no, -1 for undecided."""
-        return [body.IsActive() for body in self.connected.bodies]
+        return [body.IsActive() for body in self._connected.bodies]
 
     def SetConnectedBodyActiveStates(self, activestates: Sequence[int]) -> None:
         """Set for each connected body whether it is active; see ``ConnectedBody.SetActive``.
@@ -629,7 +628,7 @@ class Robot(ActiveDofs):
         Args:
             activestates: As many states as there are connected bodies.
         """
-        bodies = self.connected.bodies
+        bodies = self._connected.bodies
         if len(activestates) != len(bodies):
             raise ArgumentError(f"SetConnectedBodyActiveStates: {len(activestates)} states for {len(bodies)} bodies")
         for body, active in zip(bodies, activestates, strict=True):
@@ -658,7 +657,7 @@ class Robot(ActiveDofs):
             >>> env.Add(robot)
         """
         info = checked_kind(connectedbodyinfo, ConnectedBodyInfo, "AddConnectedBody: connectedbodyinfo")
-        return self.connected.add(info, removeduplicate)
+        return self._connected.add(info, removeduplicate)
 
     def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
         """Remove ``connectedbody``, and return whether it was one of the bodies that can be connected.
@@ -666,15 +665,15 @@ class Robot(ActiveDofs):
         Raises:
             openrave_exception: the robot is in an environment (``InvalidState``).
         """
-        return self.connected.remove(connectedbody)
+        return self._connected.remove(connectedbody)
 
     def connect(self) -> None:
         """Make the active connected bodies parts of the robot. The environment calls this before it adds the robot."""
-        self.connected.connect()
+        self._connected.connect()
 
     def disconnect(self) -> None:
         """Remove the parts of connected bodies. The environment calls this after it has removed the robot."""
-        self.connected.disconnect()
+        self._connected.disconnect()
 
     def _place(
         self, name: str, parts: Sequence[scene.Manipulator | scene.AttachedSensor], replaces: bool, caller: str

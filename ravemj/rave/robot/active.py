@@ -163,6 +163,8 @@ class ActiveChoice(NamedTuple):
 class ActiveDofs(KinBody):
     """The active DOFs of a robot: some of its joints, then components of its base's pose (affine DOFs)."""
 
+    _often_called = ("CalculateActiveJacobian", "SetActiveDOFValues")
+
     active_choice: ActiveChoice
     """The choice of ``SetActiveDOFs``."""
     affine_kinds: dict[str, AffineKind]

@@ -1,0 +1,6 @@
+"""The modules of ``ravemj.compat.databases`` under the names that scripts import."""
+
+from ravemj.compat.databases import *  # noqa: F403 - as its __all__ lists them
+from ravemj.compat.names import share
+
+share(__name__)
