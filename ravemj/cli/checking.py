@@ -53,7 +53,7 @@ def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) ->
     folder = os.path.dirname(os.path.abspath(path))
     for file, source in named.items():
         if not is_inside(os.path.abspath(file), folder):
-            message = f"the model reads {os.path.normpath(file)}, outside of its folder"
+            message = f"the model reads '{os.path.normpath(file)}', outside of its folder"
             yield Diagnostic(
                 "note", "outside-file", message, source, "copy it into that folder if the model is to move"
             )

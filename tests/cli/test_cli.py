@@ -600,8 +600,8 @@ BAD_MODELS = {
     "body.xml": (JOINT.format("<Body>a</Body><Body>c</Body>"), r"body.xml:\d: error: .*'c'"),
     "include.xml": ('<Environment>\n<Robot file="gone.xml"/>\n</Environment>', r"include.xml:2: error: .*gone\.xml"),
     "mjcf.xml": ("<mujoco/>", "mjcf.xml:1: error: this is MJCF.*mujoco.MjModel.from_xml_path"),
-    "urdf.xml": (URDF.format('<parent link="a"/>'), "urdf.xml:1: error: this is URDF.*mujoco.MjModel.from_xml_path"),
-    "links.xml": (URDF.format(""), "links.xml:1: error: this is URDF"),
+    "urdf.xml": (URDF.format('<parent link="a"/>'), "urdf.xml:1: error: joint 'j' has no <child>"),
+    "links.xml": (URDF.format(""), "links.xml:1: error: joint 'j' has no <parent>"),
     "latin.xml": (
         '<?xml version="1.0" encoding="utf-8"?>\n<Robot>\n<KinBody name="caf\xe9"/></Robot>'.encode("latin-1"),
         "latin.xml:3: error: the byte 0xE9 is not UTF-8.*encoding=",

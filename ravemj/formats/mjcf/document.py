@@ -1,6 +1,6 @@
 """The whole MJCF document."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 from ravemj.core.caching import cached_property
@@ -266,7 +266,7 @@ class _Writer:
         inertial = legal_inertial(link.inertial)
         if inertial is not link.inertial:
             self.altered.append((body_index, link_index))
-            if link.inertial != MASSLESS and not is_rounding(inertial, link.inertial):
+            if replace(link.inertial, com=ZERO) != MASSLESS and not is_rounding(inertial, link.inertial):
                 message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"
                 self.diagnostics.warn("raised-inertia", message, link.source)
         self.bodies.element("inertial", link.source, **inertia_attributes(inertial))

@@ -1,0 +1,43 @@
+"""URDF and SRDF: the robots of ROS become bodies.
+
+``robot`` walks over a document and fills a ``BodyBuilder``; ``link``, ``shapes`` and ``joint`` each read one kind of
+element, ``packages`` finds the files that URIs name, ``srdf`` reads what MoveIt and or_urdf keep in a second file, and
+``arms`` guesses manipulators without one. urdfdom, the parser of ROS, decides what a document means; where it stops at
+a mistake that leaves the robot usable, the robot is read and the mistake is reported.
+"""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ravemj.formats.openrave_xml.tree import Element
+
+GIVEN = {
+    "srdf": "of a URDF: its SRDF, by default the one beside it; `none`: neither that nor guessed manipulators",
+    "state": "of a URDF: the group state of its SRDF that gives the joint values",
+    "packages": "of a URDF: folders of packages, `NAME=FOLDER`; several are separated as in PATH",
+    "order": "of a URDF: `name` sorts links and joints by name, as or_urdf did",
+}
+"""Attributes that a caller may give with a URDF, with their meanings."""
+
+
+def is_urdf(root: "Element") -> bool:
+    """Return whether a ``<robot>`` is URDF's and not OpenRAVE's.
+
+    It is if a joint names its parent by an attribute, or if it has links and no ``<kinbody>``.
+    """
+    if root.tag != "robot":
+        return False
+    joints = (child for child in root.children if child.tag == "joint")
+    if any("link" in part.attributes for joint in joints for part in joint.children if part.tag == "parent"):
+        return True
+    tags = {child.tag for child in root.children}
+    return "link" in tags and "kinbody" not in tags
+
+
+def is_srdf(root: "Element") -> bool:
+    """Return whether a ``<robot>`` is that of an SRDF: it describes groups or pairs of links, and no links."""
+    tags = {child.spelled for child in root.children}
+    return root.spelled == "robot" and not tags & {"link", "kinbody", "KinBody"} and bool(tags & _SRDF_TAGS)
+
+
+_SRDF_TAGS = {"group", "disable_collisions", "group_state", "end_effector"}
