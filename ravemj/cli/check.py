@@ -8,7 +8,7 @@ from collections import Counter
 
 from ravemj.cli import checking
 from ravemj.cli.console import print_findings
-from ravemj.cli.models import model_file
+from ravemj.cli.models import given, model_file
 from ravemj.errors import Diagnostic, Source
 
 
@@ -16,7 +16,7 @@ def check(options: argparse.Namespace) -> int:
     """Report what is wrong or odd in models."""
     found: dict[tuple[object, ...], Diagnostic] = {}  # a file that several models include is reported once
     for model in options.models:
-        findings = checking.check(model_file(model))
+        findings = checking.check(model_file(model), given(options))
         fresh = {key: finding for finding in findings if (key := _key(finding)) not in found}
         found.update(fresh)
         if not options.json:

@@ -15,7 +15,7 @@ from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag
 from ravemj.formats.openrave_xml.tree import Element, content_of, parse
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.formats.urdf import GIVEN as URDF_GIVEN
-from ravemj.formats.urdf import is_srdf, is_urdf
+from ravemj.formats.urdf import check_robot, is_urdf
 from ravemj.model.scene import AttachedSensor, KinBody, Scene, View
 
 _DEFAULT_CAMERA_POSITION: Vec3 = (0.0, 1.5, 0.8)
@@ -125,12 +125,10 @@ class _Document:
             SourceError: this is another format.
         """
         readers = {"robot": self.read_body, "kinbody": self.read_body, "sensor": self.read_sensor}
+        check_robot(root)
         if is_urdf(root):
             self.read_urdf(root)
             return
-        if is_srdf(root):
-            hint = f"open its URDF with --srdf {root.source.file}"
-            raise SourceError("this is an SRDF, which belongs to a URDF", root.source, hint)
         if root.tag == "environment":
             self.read_environment(root)
         elif root.tag in readers:

@@ -8,6 +8,8 @@ a mistake that leaves the robot usable, the robot is read and the mistake is rep
 
 from typing import TYPE_CHECKING
 
+from ravemj.errors import SourceError
+
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.tree import Element
 
@@ -15,9 +17,13 @@ GIVEN = {
     "srdf": "of a URDF: its SRDF, by default the one beside it; `none`: neither that nor guessed manipulators",
     "state": "of a URDF: the group state of its SRDF that gives the joint values",
     "packages": "of a URDF: folders of packages, `NAME=FOLDER`; several are separated as in PATH",
+    "args": "of a xacro: its arguments, `name:=value`, separated by blanks",
     "order": "of a URDF: `name` sorts links and joints by name, as or_urdf did",
 }
 """Attributes that a caller may give with a URDF, with their meanings."""
+
+GUESSES = "guessed-manipulators"
+"""Code of the note that names guessed manipulators, which commands print."""
 
 
 def is_urdf(root: "Element") -> bool:
@@ -34,10 +40,18 @@ def is_urdf(root: "Element") -> bool:
     return "link" in tags and "kinbody" not in tags
 
 
-def is_srdf(root: "Element") -> bool:
-    """Return whether a ``<robot>`` is that of an SRDF: it describes groups or pairs of links, and no links."""
-    tags = {child.spelled for child in root.children}
-    return root.spelled == "robot" and not tags & {"link", "kinbody", "KinBody"} and bool(tags & _SRDF_TAGS)
+def check_robot(root: "Element") -> None:
+    """Refuse a ``<robot>`` that is neither URDF's nor OpenRAVE's.
+
+    Raises:
+        SourceError: it is a xacro, or the root of an SRDF.
+    """
+    tags = {child.spelled for child in root.children} if root.spelled == "robot" else set[str]()
+    if any(tag.startswith("xacro:") for tag in tags):
+        raise SourceError("this is a xacro, and only a file that its user opens is expanded", root.source)
+    if tags & _SRDF_TAGS and not tags & {"link", "kinbody", "KinBody", "Robot"}:
+        hint = f"open its URDF with --srdf {root.source.file}"
+        raise SourceError("this is an SRDF, which belongs to a URDF", root.source, hint)
 
 
 _SRDF_TAGS = {"group", "disable_collisions", "group_state", "end_effector"}

@@ -4,6 +4,7 @@ import re
 
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.urdf import GUESSES
 from ravemj.formats.urdf.joint import UrdfJoint
 from ravemj.formats.urdf.tree import RobotTree
 from ravemj.model.manipulators import ManipulatorBuilder
@@ -30,7 +31,7 @@ def guess(tree: RobotTree, root: Element, context: Context) -> list[ManipulatorB
         counts = [f"'{arm.name}' ({len(_dofs(arm.effector, tree))} joints)" for arm in arms]
         noun = "a guessed manipulator" if len(arms) == 1 else "guessed manipulators"
         message = f"no SRDF describes the arms; {noun}: {', '.join(counts)}"
-        context.diagnostics.note("guessed-manipulators", message, root.source, "--srdf FILE gives the robot's own")
+        context.diagnostics.note(GUESSES, message, root.source, "--srdf FILE gives the robot's own")
     return arms
 
 
