@@ -88,6 +88,7 @@ def joint(name, parent, child, inner="", kind="revolute"):
     return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>{inner}</joint>'
 
 
+SRDF = '<robot name="r"/>'
 TWO = urdf(joint("j", "a", "b"), joint("k", "b", "c"))
 
 
@@ -110,7 +111,7 @@ def test_the_root_comes_first_and_the_others_in_the_order_of_the_file():
     text = urdf(joint("k", "a", "c"), joint("j", "b", "a"), links="cab")
     assert [link.GetName() for link in loaded(text).GetLinks()] == ["b", "c", "a"]
     assert [one.GetName() for one in loaded(text).GetJoints()] == ["k", "j"]
-    by_name = loaded(text, order="name")
+    by_name = loaded(text, like="or_urdf", srdf=SRDF)
     assert [link.GetName() for link in by_name.GetLinks()] == ["b", "a", "c"]
     assert [one.GetName() for one in by_name.GetJoints()] == ["j", "k"]
 

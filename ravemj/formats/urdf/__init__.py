@@ -14,13 +14,16 @@ if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.tree import Element
 
 GIVEN = {
-    "srdf": "of a URDF: its SRDF, by default the one beside it; `none`: neither that nor guessed manipulators",
+    "srdf": "of a URDF: its SRDF, a file or a text; by default the one beside it; `none`: neither that nor guesses",
     "state": "of a URDF: the group state of its SRDF that gives the joint values",
     "packages": "of a URDF: folders of packages, `NAME=FOLDER`; several are separated as in PATH",
     "args": "of a xacro: its arguments, `name:=value`, separated by blanks",
-    "order": "of a URDF: `name` sorts links and joints by name, as or_urdf did",
+    "like": "of a URDF: `or_urdf` sorts links and joints by name, and makes no robot without an SRDF that is named",
 }
 """Attributes that a caller may give with a URDF, with their meanings."""
+
+OR_URDF = "or_urdf"
+"""OpenRAVE's plugin for URDF, whose bodies scripts expect of its module."""
 
 GUESSES = "guessed-manipulators"
 """Code of the note that names guessed manipulators, which commands print."""

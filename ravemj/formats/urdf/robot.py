@@ -8,8 +8,8 @@ from pathlib import Path
 
 from ravemj.errors import Diagnostics, SourceError
 from ravemj.formats.openrave_xml.context import Context
-from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.urdf import arms
+from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
+from ravemj.formats.urdf import OR_URDF, arms
 from ravemj.formats.urdf.elements import check_children, children, named
 from ravemj.formats.urdf.joint import UrdfJoint, follow, make_joint, read_frame
 from ravemj.formats.urdf.link import read_groups, read_link
@@ -148,7 +148,7 @@ def _add_parts(
         for name in tree.descendants(start)[1:]:
             joint = tree.above[name]
             links[name].pose = links[joint.parent].pose @ joint.T_parent_child
-    by_name = given.get("order") == "name"
+    by_name = given.get("like") == OR_URDF
     rest = [name for name in (sorted(links) if by_name else links) if name != tree.roots[0]]
     body.links = [links[name] for name in (tree.roots[0], *rest)]
     indices = {link.name: index for index, link in enumerate(body.links)}
@@ -175,18 +175,32 @@ def _packages(root: Element, given: Mapping[str, str]) -> dict[str, str]:
 
 def _add_srdf(body: BodyBuilder, tree: RobotTree, root: Element, context: Context, given: Mapping[str, str]) -> None:
     """Add what the SRDF says; without one, guessed manipulators."""
-    wanted, state = given.get("srdf", ""), given.get("state", "")
-    path = context.find(wanted, root.source, "") if wanted not in {"", NO_SRDF} else _srdf_beside(root, context)
-    if wanted == NO_SRDF:
-        path = None
-    if path is not None:
+    wanted, state, like = given.get("srdf", ""), given.get("state", ""), given.get("like", "")
+    if like == OR_URDF and not wanted:
+        wanted, body.is_robot = NO_SRDF, False
+    document = _srdf(wanted, root, context)
+    if document is not None:
         from ravemj.formats.urdf.srdf import add_srdf  # noqa: PLC0415 - many robots have none
 
-        add_srdf(body, tree, path, root.source, context, state)
+        add_srdf(body, tree, document, context, state)
     elif state:
         raise SourceError(f"there is no state '{state}': the robot has no SRDF", root.source, "name one with --srdf")
     if not body.manipulators and wanted != NO_SRDF:
         body.manipulators = arms.guess(tree, root, context)
+
+
+def _srdf(wanted: str, root: Element, context: Context) -> Document | None:
+    """Return the SRDF that a caller names or writes, or the one beside the URDF; None if there is none."""
+    if wanted == NO_SRDF:
+        return None
+    budget = context.documents.budget
+    if wanted.lstrip().startswith("<"):
+        return parse(wanted.encode(), f"SRDF of {root.source.file}", None, budget)
+    path = context.find(wanted, root.source, "") if wanted else _srdf_beside(root, context)
+    if path is None:
+        return None
+    context.access.files.setdefault(path, root.source)
+    return parse_file(path, root.source, budget)
 
 
 def _srdf_beside(root: Element, context: Context) -> str | None:

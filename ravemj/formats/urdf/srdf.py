@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from ravemj.core.transforms import Pose
-from ravemj.errors import Source, SourceError
+from ravemj.errors import SourceError
 from ravemj.formats.openrave_xml.context import Context, did_you_mean
-from ravemj.formats.openrave_xml.tree import Element, parse_file
+from ravemj.formats.openrave_xml.tree import Document, Element
 from ravemj.formats.urdf.elements import attribute, check_children, children, number_of, vector_of
 from ravemj.formats.urdf.joint import UrdfJoint
 from ravemj.formats.urdf.link import SPHERES_GROUP
@@ -24,22 +24,19 @@ _DEEPEST = 50  # groups inside one another
 _SPHERE_COLOR: Rgb = (0.7, 0.7, 0.7)
 
 
-def add_srdf(body: BodyBuilder, tree: RobotTree, path: str, urdf: Source, context: Context, state: str) -> None:
+def add_srdf(body: BodyBuilder, tree: RobotTree, document: Document, context: Context, state: str) -> None:
     """Add to a body what an SRDF says of it.
 
     Args:
         body: The body, with its links and joints.
         tree: Its tree.
-        path: The SRDF.
-        urdf: The root element of the URDF.
+        document: The SRDF.
         context: The context of the reading.
         state: Name of the group state that gives the joint values; empty for none.
 
     Raises:
-        SourceError: the SRDF cannot be parsed, or has no such state.
+        SourceError: the SRDF is not well-formed, or has no such state.
     """
-    context.access.files.setdefault(path, urdf)
-    document = parse_file(path, urdf, context.documents.budget)
     if document.error is not None:
         raise document.error
     root = document.root
@@ -245,7 +242,8 @@ class _Srdf:
         last = max(moving, key=lambda name: len(self._above(name)))
         if not set(moving) <= {joint.name for joint in self._above(last)}:
             return None
-        end = group.tip or self.tree.joints[last].child
+        covered = {joint.name for joint in self.tree.path(group.tip) or []} if group.tip else set[str]()
+        end = group.tip if covered >= set(moving) else self.tree.joints[last].child
         base = self._base(group, end)
         return None if base is None else (base, end)
 
