@@ -1,5 +1,7 @@
 """SRDF: pairs, groups, manipulators and states; and manipulators that are guessed without one."""
 
+from itertools import pairwise
+
 import pytest
 from test_urdf import joint, urdf
 
@@ -7,8 +9,8 @@ import ravemj
 from ravemj.formats.readers import read_data, read_file
 
 ARM = urdf(
-    joint("j1", "base", "l1"), joint("j2", "l1", "l2"), joint("j3", "l2", "l3"), joint("t", "l3", "tool0", kind="fixed"),
-    joint("f1", "l3", "finger1", kind="prismatic"),
+    joint("j1", "base", "l1"), joint("j2", "l1", "l2"), joint("j3", "l2", "l3"),
+    joint("t", "l3", "tool0", kind="fixed"), joint("f1", "l3", "finger1", kind="prismatic"),
     joint("f2", "l3", "finger2", '<mimic joint="f1"/>', "prismatic"),
     links=["base", "l1", "l2", "l3", "tool0", "finger1", "finger2"],
 )  # fmt: skip
@@ -163,7 +165,7 @@ def test_a_tool_is_guessed_and_said_in_one_line():
 
 def chain(links, base="base"):
     ends = [base, *links]
-    return [joint(f"to_{child}", parent, child) for parent, child in zip(ends, ends[1:], strict=False)]
+    return [joint(f"to_{child}", parent, child) for parent, child in pairwise(ends)]
 
 
 def robot(*chains):
@@ -219,7 +221,7 @@ def test_the_module_loads_files_with_their_joints_by_name(module, tmp_path):
 
 
 def test_the_module_loads_texts(module):
-    import json  # noqa: PLC0415
+    import json
 
     srdf = f'<robot name="r">{CHAIN}</robot>'
     name = module.SendCommand("LoadString " + json.dumps({"urdf": ARM, "srdf": srdf}))

@@ -46,8 +46,8 @@ def legal_inertial(inertial: Inertial) -> Inertial:
 def _nearest(small: float, middle: float, large: float) -> Vec3:
     """Return the nearest moments, in the least-squares sense, of which none is larger than the sum of the others.
 
-    They are the projection onto the plane where the largest is that sum; if that is no solution either, onto the edge of
-    the allowed cone, where the smallest is 0 and the others are equal.
+    They are the projection onto the plane where the largest is that sum; if that is no solution either, onto the edge
+    of the allowed cone, where the smallest is 0 and the others are equal.
     """
     excess = (large - small - middle) / 3
     if excess <= 0:

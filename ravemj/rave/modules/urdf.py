@@ -20,8 +20,8 @@ _LOG = logging.getLogger("ravemj")
 def urdf_module(env: "Environment", xmlid: str) -> Module:
     """Make a module that adds robots of URDF files.
 
-    As or_urdf's, it sorts links and joints by name, names bodies anonymously, makes a KinBody of a URDF without an SRDF,
-    and answers with the name of the body.
+    As or_urdf's, it sorts links and joints by name, names bodies anonymously, makes a KinBody of a URDF without an
+    SRDF, and answers with the name of the body.
     """
 
     def load_uri(arguments: str) -> str | None:
