@@ -108,7 +108,8 @@ class Loading(Description):
         """Add the file ``path`` that a person has dropped on a viewer, all of it or nothing.
 
         It may refer to the files in its folder and to those that were dropped with it, ``dropped``. Bodies whose names
-        are taken get other names. Return the error with file and line; empty if the file was added.
+        are taken get other names. Return the error with file and line, or the mesh that is missing of what was added;
+        empty if all is there.
         """
         path = os.path.abspath(path)
         access = FileAccess.dropped(path, dropped)
@@ -131,7 +132,9 @@ class Loading(Description):
             return f"{path}: the file has no body and no sensor"
         Compiled(reading.scene, Diagnostics())  # raises where MuJoCo refuses the bodies
         self._add(replace(reading, renames=True, diagnostics=access.named_diagnostics()))
-        return ""
+        missing = [finding for finding in reading.diagnostics if finding.code == "missing-file"]
+        others = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+        return f"{missing[0]}{others}" if missing else ""
 
     def _try_elsewhere(self, path: str) -> None:
         """Load a file of JSON into another environment, for a moment; errors as of ``_load_json``."""
