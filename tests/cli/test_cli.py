@@ -741,7 +741,7 @@ BAD_WORDS = [
     ("plan puma560 --to 0,0,0,0,0,0 -o gone/a.csv", 1, "ravemj: error: .*gone"),
     ("plan puma560 --to 9,0,0,0,0,0", 1, r"ravemj: error: no motion: goal: joint 'joint1' is 9, outside its limits \["),
     ("plan puma560 --to -2.4,-0.7,-2.9,-1.3,1,-3.2", 1, ".*no motion: goal: it collides: link 'base' .*'link4' of"),
-    ("plan puma560 --pose 9,9,9", 1, "ravemj: error: no motion: no joint values take 'arm' there"),
+    ("plan puma560 --pose 9,9,9", 1, "ravemj: error: no motion: no joint values take 'arm' of 'PUMA560' there"),
     ("plan workshop --manip panda_arm --pose 0.2,0.2,0.35,0,1,0,0", 1, ".*no motion: all .* nearest: .* hits table"),
     ("plan puma560 --pose 1,2", 1, "ravemj: error: --pose: found 2, expected"),
     ("plan puma560 --pose 0,0,1,0,0,0,0", 1, "ravemj: error: --pose: the quaternion"),

@@ -485,3 +485,51 @@ def test_a_urdf_is_part_of_an_openrave_file(robot_folder, tmp_path):
     assert left.GetManipulator("arm").GetArmDOF() == 2
     assert not right.IsRobot()
     assert right.GetDOF() == 2
+
+
+XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:arg name="tip" default="c"/><link name="a"/>
+<link name="$(arg tip)"/><joint name="j" type="revolute"><parent link="a"/><child link="$(arg tip)"/>
+<limit lower="-1" upper="${pi / 2}" effort="1" velocity="1"/></joint></robot>"""
+
+
+def test_comments_make_no_xacro(tmp_path):
+    (tmp_path / "r.urdf").write_text(TWO.replace("</robot>", "<!-- <xacro:arm/> -->\n</robot>"))
+    assert read_file(tmp_path / "r.urdf").failure is None
+
+
+@pytest.mark.parametrize("name", ["r.urdf", "r.urdf.xacro"])
+def test_a_xacro_is_expanded_for_its_user(tmp_path, name):
+    pytest.importorskip("xacrodoc", reason="needs the extra xacro")
+    (tmp_path / name).write_text(XACRO)
+    reading = read_file(tmp_path / name, {"args": "tip:=hand"})
+    (body,) = reading.scene.bodies
+    assert [link.name for link in body.links] == ["a", "hand"]
+    assert body.joints[0].axes[0].upper == pytest.approx(np.pi / 2)
+
+
+def test_a_xacro_that_never_ends_is_stopped(tmp_path, monkeypatch):
+    pytest.importorskip("xacrodoc", reason="needs the extra xacro")
+    monkeypatch.setattr("ravemj.formats.urdf.xacro.LIMIT", 1.0)
+    (tmp_path / "r.xacro").write_text(XACRO.replace("pi / 2", "[1 for i in range(10 ** 12)][0]"))
+    assert "is not expanded after 1 s" in str(read_file(tmp_path / "r.xacro").failure)
+
+
+def test_a_mistake_in_a_xacro_is_one_line(tmp_path):
+    pytest.importorskip("xacrodoc", reason="needs the extra xacro")
+    (tmp_path / "r.xacro").write_text(XACRO.replace("pi / 2", "tau2"))
+    assert "name 'tau2' is not defined" in str(read_file(tmp_path / "r.xacro").failure)
+
+
+def test_a_xacro_without_the_extra_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    (tmp_path / "r.xacro").write_text(XACRO)
+    assert 'pip install "ravemj[xacro]"' in str(read_file(tmp_path / "r.xacro").failure)
+
+
+def test_a_xacro_that_another_file_or_a_text_brings_is_not_expanded(tmp_path):
+    assert "only a file that its user opens is expanded" in str(read_data(XACRO).failure)
+    (tmp_path / "r.xacro").write_text(XACRO)
+    (tmp_path / "scene.xml").write_text('<Environment><Robot name="r" file="r.xacro"/></Environment>')
+    found = read_file(tmp_path / "scene.xml").diagnostics
+    assert any("only a file that its user opens" in finding.message for finding in found)

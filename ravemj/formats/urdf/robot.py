@@ -9,7 +9,7 @@ from pathlib import Path
 from ravemj.errors import Diagnostics, SourceError
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
-from ravemj.formats.urdf import OR_URDF, arms
+from ravemj.formats.urdf import OR_URDF, arms, check_robot
 from ravemj.formats.urdf.elements import check_children, children, named
 from ravemj.formats.urdf.joint import UrdfJoint, follow, make_joint, read_frame
 from ravemj.formats.urdf.link import read_groups, read_link
@@ -37,6 +37,7 @@ def read_robot(root: Element, context: Context, given: Mapping[str, str]) -> Bod
     Raises:
         SourceError: the document cannot be a robot.
     """
+    check_robot(root)
     check_children(root, _KNOWN, context, _LEFT_OUT)
     _note_left_out(root, context)
     version = root.attributes.get("version", "1.0")

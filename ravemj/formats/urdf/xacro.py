@@ -7,6 +7,7 @@ a limited time.
 import importlib.util
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -17,14 +18,19 @@ from ravemj.formats.limits import check_bytes, most_bytes
 
 SUFFIX = ".xacro"
 
-_LIMIT = 10.0  # s
+LIMIT = 10.0
+"""Time limit of an expansion [s]."""
+
 _LONGEST = 300  # characters of an error that another program prints
+_COMMENT = re.compile(b"<!--.*?-->", re.DOTALL)  # expanded files keep what their xacro had as comments
 _HEAD = 20_000  # bytes in which the first element of xacro stands
 
 
 def is_xacro(path: str, content: bytes) -> bool:
     """Return whether a file is to be expanded: by its name, or since it has elements of xacro."""
-    return path.lower().endswith(SUFFIX) or (b"<robot" in content[:_HEAD] and b"<xacro:" in content)
+    if path.lower().endswith(SUFFIX):
+        return True
+    return b"<xacro:" in content and b"<robot" in content[:_HEAD] and b"<xacro:" in _COMMENT.sub(b"", content)
 
 
 def expand(path: str, given: Mapping[str, str], access: FileAccess) -> bytes:
@@ -51,9 +57,9 @@ def expand(path: str, given: Mapping[str, str], access: FileAccess) -> bytes:
     command = [sys.executable, "-P", os.path.join(os.path.dirname(__file__), "expansion.py")]
     asked, folder = json.dumps(request).encode(), os.path.dirname(place)
     try:
-        done = subprocess.run(command, input=asked, capture_output=True, timeout=_LIMIT, cwd=folder, check=False)
+        done = subprocess.run(command, input=asked, capture_output=True, timeout=LIMIT, cwd=folder, check=False)
     except subprocess.TimeoutExpired:
-        raise SourceError(f"the xacro is not expanded after {_LIMIT:g} s", source) from None
+        raise SourceError(f"the xacro is not expanded after {LIMIT:g} s", source) from None
     if done.returncode:
         lines = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
         raise SourceError(f"the xacro cannot be expanded: {lines[-1][:_LONGEST]}", source, "--arg NAME:=VALUE sets one")
