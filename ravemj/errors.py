@@ -188,7 +188,7 @@ class Diagnostic:
 
     Attributes:
         severity: ``error`` where OpenRAVE's ``Load`` returns False though the bodies are there; ``note``, which only
-            ``ravemj check`` makes, where something is good to know.
+            commands print, where something is good to know.
         code: Stable name of the kind of finding, for instance ``unknown-tag``.
         message: What was found and what was done about it.
         source: The place in the file.
@@ -244,6 +244,10 @@ class Diagnostics:
         """Record something that OpenRAVE lets pass in silence or with a log line."""
         self._found.append(Diagnostic("warning", code, shortened(message), source, shortened(hint)))
 
+    def note(self, code: str, message: str, source: Source, hint: str = "") -> None:
+        """Record something that is good to know and that nobody has to change."""
+        self._found.append(Diagnostic("note", code, shortened(message), source, shortened(hint)))
+
     def error(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something for which OpenRAVE's ``Load`` returns False though it goes on."""
         self._found.append(Diagnostic("error", code, shortened(message), source, shortened(hint)))
@@ -278,9 +282,11 @@ def _and_others(first: Diagnostic, others: Sequence[Diagnostic]) -> str:
 
 
 def send_warnings(diagnostics: Iterable[Diagnostic]) -> None:
-    """Send diagnostics through Python's ``warnings``, one warning for each code."""
+    """Send diagnostics other than notes through Python's ``warnings``, one warning for each code."""
     by_code: dict[str, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
+        if diagnostic.severity == "note":
+            continue
         by_code.setdefault(diagnostic.code, []).append(diagnostic)
     for findings in by_code.values():
         send_warning(*findings)

@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import os
 
 TO_STANDARD_OUTPUT = "-"
 """The name that stands for standard output in place of a file."""
@@ -14,6 +15,23 @@ def file_name(text: str) -> str:
     """Return the name of a file or folder."""
     if not text:
         raise argparse.ArgumentTypeError("the name is empty")
+    return text
+
+
+def package(text: str) -> str:
+    """Return the name and the folder of a package."""
+    name, _, folder = text.partition("=")
+    if not name or not os.path.isdir(folder):
+        reason = f"'{folder}' is no folder" if folder else "should be NAME=FOLDER"
+        raise argparse.ArgumentTypeError(f"'{text}': {reason}")
+    return text
+
+
+def argument(text: str) -> str:
+    """Return the name and the value of an argument of a xacro."""
+    name, separator, _ = text.partition(":=")
+    if not name or not separator or len(text.split()) != 1:
+        raise argparse.ArgumentTypeError(f"'{text}' should be NAME:=VALUE, without blanks")
     return text
 
 

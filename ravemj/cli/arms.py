@@ -23,6 +23,7 @@ from ravemj.rave import (
 )
 from ravemj.rave.manipulator import Manipulator
 
+_POSE_DOFS = 6
 _GHOST = 0.75  # transparency
 
 
@@ -38,6 +39,15 @@ class Solution(NamedTuple):
     values: Floats
     branch: str
     trouble: tuple[str, ...]
+
+
+def out_of_reach(arm: Manipulator, kind: IkParameterizationType) -> str:
+    """Say that no joint values take an arm to a goal, and what an arm of fewer than six joints can be asked instead."""
+    text = f"no joint values take '{arm.GetName()}' of '{arm.GetRobot().GetName()}' there: it is out of reach"
+    if kind != IkParameterizationType.Transform6D or arm.GetArmDOF() >= _POSE_DOFS:
+        return text
+    hint = "ravemj ik --type TranslationDirection5D asks for the direction of the tool and its point, dx,dy,dz,x,y,z"
+    return f"{text}; a pose has six parts, and the arm {arm.GetArmDOF()} joints: {hint}"
 
 
 def arm_of(robots: Sequence[Robot], name: str | None) -> Manipulator:

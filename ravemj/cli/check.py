@@ -8,15 +8,20 @@ from collections import Counter
 
 from ravemj.cli import checking
 from ravemj.cli.console import print_findings
-from ravemj.cli.models import model_file
+from ravemj.cli.models import given, model_file
 from ravemj.errors import Diagnostic, Source
 
 
 def check(options: argparse.Namespace) -> int:
     """Report what is wrong or odd in models."""
+    if options.self or options.write_srdf is not None:
+        from ravemj.cli.self_collisions import check as check_self  # noqa: PLC0415 - rarely wanted
+
+        touching = sum(check_self(options, model) for model in options.models)
+        return 1 if touching and options.strict else 0
     found: dict[tuple[object, ...], Diagnostic] = {}  # a file that several models include is reported once
     for model in options.models:
-        findings = checking.check(model_file(model))
+        findings = checking.check(model_file(model), given(options))
         fresh = {key: finding for finding in findings if (key := _key(finding)) not in found}
         found.update(fresh)
         if not options.json:

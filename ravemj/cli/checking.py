@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
 from ravemj.formats.file_access import is_inside
+from ravemj.formats.urdf.xacro import SUFFIX as XACRO
 from ravemj.model.builder import DEFAULT_INERTIAL
 from ravemj.model.scene import KinBody
 from ravemj.rave import load
@@ -15,21 +16,25 @@ FATAL_CODES = {"bad-number"}
 """Codes of findings that OpenRAVE overlooks and commands refuse: nobody means the number that OpenRAVE reads there."""
 
 
-def check(path: str | os.PathLike[str]) -> list[Diagnostic]:
+def check(path: str | os.PathLike[str], given: Mapping[str, str] | None = None) -> list[Diagnostic]:
     """Return all findings about a model file, in the order in which they are met.
 
     Args:
-        path: An OpenRAVE XML file. Its mistakes become findings, never exceptions.
+        path: A model file. Its mistakes become findings, never exceptions.
+        given: Attributes for its body; see ``Environment.Load``.
 
     Example:
         >>> from ravemj.cli.checking import check
         >>> check("models/env.xml")
         []
     """
+    if os.fspath(path).lower().endswith(XACRO):
+        hint = "write the URDF with ravemj[xacro] or ROS (xacro FILE > robot.urdf), and check that"
+        return [Diagnostic("error", "fatal", "a xacro is not expanded here", Source(os.fspath(path)), hint)]
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RavemjWarning)
-            env = load(path)
+            env = load(path, given)
     except SourceError as error:
         return [*map(_finding, error.diagnostics), _fatal(error)]
     except RavemjError as error:
@@ -53,7 +58,7 @@ def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) ->
     folder = os.path.dirname(os.path.abspath(path))
     for file, source in named.items():
         if not is_inside(os.path.abspath(file), folder):
-            message = f"the model reads {os.path.normpath(file)}, outside of its folder"
+            message = f"the model reads '{os.path.normpath(file)}', outside of its folder"
             yield Diagnostic(
                 "note", "outside-file", message, source, "copy it into that folder if the model is to move"
             )

@@ -41,9 +41,9 @@ def manipulators(prefix: str, parsed_args: argparse.Namespace, **_: object) -> l
 
 def _robots(options: argparse.Namespace) -> "list[Robot]":
     """Return the robots of the model of a command; none if it is not named yet or cannot be read."""
-    from ravemj.cli.models import loaded, model_file  # noqa: PLC0415 - slow to import
+    from ravemj.cli.models import loaded  # noqa: PLC0415 - slow to import
 
     with warnings.catch_warnings(), contextlib.suppress(RavemjError):
         warnings.simplefilter("ignore")
-        return loaded(model_file(options.model)).GetRobots() if options.model else []
+        return loaded(options).GetRobots() if options.model else []
     return []

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ravemj.cli.arms import Solution, add_ghost, arm_of, pose_goal, reached, start_values, validated
+from ravemj.cli.arms import Solution, add_ghost, arm_of, out_of_reach, pose_goal, reached, start_values, validated
 from ravemj.cli.console import console, table
 from ravemj.cli.models import chosen_robots, load_model
 from ravemj.core.transforms import Floats
@@ -41,7 +41,7 @@ def ik(options: argparse.Namespace) -> int:
     elif found:
         _print_table(arm, found, len(ways))
     else:
-        print(f"no joint values take '{arm.GetName()}' of '{robot.GetName()}' there: it is out of reach")
+        print(out_of_reach(arm, _kind(options)))
     if options.output is not None:
         _draw(env, arm, found, options)
         print(f"wrote {options.output}")

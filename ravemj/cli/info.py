@@ -111,6 +111,8 @@ def _tables(body: KinBody) -> Iterator[object]:
         yield _passive_joints(body)
     if body.manipulators:
         yield _manipulators(body.links, body.manipulators)
+    if body.configurations:
+        yield _configurations(body)
     if body.sensors:
         yield _sensors(body.links, body.sensors)
 
@@ -151,6 +153,13 @@ def _manipulators(links: Sequence[Link], manipulators: Sequence[Manipulator]) ->
         ends = (_link_name(links, index) for index in (manipulator.base, manipulator.effector))
         dofs = (_ranges(manipulator.arm_dofs), _ranges(manipulator.gripper_dofs))
         rows.add_row(manipulator.name, *ends, *dofs, " ".join(map(_number, manipulator.chucking_direction)))
+    return rows
+
+
+def _configurations(body: KinBody) -> object:
+    rows = table("Named configurations", "--state", "values [rad, m]")
+    for named in body.configurations:
+        rows.add_row(named.name, ", ".join(f"{joint} {_number(value)}" for joint, value in named.values))
     return rows
 
 

@@ -14,6 +14,7 @@ from ravemj.cli.console import print_findings
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning, SourceError
 from ravemj.formats.shipped import SHIPPED_MODELS, model_path
+from ravemj.formats.urdf import GUESSES
 from ravemj.rave import Environment, Robot, load
 from ravemj.trajectories.motion_arguments import first_robot
 
@@ -26,24 +27,41 @@ def load_model(options: argparse.Namespace) -> Environment:
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)  # they are printed below, all at once
-        env = loaded(model_file(options.model))
-    fatal = [finding for finding in env.diagnostics if options.strict or finding.code in FATAL_CODES]
+        env = loaded(options)
+    found = [finding for finding in env.diagnostics if finding.severity != "note"]
+    fatal = [finding for finding in found if options.strict or finding.code in FATAL_CODES]
     if fatal:
         raise failure_of(fatal)
-    print_findings(env.diagnostics)
+    print_findings([*found, *(finding for finding in env.diagnostics if finding.code == GUESSES)])
     return env
 
 
-def loaded(file: str) -> Environment:
-    """Load a file.
+def loaded(options: argparse.Namespace) -> Environment:
+    """Load the model of a command, and the others that it names.
 
     Raises:
-        SourceError: it is missing or broken; the message names the cause.
+        SourceError: one is missing or broken; the message names the cause.
     """
+    env = None
     try:
-        return load(file)
+        for model in (options.model, *getattr(options, "others", [])):
+            env = load(model_file(model), given(options), into=env)
     except SourceError as error:
         raise error if error.cause is None else failure_of([error.cause]) from None
+    return cast("Environment", env)
+
+
+def given(options: argparse.Namespace) -> dict[str, str]:
+    """Return what the options of a command say about a URDF, as attributes of ``Environment.Load``."""
+    packages: list[str] = getattr(options, "package", None) or []
+    arguments: list[str] = getattr(options, "arg", None) or []
+    words = {
+        "srdf": getattr(options, "srdf", None),
+        "state": getattr(options, "state", None),
+        "packages": os.pathsep.join(packages),
+        "args": " ".join(arguments),
+    }
+    return {name: word for name, word in words.items() if word}
 
 
 def named_robot(env: Environment, name: str | None) -> Robot | None:

@@ -11,6 +11,7 @@ from ravemj.cli.shared_options import (
     add_model,
     add_picture_options,
     add_robot,
+    add_urdf_options,
     command,
     complete_models,
 )
@@ -51,12 +52,16 @@ def _add_view(commands: Commands) -> None:
         "view.view",
         "show a model in a window, or as a page in a browser, and move it with the mouse",
         "ravemj view pendulum",
+        "ravemj view table.env.xml ur5.urdf    # both together",
         "ravemj view --web workshop            # prints the address of the page; Ctrl-C ends it",
         "ravemj view --web --port 8080 robot.xml",
         "ravemj view --watch robot.xml         # shows it anew whenever a file of it is saved",
         "ravemj view --physics pendulum        # right drags pull it, Space stops time",
     )
     add_model(parser)
+    parser.add_argument(
+        "others", nargs="*", type=file_name, metavar="MODEL", help="further models, shown together with the first one"
+    )
     add_robot(parser, "robot to look at, selected, so that the sliders turn its joints; default: everything in view")
     parser.add_argument(
         "--watch",
@@ -206,10 +211,26 @@ def _add_check(commands: Commands) -> None:
         "find what is wrong in models, what OpenRAVE passes over in silence, and files outside of the model's folder",
         "ravemj check env.xml",
         "ravemj check --strict models/*.xml",
+        "ravemj check robot.urdf --self --write-srdf robot.srdf",
         "ravemj check --json robot.xml      # a list of file, line, code, severity, message, hint, included_from",
     )
     complete_models(
-        parser.add_argument("models", nargs="+", type=file_name, metavar="FILE", help="OpenRAVE XML or COLLADA files")
+        parser.add_argument(
+            "models", nargs="+", type=file_name, metavar="FILE", help="OpenRAVE XML, COLLADA or URDF files"
+        )
+    )
+    add_urdf_options(parser)
+    parser.add_argument(
+        "--self",
+        action="store_true",
+        help="list instead the pairs of links that touch where a robot starts, or in more than 95 %% of 1000 random "
+        "configurations",
+    )
+    parser.add_argument(
+        "--write-srdf",
+        type=file_name,
+        metavar="FILE",
+        help="write these as disabled pairs: an SRDF, or a copy of the robot's own with them added",
     )
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
@@ -225,7 +246,7 @@ def _add_diff(commands: Commands) -> None:
     )
     for name in ("first", "second"):
         complete_models(
-            parser.add_argument(name, type=file_name, metavar=name.upper(), help="OpenRAVE XML or COLLADA file")
+            parser.add_argument(name, type=file_name, metavar=name.upper(), help="OpenRAVE XML, COLLADA or URDF file")
         )
     parser.add_argument(
         "--tolerance",

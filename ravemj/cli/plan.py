@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ravemj.cli.arms import arm_of, pose_goal, reached, start_values, validated
+from ravemj.cli.arms import arm_of, out_of_reach, pose_goal, reached, start_values, validated
 from ravemj.cli.console import progress
 from ravemj.cli.models import chosen_robots, load_model, moving_robot
 from ravemj.cli.plan_output import Plan, check_output, write
@@ -42,8 +42,15 @@ def plan(options: argparse.Namespace) -> int:
     if options.output is not None:
         write(found, camera, options)
     if found.motion is None:
-        raise RavemjError(f"no motion: {told}")
+        raise RavemjError(f"no motion: {told}{_about_itself(told, robot, options.model)}")
     return 0
+
+
+def _about_itself(told: str, robot: Robot, model: str) -> str:
+    """Return a hint for a start at which a robot touches itself, as many do that have no SRDF."""
+    if not told.startswith("start:") or told.count(f"of '{robot.GetName()}'") != 2:
+        return ""
+    return f"; ravemj check {model} --self lists links that always touch, and --write-srdf lets them"
 
 
 def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
@@ -85,7 +92,7 @@ def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int
     kind = IkParameterizationType.Translation3D if is_point else IkParameterizationType.Transform6D
     ways = reached(arm, np.array(pose) if is_point else pose_goal(pose, "--pose"), kind)
     if not ways:
-        raise RavemjError(f"no motion: no joint values take '{arm.GetName()}' there: it is out of reach")
+        raise RavemjError(f"no motion: {out_of_reach(arm, kind)}")
     solutions = validated(arm, ways)
     good = [one.values for one in solutions if not one.trouble]
     if not good:

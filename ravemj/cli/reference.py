@@ -81,7 +81,9 @@ def _label(action: argparse.Action) -> str:
 
 def _metavar(action: argparse.Action) -> str:
     if isinstance(action.metavar, str):
-        return action.metavar + (" …" if action.nargs == "+" else "")
+        return (
+            f"[{action.metavar} …]" if action.nargs == "*" else action.metavar + (" …" if action.nargs == "+" else "")
+        )
     return "{" + ",".join(map(str, action.choices or ())) + "}"
 
 

@@ -1,5 +1,6 @@
 """Reading a model again while it is shown."""
 
+import argparse
 import math
 import os
 import warnings
@@ -22,16 +23,16 @@ class Reloader:
     A model that cannot be read changes nothing: the viewer shows the error, with file and line, and the last good one.
     """
 
-    def __init__(self, env: Environment, viewer: Viewer, model: str, *, watches: bool) -> None:
+    def __init__(self, env: Environment, viewer: Viewer, options: argparse.Namespace) -> None:
         """Begin with the model as it is.
 
         Args:
             env: The environment, which was loaded from the model.
             viewer: What shows it.
-            model: The file, or the name of a model that comes with ravemj.
-            watches: Whether to read the model again when one of its files has changed; else only on request.
+            options: The options of the command: the models, and whether to read them again when one of their files has
+                changed (``watch``); else only on request.
         """
-        self._env, self._viewer, self._model, self._watches = env, viewer, model_file(model), watches
+        self._env, self._viewer, self._options = env, viewer, options
         self._files = env.files
         self._stamps = _stamps(self._files)
         self._error = ""
@@ -43,7 +44,7 @@ class Reloader:
         display = self._viewer.interaction.controls.display
         is_asked, display.wants_reload = display.wants_reload, False
         stamps = _stamps(self._files)
-        if not is_asked and not (self._watches and stamps != self._stamps):
+        if not is_asked and not (self._options.watch and stamps != self._stamps):
             return
         self._stamps = stamps
         notices = self._viewer.interaction.controls.notices
@@ -64,7 +65,7 @@ class Reloader:
             self._take_over(fresh)
         finally:
             fresh.Destroy()
-        notices.say(f"Read {os.path.basename(self._model)} again")
+        notices.say(f"Read {os.path.basename(model_file(self._options.model))} again")
 
     def _read(self) -> Environment:
         """Return an environment with the model as it is now.
@@ -74,7 +75,7 @@ class Reloader:
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RavemjWarning)
-            fresh = loaded(self._model)
+            fresh = loaded(self._options)
             fresh.StopSimulation()
             if self._env.simulation.physics is not None:
                 hold_bases(fresh)

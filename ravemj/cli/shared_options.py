@@ -5,7 +5,7 @@ from importlib import import_module
 from typing import TypeAlias
 
 from ravemj.cli.argument_parser import Parser
-from ravemj.cli.argument_types import colour, file_name, size
+from ravemj.cli.argument_types import argument, colour, file_name, package, size
 from ravemj.formats.shipped import SHIPPED_MODELS
 
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
@@ -72,11 +72,31 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         "model",
         type=file_name,
         metavar="MODEL",
-        help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody; or a model that comes with ravemj: "
-        f"{', '.join(SHIPPED_MODELS)}",
+        help="OpenRAVE XML, COLLADA or URDF file: an environment, a robot or a kinbody; or a model that comes with "
+        f"ravemj: {', '.join(SHIPPED_MODELS)}",
     )
     complete_models(model)
+    add_urdf_options(parser)
     parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
+
+
+def add_urdf_options(parser: argparse.ArgumentParser) -> None:
+    """Add what can be said about a URDF."""
+    group = parser.add_argument_group("robots in URDF")
+    group.add_argument(
+        "--srdf", type=file_name, metavar="FILE", help="SRDF of the robot; default: the one beside it; none for none"
+    )
+    group.add_argument("--state", metavar="NAME", help="group state of the SRDF that gives the joint values")
+    group.add_argument(
+        "--package",
+        action="append",
+        type=package,
+        metavar="NAME=FOLDER",
+        help="folder of package://NAME/; may be repeated; default: folders above the URDF, ROS_PACKAGE_PATH, …",
+    )
+    group.add_argument(
+        "--arg", action="append", type=argument, metavar="NAME:=VALUE", help="argument of a xacro; may be repeated"
+    )
 
 
 def add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None:

@@ -29,6 +29,7 @@ def summarize(body: KinBody) -> Summary:
         "links": [_link(index, link) for index, link in enumerate(body.links)],
         "joints": [_joint(joint, first) for joint, first in zip(body.joints, first_dofs, strict=True)],
         "passive_joints": [_joint(joint, None) for joint in body.passive_joints],
+        "configurations": {named.name: dict(named.values) for named in body.configurations},
         "manipulators": [_manipulator(manipulator) for manipulator in body.manipulators],
         "sensors": [sensor_summary(sensor) for sensor in body.sensors],
     }

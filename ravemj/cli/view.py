@@ -39,7 +39,7 @@ def view(options: argparse.Namespace) -> int:
         if window is None:
             _serve(env, robot, options)
         else:
-            reloader = Reloader(env, window, options.model, watches=options.watch)
+            reloader = Reloader(env, window, options)
             with signals_raised():  # so that what is being saved gets complete
                 _attend(window, reloader)
     finally:
@@ -86,7 +86,7 @@ def _serve(env: Environment, robot: Robot | None, options: argparse.Namespace) -
             "listens there knows the address, too",
             file=sys.stderr,
         )
-    reloader = Reloader(env, viewer, options.model, watches=options.watch)
+    reloader = Reloader(env, viewer, options)
     with contextlib.suppress(KeyboardInterrupt), signals_raised():  # so that pages learn that it has ended
         print(viewer.url, flush=True)
         _attend(viewer, reloader)

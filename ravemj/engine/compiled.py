@@ -55,6 +55,7 @@ class Compiled:
                     self.model = self.spec.compile(vfs=files)
         except ValueError as error:
             raise _compile_error(str(error), self.mjcf) from None
+        _keep_centers(self.model)
         for complaint in complaints:
             self._report(str(complaint.message), scene, diagnostics)
 
@@ -99,6 +100,12 @@ class Compiled:
             body_id = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
             if np.isfinite(inertial.mass) and np.isfinite(inertial.inertia).all():
                 write_inertial(self.model, body_id, inertial)
+
+
+def _keep_centers(model: mujoco.MjModel) -> None:
+    """Let MuJoCo compute with all frames of inertias: it takes one within 1e-6 of its body's for that of the body."""
+    moved = (model.body_ipos != 0).any(axis=1) | (model.body_iquat[:, 0] != 1)
+    model.body_sameframe[moved] = 0
 
 
 def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> None:

@@ -17,6 +17,7 @@ from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, 
 from ravemj.formats.openrave_xml.other_files import add_mesh, is_mesh, uniform
 from ravemj.formats.openrave_xml.tree import content_of
 from ravemj.formats.shipped import SHIPPED_MODELS
+from ravemj.formats.urdf.xacro import expand, is_xacro
 from ravemj.model.builder import BodyBuilder
 from ravemj.model.scene import AttachedSensor, KinBody, Scene
 
@@ -65,11 +66,25 @@ def _read_model(path: str, wanted: str, given: Attributes, metre: float, access:
             content = content_of(path)
         except SourceError as error:
             return Reading(Scene(), Diagnostics(), error, {path: None})
+        if is_xacro(path, content):
+            return _read_xacro(path, given, access)
         if _COLLADA not in content[:_HEAD]:
             return read(path, given, content, access)
     uri = f"{path}#{wanted}" if wanted else path
     read_content = functools.partial(collada.read_file, uri, access)
     return _read_collada(path, given, metre, access, lambda scale: read_content(scale=scale))
+
+
+def _read_xacro(path: str, given: Attributes, access: FileAccess) -> Reading:
+    """Read the URDF to which a xacro file expands; lines in findings are those of the expanded text."""
+    try:
+        content = expand(path, given, access)
+    except SourceError as error:
+        return Reading(Scene(), access.diagnostics, error, {path: None})
+    reading = read(path, given, content, access)
+    if reading.failure is not None:
+        reading.failure.hint = "; ".join(filter(None, (reading.failure.hint, "the line is that of the expanded xacro")))
+    return reading
 
 
 def missing(path: str) -> SourceError:

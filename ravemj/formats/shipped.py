@@ -10,6 +10,7 @@ SHIPPED_MODELS = {
     "puma560": "puma560.xml",
     "scara": "scara.dae",
     "workshop": "workshop.env.xml",
+    "desk_arm": "desk_arm/urdf/desk_arm.urdf",
 }
 """The file of each name."""
 
@@ -20,7 +21,8 @@ def model_path(name: str) -> str:
     """Return the path of a model that comes with ravemj.
 
     Args:
-        name: ``pendulum`` (the tutorial's), ``panda``, ``puma560``, ``scara`` or ``workshop``.
+        name: ``pendulum`` (the tutorial's), ``panda``, ``puma560``, ``scara``, ``workshop`` or ``desk_arm``
+            (a URDF with its SRDF).
 
     Raises:
         ArgumentError: there is no such model.

@@ -119,6 +119,7 @@ class BodyBuilder:
     grabs: list[GrabBuilder] = field(default_factory=lambda: [])
     joint_values: list[float] | None = None
     description: str = ""
+    configurations: list[scene.NamedConfiguration] = field(default_factory=lambda: [])
     refusal: SourceError | None = None
     _first: dict[str, int] = field(default_factory=dict[str, int])  # link of each name, for those before ``_indexed``
     _first_any_case: dict[str, int] = field(default_factory=dict[str, int])
@@ -239,6 +240,7 @@ class BodyBuilder:
             sensors=tuple(self._sensor(built) for built in self.sensors),
             grabs=tuple(self._grabs()),
             description=self.description,
+            configurations=tuple(self.configurations),
             source=self.source,
         )
 

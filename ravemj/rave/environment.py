@@ -3,7 +3,7 @@
 import itertools
 import os
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Self
 
 from ravemj.core.arguments import also_named
@@ -13,6 +13,7 @@ from ravemj.engine.simulation import Simulation, both_locks
 from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.json_files import is_json
+from ravemj.rave.env.load_arguments import checked_attributes
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.saving import Saving
 from ravemj.rave.env.viewing import Viewing
@@ -267,11 +268,15 @@ def RaveDestroy() -> None:
         env.Destroy()
 
 
-def load(path: str | os.PathLike[str]) -> Environment:
+def load(
+    path: str | os.PathLike[str], atts: "Mapping[str, str] | None" = None, *, into: Environment | None = None
+) -> Environment:
     """Load a model file into a new environment, or raise.
 
     Args:
         path: A model file; see ``Environment.Load``.
+        atts: Attributes for its body; see ``Environment.Load``.
+        into: The environment that the model is added to; by default a new one.
 
     Returns:
         The environment; ``env.diagnostics`` has what was found on the way.
@@ -287,12 +292,13 @@ def load(path: str | os.PathLike[str]) -> Environment:
     """
     from ravemj.formats.readers import read_file  # noqa: PLC0415 - slow to import
 
-    env = Environment()
+    env = Environment() if into is None else into
+    given = checked_attributes(atts, "load")
     if is_json(os.fspath(path)):
         env._load_json(os.fspath(path))  # pyright: ignore[reportPrivateUsage]
         env.simulation.compiled()
         return env
-    reading = read_file(path)
+    reading = read_file(path, given)
     try:
         if reading.failure is not None:
             raise reading.failure

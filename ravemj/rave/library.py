@@ -13,9 +13,9 @@ _LOG = logging.getLogger("ravemj")
 
 _PLUGINS = """
     basecontrollers basesamplers basesensors bulletrave configurationcache fclrave grasper ikfastsolvers logging oderave
-    pqprave qtcoinrave qtosgrave rmanipulation rplanners
+    or_urdf pqprave qtcoinrave qtosgrave rmanipulation rplanners
 """
-"""The plugins that come with OpenRAVE and have a counterpart here: what they provide is there from the start."""
+"""Plugins with a counterpart here, those of OpenRAVE and or_urdf: what they provide is there from the start."""
 
 
 def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) -> int:
@@ -46,8 +46,8 @@ def RaveLoadPlugin(filename: str) -> bool:
         filename: Name of the plugin, or its file.
 
     Returns:
-        True for the plugins that come with OpenRAVE, whose interfaces are part of ravemj as far as ravemj has them.
-        False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
+        True for or_urdf and for the plugins that come with OpenRAVE, whose interfaces are part of ravemj as far as it
+        has them. False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
     """
     if Path(filename).name.split(".")[0].removeprefix("lib") in _PLUGINS.split():
         return True

@@ -155,8 +155,9 @@ def test_enumerations_list_their_members_as_those_of_boost_python():
 
 
 def test_native_plugins_and_unknown_things_fail_softly(env, caplog):
-    assert ravemj.RaveLoadPlugin("libor_urdf.so") is False
-    assert "libor_urdf.so" in caplog.text
+    assert ravemj.RaveLoadPlugin("libor_other.so") is False
+    assert "libor_other.so" in caplog.text
+    assert ravemj.RaveLoadPlugin("libor_urdf.so")
     for create in (
         ravemj.RaveCreateModule,
         ravemj.RaveCreateProblem,
@@ -189,7 +190,7 @@ def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
 def test_modules_are_refused_and_none_is_there(env):
     for add in (env.AddModule, env.LoadProblem):
         with pytest.raises(ravemj.openrave_exception, match="AddModule: module is None; RaveCreateModule") as caught:
-            add(ravemj.RaveCreateModule(env, "urdf"), "")
+            add(ravemj.RaveCreateModule(env, "nomodule"), "")
         assert caught.value.GetCode() == "InvalidArguments"
         with pytest.raises(ravemj.openrave_exception, match="module: is of type str"):
             add("urdf", args="")

@@ -392,8 +392,8 @@ def test_check_lists_the_files_outside_of_the_folder(places, tmp_path):
     path = places.write("data", "../out/a.obj")
     found = [str(finding) for finding in check(path) if finding.code == "outside-file"]
     for file, place in [("a.obj", f"{path}:2"), ("s.mtl", f"{places.inside}/../out/a.obj")]:
-        (line,) = [line for line in found if f"/{file}, outside" in line]
-        assert line.startswith(f"{place}: note[outside-file]: the model reads {places.outside.parent}")
+        (line,) = [line for line in found if f"/{file}', outside" in line]
+        assert line.startswith(f"{place}: note[outside-file]: the model reads '{places.outside.parent}")
     assert len(found) == 2
     places.write("data", "sub/s.stl")
     (places.inside / "sub" / "s.stl").write_text(STL)

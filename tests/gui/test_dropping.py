@@ -3,6 +3,7 @@
 import base64
 import json
 import os
+import zipfile
 
 import pytest
 from conftest import MODELS
@@ -114,7 +115,7 @@ def test_an_upload_has_an_end(monkeypatch):
     assert not upload.take("a", b"123456")
 
 
-@pytest.mark.parametrize("name", ["", "../a.xml", "a/b.xml", ".bashrc", "a\\b", "a\x00", "x" * 101, 7, None])
+@pytest.mark.parametrize("name", ["", "../a.xml", "a//b.xml", ".bashrc", "a\\b", "a\x00", "x" * 101, 7, None])
 def test_names_lead_to_no_other_folder(name):
     with pytest.raises(ValueError, match="there are no such files"):
         parse(json.dumps({"type": "piece", "name": name, "data": "", "last": False}))
@@ -123,3 +124,97 @@ def test_names_lead_to_no_other_folder(name):
 def test_pieces_are_base64():
     with pytest.raises(ValueError, match="ASCII"):
         parse(json.dumps({"type": "piece", "name": "a.xml", "data": "§", "last": False}))
+
+
+ROBOT = """<robot name="r"><link name="a"><visual><geometry><mesh filename="package://pack/meshes/part.stl"/></geometry>
+</visual></link></robot>"""
+
+
+@pytest.fixture
+def package(tmp_path):
+    folder = tmp_path / "drop" / "pack"
+    (folder / "urdf").mkdir(parents=True)
+    (folder / "meshes").mkdir()
+    (folder / "package.xml").write_text("<package><name>pack</name></package>")
+    (folder / "urdf" / "r.urdf").write_text(ROBOT)
+    (folder / "meshes" / "part.stl").write_bytes(STL)
+    return folder
+
+
+def shown_triangles(env):
+    return sum(
+        len(surface.mesh.triangles)
+        for body in env.GetBodies()
+        for link in body.simulation_state.scene.links
+        for geometry in link.geometries
+        for surface in geometry.display or ()
+    )
+
+
+def zipped(package):
+    path = package.parent / "robot.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for file in sorted(package.rglob("*")):
+            archive.write(file, file.relative_to(package.parent))
+    return path
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_folder_or_zip_is_one_drop(env, notices, package, packed):
+    add_files(env, [str(zipped(package) if packed else package)], notices)
+    said(notices, "Added r.urdf")
+    assert shown_triangles(env) == 1
+
+
+def test_a_robot_without_its_meshes_is_shown_and_says_what_to_drop(env, notices, package, tmp_path):
+    alone = tmp_path / "alone" / "r.urdf"
+    alone.parent.mkdir()
+    alone.write_text(ROBOT)
+    add_files(env, [str(alone)], notices)
+    said(notices, "drop the folder that contains meshes/")
+    assert len(env.GetBodies()) == 2
+
+
+def test_a_folder_with_several_robots_says_so(env, notices, package):
+    (package / "urdf" / "s.urdf").write_text(ROBOT)
+    add_files(env, [str(package)], notices)
+    said(notices, "there are 2 robots in it: r.urdf, s.urdf")
+
+
+def test_a_xacro_is_not_expanded(env, notices, package):
+    path = package / "urdf" / "r.urdf.xacro"
+    path.write_text('<robot name="r" xmlns:xacro="x"><xacro:property name="p" value="${1/0}"/></robot>')
+    add_files(env, [str(path)], notices)
+    said(notices, "a xacro that was dropped is not expanded")
+
+
+@pytest.mark.parametrize("name", ["../out.urdf", "/out.urdf", "a/../../out.urdf", "..\\out.urdf"])
+def test_a_zip_writes_nothing_outside(env, notices, tmp_path, name):
+    path = tmp_path / "bad.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr(name, ROBOT)
+    add_files(env, [str(path)], notices)
+    said(notices, "outside of itself")
+    assert not list(tmp_path.rglob("out.urdf"))
+
+
+def test_a_zip_that_unpacks_to_too_much_is_refused(env, notices, tmp_path):
+    path = tmp_path / "bomb.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("r.urdf", b"\0" * 10_000_000)
+    add_files(env, [str(path)], notices)
+    said(notices, "it unpacks to")
+
+
+def test_pages_send_files_of_folders(env, notices, package):
+    upload = Upload()
+    for file in ("urdf/r.urdf", "meshes/part.stl"):
+        data = base64.b64encode((package / file).read_bytes()).decode()
+        piece = parse(json.dumps({"type": "piece", "name": f"pack/{file}", "data": data, "last": False}))
+        assert upload.take(piece.name, piece.data)
+    upload.add_to(env, notices)
+    said(notices, "Added r.urdf")
+    assert shown_triangles(env) == 1
+    for name in ("../r.urdf", "a/../r.urdf", "/r.urdf", "a//r.urdf", "a/" * 20 + "r.urdf", "a\\b.urdf"):
+        with pytest.raises(ValueError, match="no such files"):
+            parse(json.dumps({"type": "piece", "name": name, "data": "", "last": True}))

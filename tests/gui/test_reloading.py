@@ -1,6 +1,7 @@
 """A model that is read again while it is shown."""
 
 import os
+from argparse import Namespace
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ class Shown:
         self.viewer = self.env.GetViewer()
         self.gui = self.viewer.interaction
         self.viewer.SetCamera([[0, 0, -1, 3], [1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, 0, 1]])
-        self.reloader = Reloader(self.env, self.viewer, str(folder / "env.xml"), watches=watches)
+        self.reloader = Reloader(self.env, self.viewer, Namespace(model=str(folder / "env.xml"), watch=watches))
 
     def save(self, text):
         before = self.part.stat().st_mtime_ns if self.part.exists() else 0

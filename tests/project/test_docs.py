@@ -38,6 +38,9 @@ def test_python_runs(page, tmp_path, monkeypatch, capsys):
         assert (tmp_path / "swing.mp4").stat().st_size > 1000
 
 
+ROBOT = """<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="continuous"><parent link="a"/>
+<child link="b"/><limit effort="1" velocity="1"/></joint></robot>"""
+
 EXECUTED_BY = {
     "./scripts/play": ".ci/bare",
     "./scripts/test": ".ci/bare",
@@ -88,9 +91,12 @@ def test_commands_work(tmp_path, lines):
         "old.robot.xml": "panda.xml",
         "new.robot.xml": "panda.xml",
         "camera.json": "tutorial-camera.json",
+        "table.env.xml": "env.xml",
     }.items():
         (tmp_path / name).write_bytes((REPOSITORY / "models" / source).read_bytes())
     (tmp_path / "swing.csv").write_text("time,Joint0,Joint1\n0,0,0\n0.2,1,-1\n")
+    for robot in ("robot.urdf", "ur5.urdf"):
+        (tmp_path / robot).write_text(ROBOT)
     for script in ("myscript.py", "oldscript.py"):
         (tmp_path / script).write_text("import openravepy\nassert openravepy.Environment().Load('env.xml')\n")
     for line in lines:

@@ -2,7 +2,7 @@
 from openravepy import *
 env = Environment()
 RaveLoadPlugin('or_urdf')
-module = RaveCreateModule(env, 'urdf')
+module = RaveCreateModule(env, 'nosuchurdf')
 if module is None:
     print('no urdf plugin')
     try:

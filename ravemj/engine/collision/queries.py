@@ -134,16 +134,24 @@ def tested_pairs(world: CollisionWorld, body: BodyState) -> list[Pair]:
 def _find_touching(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
     if body.rest_poses is None:
         return frozenset()
-    links = range(len(body.scene.links))
-    geoms = [world.geoms_of_link(body, link, enabled_only=False) for link in links]
-    candidates = (cross(geoms[first], geoms[second]) for first, second in separate_pairs(body.scene))
-    pairs = world.make_pairs(*joined(candidates))
     motions = {
         (body, link): rest @ inverse(now)
         for link, (rest, now) in enumerate(zip(body.rest_poses, body.link_transforms(), strict=True))
     }
     with world.moved(motions):
-        return frozenset((world.owner(first)[1], world.owner(second)[1]) for first, second in world.hits(pairs))
+        return touching_pairs(world, body)
+
+
+def touching_pairs(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
+    """Return the pairs of links, the smaller index first, that touch and are not adjacent, enabled or not."""
+
+    def find() -> tuple[Ints, Ints]:
+        links = range(len(body.scene.links))
+        geoms = [world.geoms_of_link(body, link, enabled_only=False) for link in links]
+        return joined(cross(geoms[first], geoms[second]) for first, second in separate_pairs(body.scene))
+
+    hits = world.hits(world.pairs(("separate links", body), find))
+    return frozenset(ordered_pair(world.owner(first)[1], world.owner(second)[1]) for first, second in hits)
 
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:

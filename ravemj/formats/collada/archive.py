@@ -1,6 +1,7 @@
 """Archives of COLLADA files (``.zae``): a zip file, and in it a manifest that names the document to start with."""
 
 import io
+import os
 import posixpath
 import zipfile
 import zlib
@@ -19,7 +20,7 @@ _DAMAGES = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, Runti
 
 
 class Archive:
-    """An opened archive; nothing of it is ever unpacked to the disk.
+    """An opened archive. Reading a COLLADA file of it unpacks nothing to the disk.
 
     Attributes:
         path: Where it lies.
@@ -80,6 +81,25 @@ class Archive:
         self._unpacked += len(data)
         check_unpacked(self._unpacked, self._packed, Source(self.path))
         return data
+
+    def unpack(self, folder: str) -> None:
+        """Write all files into a new folder.
+
+        Raises:
+            SourceError: A file is damaged or too large, or its name leads out of the folder.
+        """
+        for inside, name in self._members.items():
+            if inside.startswith(("/", "..")) or ":" in inside or "\\" in inside:
+                raise SourceError(f"it has a file '{name}' outside of itself", Source(self.path), "pack it anew")
+            if name.endswith("/"):
+                continue
+            place = os.path.join(folder, *inside.split("/"))
+            try:
+                os.makedirs(os.path.dirname(place), exist_ok=True)
+                with open(place, "xb") as file:
+                    file.write(self.read(name))
+            except OSError as error:
+                raise SourceError(f"'{name}' cannot be unpacked: {error.strerror}", Source(self.path)) from error
 
     def place(self, name: str) -> str:
         """Return what a file of the archive is called in messages."""

@@ -54,6 +54,7 @@ class FileContent:
         references: The files that it names; shared by all of them.
         parents: Absolute paths of the files that led here.
         access: The files that may be read; by default those in the folder of the mesh.
+        ros: Whether it is read for a URDF; see ``read_mesh``.
     """
 
     path: str
@@ -61,6 +62,7 @@ class FileContent:
     references: ReferencedFiles = field(default_factory=ReferencedFiles)
     parents: tuple[str, ...] = ()
     access: FileAccess = field(default_factory=lambda: FileAccess((), is_dropped=False))
+    ros: bool = False
 
     @property
     def source(self) -> Source:

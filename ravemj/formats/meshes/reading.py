@@ -23,7 +23,9 @@ def reader_of(suffix: str) -> _Reader:
     return getattr(importlib.import_module(f"ravemj.formats.meshes.{module}"), name)
 
 
-def read_mesh(path: str, scale: Vec3 = UNSCALED, access: FileAccess | None = None) -> tuple[MeshPart, ...]:
+def read_mesh(
+    path: str, scale: Vec3 = UNSCALED, access: FileAccess | None = None, *, ros: bool = False
+) -> tuple[MeshPart, ...]:
     """Read a mesh file as OpenRAVE does it for the ``<data>`` of a trimesh.
 
     Vertices are in metres, in the frame of the file; a COLLADA file is scaled by its unit and turned to y up.
@@ -34,6 +36,8 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED, access: FileAccess | None = Non
         scale: Factors along x, y and z.
         access: The files that may be read, which takes findings; by default those of a mesh that its user opens, and
             findings are sent as warnings.
+        ros: Whether to read it as the programs of ROS do for URDF: the up axis of COLLADA is ignored, and a mirrored
+            mesh (a negative product of the factors) keeps its outside.
 
     Returns:
         Its parts, none of them without triangles.
@@ -47,14 +51,19 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED, access: FileAccess | None = Non
         raise SourceError("no mesh format that ravemj knows", Source(path), hint=f"it reads {known}")
     if access is None:
         access = FileAccess.opened(path)
-        parts = read_mesh(path, scale, access)
+        parts = read_mesh(path, scale, access, ros=ros)
         send_warnings(access.diagnostics)
         return parts
-    kind = suffix if scale == UNSCALED else f"{suffix} {scale}"
+    kind = " ".join([suffix, *([] if scale == UNSCALED else [str(scale)]), *(["ros"] if ros else [])])
+    mirrored = ros and scale[0] * scale[1] * scale[2] < 0
 
     def read(raw: bytes) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
-        parts, references = read_content(FileContent(path, unpacked(raw, path), access=access), reader_of(suffix))
-        return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
+        parts, references = read_content(
+            FileContent(path, unpacked(raw, path), access=access, ros=ros), reader_of(suffix)
+        )
+        if scale != UNSCALED:
+            parts = tuple(_scaled(part, scale, mirrored=mirrored) for part in parts)
+        return parts, references
 
     parts, digests = cache.cached_file(path, kind, read, access)
     for name in (name for name, digest in digests.items() if digest):
@@ -73,5 +82,6 @@ def read_content(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ..
         ) from error
 
 
-def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:
-    return replace(part, mesh=Mesh(part.mesh.vertices * scale, part.mesh.triangles))
+def _scaled(part: MeshPart, scale: Vec3, *, mirrored: bool) -> MeshPart:
+    triangles = part.mesh.triangles[:, ::-1] if mirrored else part.mesh.triangles
+    return replace(part, mesh=Mesh(part.mesh.vertices * scale, triangles))

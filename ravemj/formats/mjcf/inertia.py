@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ravemj.core.transforms import Vec3
 from ravemj.formats.mjcf.lines import Attribute
 from ravemj.model.scene import Inertial
 
@@ -31,15 +32,29 @@ def legal_inertial(inertial: Inertial) -> Inertial:
     mass = max(inertial.mass, SMALLEST) if math.isfinite(inertial.mass) else SMALLEST
     finite = np.nan_to_num(np.array(inertial.inertia), nan=0.0, posinf=0.0, neginf=0.0)
     moments, axes = np.linalg.eigh(finite)
-    small, middle, large = (max(float(moment), SMALLEST) for moment in moments)
-    legal = np.array([max(small, large - middle), middle, large])
+    small, middle, large = map(float, moments)
     com = inertial.com if all(map(math.isfinite, inertial.com)) else (0.0, 0.0, 0.0)
-    positive = np.array_equal((small, middle, large), moments)
-    if mass == inertial.mass and com == inertial.com and positive and small + middle - large >= _ROUNDING * large:
+    is_legal = small >= SMALLEST and small + middle - large >= _ROUNDING * large
+    if mass == inertial.mass and com == inertial.com and is_legal:
         return inertial
-    legal += _ROUNDING * large
+    legal = np.maximum(_nearest(small, middle, large), SMALLEST)
+    legal += _ROUNDING * legal[2]
     xx, xy, xz, _, yy, yz, _, _, zz = ((axes * legal) @ axes.T).ravel().tolist()
     return Inertial(mass, com, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+
+
+def _nearest(small: float, middle: float, large: float) -> Vec3:
+    """Return the nearest moments, in the least-squares sense, of which none is larger than the sum of the others.
+
+    They are the projection onto the plane where the largest is that sum; if that is no solution either, onto the edge
+    of the allowed cone, where the smallest is 0 and the others are equal.
+    """
+    excess = (large - small - middle) / 3
+    if excess <= 0:
+        return small, middle, large
+    nearest = (small + excess, middle + excess, large - excess)
+    half = max(0.0, (middle + large) / 2)
+    return nearest if nearest[0] >= 0 else (0.0, half, half)
 
 
 def _is_legal_diagonal(inertial: Inertial) -> bool:

@@ -49,7 +49,7 @@ class Context:
         self._inclusions = 0
         self._triangles = 0
         self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
-        self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
+        self._meshes: dict[tuple[str, Vec3, bool], tuple[MeshPart, ...]] = {}
 
     def walk(
         self,
@@ -214,28 +214,30 @@ class Context:
             self.diagnostics.warn("bad-parameter", f"a parameter is left out: {error}", element.source)
             return before
 
-    def mesh(self, name: str, source: Source, *folders: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
+    def mesh(
+        self, name: str, source: Source, *folders: str, scale: Vec3 = UNSCALED, ros: bool = False
+    ) -> tuple[MeshPart, ...]:
         """Return the triangles of a mesh file; none, with a warning, where it is missing or broken.
 
-        The parts are the same objects at every use with the same scale.
+        The parts are the same objects at every use with the same scale. ``ros`` is as for ``read_mesh``.
         """
         path = self.find(name, source, *folders)
         if path is None:
             return ()
-        parts = self._meshes.get((path, scale))
+        parts = self._meshes.get((path, scale, ros))
         if parts is None:
-            parts = self._meshes[path, scale] = self._read_mesh(path, source, scale)
+            parts = self._meshes[path, scale, ros] = self._read_mesh(path, source, scale, ros=ros)
             self._triangles += sum(len(part.mesh.triangles) for part in parts)
             check_count(self._triangles, MOST_MODEL_TRIANGLES, "triangles in the meshes of the model", source)
         return parts
 
-    def _read_mesh(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
+    def _read_mesh(self, path: str, source: Source, scale: Vec3, *, ros: bool) -> tuple[MeshPart, ...]:
         self.access.files.setdefault(path, source if source.line else None)
         findings = len(self.diagnostics)
         from ravemj.formats.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
 
         try:
-            parts = read_mesh(path, scale, self.access)
+            parts = read_mesh(path, scale, self.access, ros=ros)
             problem = "" if parts else f"{path}: there are no triangles in it"
         except SourceError as error:
             parts, problem = (), f"{error.source}: {error.message}"

@@ -8,12 +8,14 @@ from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_a
 from ravemj.errors import Diagnostics, Source, SourceError, UnnamedError
 from ravemj.formats.file_access import FileAccess
 from ravemj.formats.openrave_xml.context import Context, uncomputable
-from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
+from ravemj.formats.openrave_xml.given import NOTHING, Attributes, adapt, with_given
 from ravemj.formats.openrave_xml.kinbody import read_body
 from ravemj.formats.openrave_xml.sensor import read_sensor
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag
 from ravemj.formats.openrave_xml.tree import Element, content_of, parse
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
+from ravemj.formats.urdf import GIVEN as URDF_GIVEN
+from ravemj.formats.urdf import check_robot, is_urdf
 from ravemj.model.scene import AttachedSensor, KinBody, Scene, View
 
 _DEFAULT_CAMERA_POSITION: Vec3 = (0.0, 1.5, 0.8)
@@ -92,13 +94,16 @@ def read(
         parsed = parse(content_of(path) if content is None else content, path, None, context.documents.budget)
         failure = parsed.error
         context.check_end(parsed)
-        document.read(with_given(parsed.root, given, context))
+        known = URDF_GIVEN if is_urdf(parsed.root) else ()
+        if failure is not None and known:  # half a URDF is no robot
+            raise failure
+        document.read(with_given(parsed.root, given, context, known))
     except SourceError as error:
         failure = error
     except RecursionError:
         failure = SourceError("the elements are nested too deeply", Source(path))
     scene = Scene(tuple(document.bodies), document.view, document.gravity, tuple(document.sensors))
-    return Reading(scene, context.diagnostics, failure, {path: None} | context.access.files)
+    return Reading(scene, context.diagnostics, failure, {path: None} | context.access.files, document.renames)
 
 
 class _Document:
@@ -111,6 +116,7 @@ class _Document:
         self._names: set[tuple[str, str]] = set()
         self.view: View | None = None
         self.gravity: Vec3 | None = None
+        self.renames = False
 
     def read(self, root: Element) -> None:
         """Read a root element.
@@ -119,8 +125,10 @@ class _Document:
             SourceError: this is another format.
         """
         readers = {"robot": self.read_body, "kinbody": self.read_body, "sensor": self.read_sensor}
-        if _is_urdf(root):
-            raise _other_format("URDF", root.source)
+        check_robot(root)
+        if is_urdf(root):
+            self.read_urdf(root)
+            return
         if root.tag == "environment":
             self.read_environment(root)
         elif root.tag in readers:
@@ -162,6 +170,20 @@ class _Document:
         if refusal is not None:
             raise refusal
 
+    def read_urdf(self, root: Element) -> None:
+        """Read a URDF; its body may get another name in the environment."""
+        from ravemj.formats.urdf.robot import read_robot, settle  # noqa: PLC0415 - most models are none
+
+        self.renames = True
+        try:
+            body = read_robot(root, self.context, root.attributes)
+            adapt(body, root, self.context)
+            self.bodies.append(settle(body, self.context))
+        except ArithmeticError as error:
+            raise uncomputable(root) from error
+        if body.refusal is not None:
+            raise body.refusal
+
     def read_sensor(self, element: Element) -> None:
         """Read a sensor that no robot carries."""
         sensor = read_sensor(element, self.context)
@@ -176,25 +198,11 @@ class _Document:
         self._names.add((kind, name))
 
 
-def _is_urdf(root: Element) -> bool:
-    """Return whether a ``<robot>`` is URDF's and not OpenRAVE's.
-
-    It is if a joint names its parent by an attribute, or if it has links and no ``<kinbody>``.
-    """
-    if root.tag != "robot":
-        return False
-    parents = (
-        part for child in root.children if child.tag == "joint" for part in child.children if part.tag == "parent"
-    )
-    return any("link" in parent.attributes for parent in parents) or (
-        any(child.tag == "link" for child in root.children)
-        and not any(child.tag == "kinbody" for child in root.children)
-    )
-
-
 def _other_format(name: str, source: Source) -> SourceError:
     hint = f"MuJoCo opens it: mujoco.MjModel.from_xml_path, or python -m mujoco.viewer --mjcf={source.file}"
-    return SourceError(f"this is {name}, which ravemj does not read: it reads OpenRAVE's XML and COLLADA", source, hint)
+    return SourceError(
+        f"this is {name}, which ravemj does not read: it reads OpenRAVE's XML, COLLADA and URDF", source, hint
+    )
 
 
 class _EnvironmentScope:

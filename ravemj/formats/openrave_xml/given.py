@@ -38,20 +38,35 @@ def check_given(given: Attributes, source: Source, context: Context, known: Coll
         context.diagnostics.warn("bad-number", message, source)
 
 
-def with_given(root: Element, given: Attributes, context: Context) -> Element:
-    """Return the root element of an XML file with the attributes that a caller gave."""
+def with_given(root: Element, given: Attributes, context: Context, others: Collection[str] = ()) -> Element:
+    """Return the root element of an XML file with the attributes that a caller gave.
+
+    ``others`` are the attributes that its format knows besides those of OpenRAVE's bodies.
+    """
     if not given:
         return root
     is_body = root.tag in {"robot", "kinbody"}
-    check_given(given, root.source, context, KNOWN if is_body else ())
+    known = {*KNOWN, *others} if is_body else set[str]()
+    check_given(given, root.source, context, known)
     if not is_body:
         return root
-    attributes = root.attributes | {name: text for name, text in given.items() if name in KNOWN and text}
+    attributes = root.attributes | {name: text for name, text in given.items() if name in known and text}
     attributes["prefix"] = given.get("prefix", "") + root.attributes.get("prefix", "")
     if given.get("scalegeometry"):
         factors = hadamard(given_scale(given), scale_attribute(root, context.diagnostics))
         attributes["scalegeometry"] = " ".join(map(repr, factors))
     return replace(root, attributes=attributes)
+
+
+def adapt(body: BodyBuilder, root: Element, context: Context) -> None:
+    """Prefix and strip the body of a URDF as the attributes of its root ask, which a caller may have given."""
+    add_prefix(root.attributes.get("prefix", ""), body, Marks(), whole=True)
+    if is_true(root.attributes.get("skipgeometry", "")):
+        for link in body.links:
+            link.geometries = []
+    if "scalegeometry" in root.attributes:
+        message = "scalegeometry is left out: a URDF keeps its size"
+        context.diagnostics.warn("ignored-attribute", message, root.source)
 
 
 def given_scale(given: Attributes) -> Vec3:

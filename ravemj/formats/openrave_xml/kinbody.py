@@ -14,7 +14,7 @@ from ravemj.formats.openrave_xml.geom import GeometryScope
 from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
 from ravemj.formats.openrave_xml.mass import DefaultMass
-from ravemj.formats.openrave_xml.other_files import add_collada, add_mesh, is_mesh
+from ravemj.formats.openrave_xml.other_files import add_collada, add_mesh, add_urdf, is_mesh
 from ravemj.formats.openrave_xml.prefix import Marks, add_prefix, youngest_first
 from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_sensor, read_manipulator
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
@@ -30,6 +30,7 @@ from ravemj.formats.openrave_xml.values import (
     scale_attribute,
     words,
 )
+from ravemj.formats.urdf import is_urdf
 from ravemj.model.builder import BodyBuilder, GrabBuilder
 from ravemj.model.scene import KinBody
 
@@ -92,6 +93,11 @@ class _Scope(Placed):
             return
         root = self.context.include(element)
         if root is None:
+            return
+        if is_urdf(root):
+            marks = Marks.of(self.body)
+            add_urdf(self.body, root, element, self.context, skip_geometry=self.skip_geometry)
+            add_prefix(element.attributes.get("prefix", ""), self.body, marks, whole=True)
             return
         attributes = {key: value for key, value in element.attributes.items() if key != "file"}
         wrapper = Element(element.tag, element.spelled, attributes, root.source, children=[root], complete=True)
@@ -225,6 +231,9 @@ SCOPE_ATTRIBUTES = {
     "type": "`CollisionMapRobot` and `Conveyor` are plain bodies here; unknown classes are an error",
     "scalegeometry": "one factor or three, of positions and meshes",
     "skipgeometry": "true: without shapes",
+    "srdf": "of a URDF in `file`: its SRDF",
+    "state": "of a URDF in `file`: the group state of its SRDF that gives the joint values",
+    "packages": "of a URDF in `file`: folders of packages, NAME=FOLDER",
     "makejoinedlinksadjacent": "0: links at a joint can collide",
 }
 

@@ -9,6 +9,7 @@ from ravemj.errors import Diagnostics, LimitError, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.meshes import MESH_SUFFIXES
 from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tree import Element
 from ravemj.model.builder import BodyBuilder, LinkBuilder, SensorBuilder
 from ravemj.model.scene import Geometry, TriMesh
 from ravemj.model.shape_bodies import MASSLESS
@@ -53,6 +54,35 @@ def add_collada(
         if skip_geometry:
             link.geometries = []
     _join(body, found)
+
+
+def add_urdf(body: BodyBuilder, root: Element, element: Element, context: Context, *, skip_geometry: bool) -> None:
+    """Fill a body with a URDF; a broken one is reported. A KinBody gets no manipulators.
+
+    Args:
+        body: The body.
+        root: The root element of the URDF.
+        element: The element that names the file; its attributes may name the SRDF.
+        context: Takes findings.
+        skip_geometry: Whether the shapes are left out.
+    """
+    from ravemj.formats.urdf.robot import read_robot  # noqa: PLC0415 - rarely wanted
+
+    try:
+        found = read_robot(root, context, element.attributes)
+    except LimitError:
+        raise
+    except SourceError as error:
+        context.diagnostics.error("broken-file", error.message, error.source, error.hint)
+        return
+    body.name = found.name
+    if not body.is_robot:
+        found.manipulators = []
+    if skip_geometry:
+        for link in found.links:
+            link.geometries = []
+    _join(body, found)
+    body.configurations += found.configurations
 
 
 def uniform(scale: Vec3, source: Source, context: Context) -> float:

@@ -49,6 +49,10 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
             equations = joint.equations
             texts = (equations.position, equations.velocity, equations.acceleration)
             joint.equations = Equations(*(substitute(text, renamed) for text in texts))
+    body.configurations = [
+        replace(named, values=tuple((renamed.get(name, name), value) for name, value in named.values))
+        for named in body.configurations
+    ]
     for built in _newer(body.manipulators, marks.manipulators):
         built.name = prefix + built.name
         built.base = prefix + built.base

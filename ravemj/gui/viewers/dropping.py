@@ -12,11 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from ravemj.core.forks import in_this_process
+from ravemj.errors import Source, SourceError
 from ravemj.gui.interaction import Notices
 
 _LOG = logging.getLogger("ravemj")
 
-_MODELS = {".xml", ".dae", ".zae", ".json"}
+_MODELS = {".xml", ".dae", ".zae", ".json", ".urdf", ".xacro"}
+_MANIFEST = "package.xml"  # of a package of ROS: no model
+_NAMED = 5
 _SHOWN = 20.0
 """How long it is said what is wrong with a file [s]."""
 
@@ -31,7 +34,8 @@ def add_files(
 
     Args:
         env: The environment, or None where it is gone.
-        paths: The files. Where models are among them, meshes and pictures beside these are what they refer to.
+        paths: The files, folders and zip archives. Where models are among them, meshes and pictures beside these are
+            what they refer to.
         notices: Where it is said what was added, and what is wrong with a file.
         at_end: Called when that is done.
     """
@@ -45,17 +49,53 @@ def add_files(
 
 
 def _add(env: Any, paths: Sequence[str], notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
-    models = [path for path in paths if Path(path).suffix.lower() in _MODELS]
-    for path in models or paths:
+    with tempfile.TemporaryDirectory(prefix="ravemj-") as folder:
         try:
-            trouble = env.add_file(path, paths)
-        except Exception as error:
-            _LOG.exception("a file that was dropped cannot be added")
-            trouble = f"{os.path.basename(path)}: {error}"
-        if trouble:
-            notices.say(trouble, _SHOWN)
-        else:
-            notices.say(f"Added {os.path.basename(path)}")
+            paths = [_unpacked(path, os.path.join(folder, str(place))) for place, path in enumerate(paths)]
+            models = [model for path in paths for model in _models(path)]
+        except SourceError as error:
+            notices.say(str(error), _SHOWN)
+            return
+        for path in models or paths:
+            try:
+                trouble = env.add_file(path, paths)
+            except Exception as error:
+                _LOG.exception("a file that was dropped cannot be added")
+                trouble = f"{os.path.basename(path)}: {error}"
+            if trouble:
+                notices.say(trouble, _SHOWN)
+            else:
+                notices.say(f"Added {os.path.basename(path)}")
+
+
+def _unpacked(path: str, folder: str) -> str:
+    """Return the folder that a zip archive is unpacked to; another file or folder as it is.
+
+    Raises:
+        SourceError: the archive is damaged or too large, or has names that lead out of it.
+    """
+    if not path.lower().endswith(".zip"):
+        return path
+    from ravemj.formats.collada.archive import Archive  # noqa: PLC0415 - lxml is slow to import
+
+    Archive(path).unpack(folder)
+    return folder
+
+
+def _models(path: str) -> list[str]:
+    """Return the models in a file or folder: of a folder its URDF, or the models that lie directly in it.
+
+    Raises:
+        SourceError: a folder has several URDFs.
+    """
+    if not os.path.isdir(path):
+        return [path] if Path(path).suffix.lower() in _MODELS else []
+    robots = sorted(str(file) for file in Path(path).rglob("*.urdf"))
+    if len(robots) > 1:
+        names = ", ".join(os.path.basename(robot) for robot in robots[:_NAMED])
+        raise SourceError(f"there are {len(robots)} robots in it: {names}", Source(path), "leave one of them there")
+    files = sorted(str(file) for file in Path(path).iterdir() if file.name != _MANIFEST)
+    return robots or [file for file in files if Path(file).suffix.lower() in _MODELS]
 
 
 class Upload:
@@ -70,13 +110,15 @@ class Upload:
         self.paths: list[str] = []
 
     def take(self, name: str, piece: bytes) -> bool:
-        """Write a piece of a file to its end; return False where there is too much of it all."""
+        """Write a piece of a file, whose name may have folders, to its end; return False if all is too large."""
         self._size += len(piece)
         if self._size > self._LARGEST:
             return False
-        path = os.path.join(self._folder, name)
-        if path not in self.paths:
-            self.paths.append(path)
+        path = os.path.join(self._folder, *name.split("/"))
+        top = os.path.join(self._folder, name.split("/", maxsplit=1)[0])
+        if top not in self.paths:
+            self.paths.append(top)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "ab") as file:
             file.write(piece)
         return True

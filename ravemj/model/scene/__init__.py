@@ -4,7 +4,7 @@ Readers make a ``Scene`` (through ``ravemj.model.builder``), writers and the run
 angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.
 """
 
-from ravemj.model.scene.body import AttachedSensor, Grab, KinBody, Manipulator
+from ravemj.model.scene.body import AttachedSensor, Grab, KinBody, Manipulator, NamedConfiguration
 from ravemj.model.scene.mechanism import (
     AXES,
     NO_PARAMETERS,
@@ -94,6 +94,7 @@ __all__ = [
     "Mesh",
     "MeshFile",
     "Mimic",
+    "NamedConfiguration",
     "NoShape",
     "Odometry",
     "Parameters",

@@ -94,6 +94,19 @@ class Grab(Record):
     ignored: tuple[int, ...] = ()
 
 
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class NamedConfiguration(Record):
+    """A configuration to which a file gives a name.
+
+    Attributes:
+        name: Its name.
+        values: Values by the names of joints [rad or m]; joints that it does not name stay where they are.
+    """
+
+    name: str
+    values: tuple[tuple[str, float], ...]
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class KinBody(Record):
     """A body: links and the joints between them.
@@ -111,6 +124,7 @@ class KinBody(Record):
         sensors: Sensors on links.
         grabs: The bodies that it holds after loading.
         description: A text for people.
+        configurations: Named configurations: the group states of an SRDF.
         source: The element that it comes from.
     """
 
@@ -126,6 +140,7 @@ class KinBody(Record):
     sensors: tuple[AttachedSensor, ...] = ()
     grabs: tuple[Grab, ...] = ()
     description: str = ""
+    configurations: tuple[NamedConfiguration, ...] = ()
     source: Source
 
     @property

@@ -101,15 +101,19 @@ class Loading(Description):
         """Add the content of a model file to the environment.
 
         Args:
-            filename: An OpenRAVE XML file with an environment, a robot, a kinbody or a sensor; a COLLADA file
-                (``.dae``, ``.zae``); OpenRAVE's JSON (``.json``, see ``LoadJSON``); or a mesh file. Relative paths are
-                searched in the working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
-                Which files it may name itself: see "Which files a model may read".
+            filename: An OpenRAVE XML file with an environment, a robot, a kinbody or a sensor; a URDF, whose SRDF is
+                looked for beside it, or a xacro; a COLLADA file (``.dae``, ``.zae``); OpenRAVE's JSON (``.json``, see
+                ``LoadJSON``); or a mesh file. Relative paths are searched in the working folder, then in the folders of
+                the environment variable ``OPENRAVE_DATA``. Which files it may name itself: see "Which files a model may
+                read".
             atts: Attributes as those of a ``<Robot>``: ``name`` replaces the name of the body, ``prefix`` is put before
                 the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
                 multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
-                files of one robot, kinbody or mesh, and to COLLADA files, but not to an ``<Environment>``. Attributes
-                that have no effect are reported as warnings.
+                files of one robot, kinbody or mesh, and to COLLADA files, but not to an ``<Environment>``. With a URDF,
+                ``srdf`` names its SRDF ("none": neither the one beside it nor guessed manipulators), ``state`` a group
+                state of it, which gives the joint values, ``packages`` folders of packages ("NAME=FOLDER", several
+                separated as in PATH), and ``args`` arguments of a xacro ("name:=value", separated by blanks).
+                Attributes that have no effect are reported as warnings.
 
         Returns:
             Whether the whole file was loaded. As in OpenRAVE, the result is False if the file is missing or broken,
@@ -143,7 +147,8 @@ class Loading(Description):
         """Add the file ``path`` that a person has dropped on a viewer, all of it or nothing.
 
         It may refer to the files in its folder and to those that were dropped with it, ``dropped``. Bodies whose names
-        are taken get other names. Return the error with file and line; empty if the file was added.
+        are taken get other names. Return the error with file and line, or the mesh that is missing of what was added;
+        empty if all is there.
         """
         path = os.path.abspath(path)
         access = FileAccess.dropped(path, dropped)
@@ -166,7 +171,9 @@ class Loading(Description):
             return f"{path}: the file has no body and no sensor"
         Compiled(reading.scene, Diagnostics())  # raises where MuJoCo refuses the bodies
         self._add(replace(reading, renames=True, diagnostics=access.named_diagnostics()))
-        return ""
+        missing = [finding for finding in reading.diagnostics if finding.code == "missing-file"]
+        others = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+        return f"{missing[0]}{others}" if missing else ""
 
     def _try_elsewhere(self, path: str) -> None:
         """Load a file of JSON into another environment, for a moment; errors as of ``_load_json``."""

@@ -21,7 +21,7 @@ __all__ = ["MODULES", "Module", "RaveCreateModule", "RaveCreateProblem", "base_m
 
 _LOG = logging.getLogger("ravemj")
 
-MODULES = ("BaseManipulation", "TaskManipulation", "logging", "viewerrecorder")
+MODULES = ("BaseManipulation", "TaskManipulation", "logging", "urdf", "viewerrecorder")
 """Names of the modules."""
 
 MISSING: Mapping[str, str] = {
@@ -50,8 +50,8 @@ def RaveCreateModule(env: "Environment", name: str) -> Module | None:
 
     Args:
         env: The environment.
-        name: ``BaseManipulation``, ``TaskManipulation``, ``viewerrecorder``, which writes videos, or ``logging``, which
-            saves scenes; in any letter case.
+        name: ``BaseManipulation``, ``TaskManipulation``, ``viewerrecorder``, which writes videos, ``logging``, which
+            saves scenes, or ``urdf``, which loads robots of ROS as the plugin or_urdf does; in any letter case.
 
     Returns:
         The module; None with a logged warning if no plugin of OpenRAVE has a module of that name.
@@ -62,7 +62,7 @@ def RaveCreateModule(env: "Environment", name: str) -> Module | None:
     Example:
         >>> module = RaveCreateModule(env, "BaseManipulation")
         >>> env.Add(module, True, robot.GetName())
-        >>> RaveCreateModule(env, "urdf") is None
+        >>> RaveCreateModule(env, "mymodule") is None
         True
     """
     word = asked_for(env, name, "RaveCreateModule", MISSING)[0]
@@ -77,6 +77,10 @@ def RaveCreateModule(env: "Environment", name: str) -> Module | None:
             from ravemj.rave.viewer_recorder import ViewerRecorder  # noqa: PLC0415 - rarely wanted
 
             return ViewerRecorder(env, word)
+        case "urdf":
+            from ravemj.rave.modules.urdf import urdf_module  # noqa: PLC0415 - rarely wanted
+
+            return urdf_module(env, word)
         case _:
             _LOG.warning("there is no module '%s'", name)
             return None

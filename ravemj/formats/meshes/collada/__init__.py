@@ -1,7 +1,8 @@
 """The reader of COLLADA files as meshes: it flattens the visual scene to one part for each material.
 
-As OpenRAVE's importer does it, the file is scaled by its unit and turned to y up. The reader of robots does neither,
-and shares the modules beside this one: ``triangles``, ``materials`` and ``node_transforms``.
+As OpenRAVE's importer does it, the file is scaled by its unit and turned to y up; for a URDF it is not turned. The
+reader of COLLADA's robots does neither, and shares the modules beside this one: ``triangles``, ``materials`` and
+``node_transforms``.
 """
 
 import numpy as np
@@ -45,7 +46,7 @@ def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
     instance = child(document.root, "scene", "instance_visual_scene")
     scene = None if instance is None else document.find("visual_scene", instance.get("url"))
     if scene is not None:
-        flattening.nodes(scene, _root_transform(document), 0)
+        flattening.nodes(scene, _root_transform(document, turns=not file.ros), 0)
     return tuple(
         part
         for material, pieces in sorted(flattening.pieces.items())
@@ -61,14 +62,14 @@ def _colours(material: ColladaMaterial) -> tuple[Rgb, Rgb, float]:
     return diffuse, ambient, transparency(material.opacity)
 
 
-def _root_transform(document: ColladaDocument) -> Floats:
-    """Return the matrix from the file's units and axes to metres and y up."""
+def _root_transform(document: ColladaDocument, *, turns: bool) -> Floats:
+    """Return the matrix from the file's units to metres and, if ``turns``, from its axes to y up."""
     asset = child(document.root, "asset")
     metres = attribute_number(child(asset, "unit"), "meter", 1.0)
     up = child(asset, "up_axis")
     name = "" if up is None else up.text or ""  # with blanks around it OpenRAVE's importer does not know it
     matrix = np.eye(4)
-    matrix[:3, :3] = metres * _Y_UP_FROM.get(name, np.eye(3))
+    matrix[:3, :3] = metres * (_Y_UP_FROM.get(name, np.eye(3)) if turns else np.eye(3))
     return matrix
 
 

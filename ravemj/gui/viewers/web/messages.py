@@ -37,6 +37,7 @@ _MOST_BRACKETS = 8
 _FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
 """Names of files that a page may send; none of them leads to another folder."""
 
+_DEEPEST = 10  # folders above a file that was dropped
 _MOST_BYTES = 255
 """Longest name of a file on most file systems [bytes]; longer ones are cut, and keep their suffix."""
 
@@ -138,8 +139,16 @@ def _name(kind: str) -> Callable[[object], str]:
     return read
 
 
-def _file_name(name: object) -> str:
-    if not isinstance(name, str) or not _FILE.fullmatch(name):
+def _file_path(path: object) -> str:
+    """Return the name of a file, below the names of some folders."""
+    parts = path.split("/") if isinstance(path, str) else []
+    if not 0 < len(parts) <= _DEEPEST:
+        raise ValueError("there are no such files")
+    return "/".join(map(_file_name, parts))
+
+
+def _file_name(name: str) -> str:
+    if not _FILE.fullmatch(name):
         raise ValueError("there are no such files")
     stem, suffix = os.path.splitext(name)
     if len(suffix) > _LONGEST_SUFFIX:
@@ -169,7 +178,7 @@ _KINDS: dict[str, tuple[Callable[..., Message], dict[str, Callable[[object], obj
     "key": (Key, {"name": _name("key"), "pressed": _flag}),
     "leave": (Leave, {}),
     "shape": (Shape, {"width": _length, "height": _length, "ratio": _ratio}),
-    "piece": (Piece, {"name": _file_name, "data": _data, "last": _flag}),
+    "piece": (Piece, {"name": _file_path, "data": _data, "last": _flag}),
     "ready": (Ready, {}),
     "draws": (Draws, {"itself": _flag}),
 }

@@ -1,0 +1,85 @@
+"""Manipulators of robots without an SRDF: guessed from the tree of links and their names."""
+
+import re
+
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.urdf import GUESSES
+from ravemj.formats.urdf.joint import UrdfJoint
+from ravemj.formats.urdf.tree import RobotTree
+from ravemj.model.manipulators import ManipulatorBuilder
+
+_TOOLS = (
+    "tool 0", "tcp", "end effector", "eef", "ee", "tool frame", "tool", "attachment", "flange", "palm", "gripper",
+    "hand", "jaw",
+)  # fmt: skip
+"""Words by which links that carry a tool are known, the surest first."""
+
+_WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+_LEAST_DOFS, _MOST_ARMS = 3, 8
+
+
+def guess(tree: RobotTree, root: Element, context: Context) -> list[ManipulatorBuilder]:
+    """Return guessed manipulators: links with the name of a tool at the end of three or more DOFs.
+
+    If no such link has a name of that kind, the ends of the longest chains count. Joints beyond the tool are those of
+    the gripper.
+    """
+    named = [(rank, link) for link in tree.links if (rank := _rank(link)) is not None]
+    arms = _arms([link for _, link in sorted(named, key=lambda pair: pair[0])], tree) or _arms(_longest(tree), tree)
+    if arms:
+        counts = [f"'{arm.name}' ({len(_dofs(arm.effector, tree))} joints)" for arm in arms]
+        noun = "a guessed manipulator" if len(arms) == 1 else "guessed manipulators"
+        message = f"no SRDF describes the arms; {noun}: {', '.join(counts)}"
+        context.diagnostics.note(GUESSES, message, root.source, "--srdf FILE gives the robot's own")
+    return arms
+
+
+def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
+    """Return an arm for each last joint that moves a tool, in the order of the file."""
+    arms: dict[str, ManipulatorBuilder] = {}  # by the last joint
+    dofs = {link: _dofs(link, tree) for link in tools}
+    for link in tools:
+        if len(dofs[link]) < _LEAST_DOFS or dofs[link][-1].name in arms or _is_beyond(link, dofs, tree):
+            continue
+        last = dofs[link][-1]
+        gripper = [joint.name for joint in tree.dofs_below(last.child)]
+        arms[last.name] = ManipulatorBuilder(link, tree.links[link], _base(tree, link), link, gripper_joints=gripper)
+    places = {link: place for place, link in enumerate(tree.links)}
+    return sorted([*arms.values()][:_MOST_ARMS], key=lambda arm: places[arm.effector])
+
+
+def _rank(link: str) -> int | None:
+    """Return the place of a link's name in the list of tools; None if it is no name of a tool."""
+    words = f" {' '.join(_WORDS.findall(link)).lower()} "
+    return next((rank for rank, tool in enumerate(_TOOLS) if f" {tool} " in words), None)
+
+
+def _longest(tree: RobotTree) -> list[str]:
+    """Return the moving ends of all chains, those with the most DOFs first."""
+    ends = [link for link, joint in tree.above.items() if tree.is_dof(joint) and not any(tree.dofs_below(link))]
+    return sorted(ends, key=lambda link: -len(_dofs(link, tree)))
+
+
+def _dofs(link: str, tree: RobotTree) -> list[UrdfJoint]:
+    """Return the joints with a DOF between the base of an arm and its tool."""
+    return [joint for joint in tree.path(link, _base(tree, link)) or [] if tree.is_dof(joint)]
+
+
+def _base(tree: RobotTree, link: str) -> str:
+    """Return the nearest link above that carries several moving branches, three or more DOFs up; else the root."""
+    count = 0
+    while link in tree.above:
+        joint = tree.above[link]
+        link = joint.parent
+        count += tree.is_dof(joint)
+        branches = [one for one in tree.below[link] if tree.is_dof(one) or any(tree.dofs_below(one.child))]
+        if count >= _LEAST_DOFS and len(branches) > 1:
+            break
+    return link
+
+
+def _is_beyond(link: str, dofs: dict[str, list[UrdfJoint]], tree: RobotTree) -> bool:
+    """Return whether the joints of a gripper move a link: it hangs on another tool that an arm moves."""
+    above = {joint.parent for joint in tree.path(link) or []} & dofs.keys()
+    return any(len(dofs[other]) >= _LEAST_DOFS and dofs[other][-1] is not dofs[link][-1] for other in above)

@@ -1,0 +1,70 @@
+"""xacro: files that a program expands to a URDF.
+
+An expansion evaluates expressions of Python, so it is for files that their user opens, in a process of its own, and for
+a limited time.
+"""
+
+import importlib.util
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Mapping
+
+from ravemj.errors import Source, SourceError
+from ravemj.formats.file_access import FileAccess
+from ravemj.formats.limits import check_bytes, most_bytes
+
+SUFFIX = ".xacro"
+
+LIMIT = 10.0
+"""Time limit of an expansion [s]."""
+
+_LONGEST = 300  # characters of an error that another program prints
+_COMMENT = re.compile(b"<!--.*?-->", re.DOTALL)  # expanded files keep what their xacro had as comments
+_HEAD = 20_000  # bytes in which the first element of xacro stands
+
+
+def is_xacro(path: str, content: bytes) -> bool:
+    """Return whether a file is to be expanded: by its name, or since it has elements of xacro."""
+    if path.lower().endswith(SUFFIX):
+        return True
+    return b"<xacro:" in content and b"<robot" in content[:_HEAD] and b"<xacro:" in _COMMENT.sub(b"", content)
+
+
+def expand(path: str, given: Mapping[str, str], access: FileAccess) -> bytes:
+    """Return the URDF that a xacro file stands for; the files that it includes are noted.
+
+    Args:
+        path: The file.
+        given: What the caller gave with it: ``args`` and ``packages``, see ``ravemj.formats.urdf.GIVEN``.
+        access: The access of the reading.
+
+    Raises:
+        SourceError: it was dropped on a viewer, the extra ``xacro`` is missing, the expansion fails, or it takes too
+            long.
+    """
+    source = Source(path)
+    if access.is_dropped:
+        hint = f"open it with ravemj view, or drop the URDF that xacro {os.path.basename(path)} prints"
+        raise SourceError("a xacro that was dropped is not expanded, since that runs Python", source, hint)
+    if importlib.util.find_spec("xacrodoc") is None:
+        hint = 'pip install "ravemj[xacro]", or write the URDF with the program xacro of ROS'
+        raise SourceError("this is a xacro, which has to be expanded to a URDF", source, hint)
+    place = os.path.abspath(path)
+    request = {"path": place, "given": dict(given), "most": most_bytes(), "modules": sys.path[1:]}
+    command = [sys.executable, "-P", os.path.join(os.path.dirname(__file__), "expansion.py")]
+    asked, folder = json.dumps(request).encode(), os.path.dirname(place)
+    try:
+        done = subprocess.run(command, input=asked, capture_output=True, timeout=LIMIT, cwd=folder, check=False)
+    except subprocess.TimeoutExpired:
+        raise SourceError(f"the xacro is not expanded after {LIMIT:g} s", source) from None
+    if done.returncode:
+        lines = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason given"]
+        raise SourceError(f"the xacro cannot be expanded: {lines[-1][:_LONGEST]}", source, "--arg NAME:=VALUE sets one")
+    check_bytes(len(done.stdout), "the expanded file has", source)
+    answer = json.loads(done.stdout)
+    for file in answer["files"]:
+        access.files.setdefault(file, source)
+    return answer["text"].encode()
