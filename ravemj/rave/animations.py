@@ -1,6 +1,8 @@
 """Motions as pages that play them."""
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,9 +12,9 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
-from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.rendering.style import AS_USUAL, LookChoices
 from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
-from ravemj.rave.recording import camera_for_motion, followed_motion
+from ravemj.rave.recording import camera_for_motion, followed_motion, lowest_of_motion
 from ravemj.trajectories.body_motion import BodyMotion
 from ravemj.trajectories.motion_arguments import MotionLike
 
@@ -33,6 +35,7 @@ def animate(
     fps: float = 30.0,
     camera: ArrayLike | None = None,
     background: ArrayLike | None = None,
+    choices: LookChoices = AS_USUAL,
 ) -> Animation:
     """Return the page of a motion; ``Environment.animation`` says what the arguments are."""
     if not _LOWEST_FPS <= fps <= _HIGHEST_FPS:  # NaN is refused, too
@@ -47,10 +50,11 @@ def animate(
         else:
             view = camera_for_motion(env, followed, _ASPECT)
         shown = followed.bodies if followed is not None else () if robot is None else (robot.simulation_state,)
+        lowest = math.inf if followed is None else lowest_of_motion(env, followed)
         recording = _recorded(env, shown, followed, fps)
         title = ", ".join(body.scene.name for body in shown) or "ravemj"
-        colour = env.background if background is None else checked_colour(background)
-        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, colour, title)
+        look = replace(env.look(background, choices), lowest=lowest)
+        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, look, title, choices.shadows)
         compiled, drawings = env.simulation.compiled(), env.simulation.drawings.primitives()
         return Animation(animation_page(compiled.model, compiled.data, recording, appearance, drawings))
 
