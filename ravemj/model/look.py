@@ -58,16 +58,16 @@ FLOORS = ("auto", "on", "off")
 AZIMUTH, ELEVATION = 40.0, 25.0
 """From where pictures are taken if nothing says another camera: from the front left corner and above [degrees]."""
 
-STEEPNESS = 0.64
+STEEPNESS = 0.6
 """Sine of the least elevation of a light that casts shadows."""
 
-KEY = Light((0.42, 0.62, 1.0), diffuse=0.42, specular=0.3, in_camera=True, casts_shadows=True)
+KEY = Light((0.45, 0.22, 1.0), diffuse=0.33, specular=0.1, in_camera=True, casts_shadows=True)
 """The main light, over the camera's left shoulder."""
 
-FILL = Light((0.0, 0.0, 1.0), diffuse=0.16, ambient=0.47, in_camera=True)
+FILL = Light((0.0, 0.0, 1.0), diffuse=0.08, ambient=0.58, in_camera=True)
 """A soft light from the camera; MuJoCo calls it the headlight."""
 
-SKY = Light((0.0, 0.0, -1.0), diffuse=0.06)
+SKY = Light((0.0, 0.0, -1.0), diffuse=0.04)
 """A little light from above."""
 
 STUDIO = (FILL, KEY, SKY)

@@ -115,7 +115,7 @@ class GlScene:
         return self.scene.ngeom == 0
 
     def _make_scene(self, room: int) -> None:
-        self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room)
+        self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room + 1)  # the last one is for the floor
         self._room = room
 
     def fill(
@@ -132,7 +132,7 @@ class GlScene:
         With points or lines there are no shadows: MuJoCo would draw these once more for each light that casts some, and
         add the colours up. ``size`` is columns and rows of the viewport.
         """
-        self._make_room(len(primitives) + 1)
+        self._make_room(len(primitives))
         has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
         self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self.has_shadows and not has_lines
         self._look, self._floor = look, None if style.wireframe else self._level.floor(data, look)
@@ -160,7 +160,7 @@ class GlScene:
         if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
             self._cover_with_shadows(near)
         self.scene.ngeom = self._filled
-        if self._floor is not None and self._floor.is_below(camera):
+        if self._floor is not None and self._floor.is_below(camera) and self._filled < self.scene.maxgeom:
             self._add_floor(self._floor, camera)
 
     def _add_floor(self, floor: Floor, camera: Camera) -> None:
@@ -173,13 +173,14 @@ class GlScene:
             (light.ambient + light.diffuse * max(-float(light.dir[2]), 0.0) for light in self._drawn_lights()),
             start=np.full(3, 1e-3),
         )
-        rgba = np.array([*np.minimum(floor.colour / light, 1), 1], dtype=np.float32)
+        glow = max(float(np.max(floor.colour - light)), 0.0)  # it is as bright as it should be in any light
+        rgba = np.array([*floor.colour / (light + glow), 1], dtype=np.float32)
         slot = self.scene.geoms[self.scene.ngeom]
         size = np.array([half, half, 1.0])
         mujoco.mjv_initGeom(slot, mujoco.mjtGeom.mjGEOM_PLANE, size, position, np.eye(3).reshape(-1), rgba)
         slot.category, slot.segid = mujoco.mjtCatBit.mjCAT_DECOR, -1
         slot.specular = slot.reflectance = 0.0
-        slot.matid = self._material
+        slot.matid, slot.emission = self._material, glow
         if self._material >= 0:
             self.context.mat_texrepeat[2 * self._material : 2 * self._material + 2] = 2 * half / floor.cell
         self.scene.ngeom += 1

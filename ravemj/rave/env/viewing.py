@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class Viewing(EnvironmentPart):
     """The viewers of an environment, and pictures, which need no viewer."""
 
-    _internal = ("open_viewer", "renderer")
+    _internal = ("look", "open_viewer", "own_background", "renderer")
 
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, which replaces earlier ones. ``RaveCreateViewer`` attaches additional viewers.

@@ -100,7 +100,7 @@ class Backdrop {
       gl.uniform3fv(program.colour, floor.colour);
       for (const name of ["height", "cell", "width", "lines"]) gl.uniform1f(program[name], floor[name]);
       gl.uniform1f(program.pixel, 1 / focal);
-      gl.uniform1f(program.shade, this.shade(view, lights, steepness));
+      gl.uniform1f(program.shade, this.shade(view, lights, steepness, Math.max(...floor.colour)));
     }
     gl.depthMask(false);
     gl.disable(gl.DEPTH_TEST);
@@ -110,8 +110,8 @@ class Backdrop {
     gl.depthMask(true);
   }
 
-  /** Which part of the light on the floor comes from lights that cast shadows. */
-  shade(view, lights, steepness) {
+  /** Which part of the light on the floor, which is at least so much, comes from lights that cast shadows. */
+  shade(view, lights, steepness, least) {
     const mean = (parts) => parts.reduce((sum, part) => sum + part, 0) / 3;
     let all = 0, kept = 0;
     for (const light of lights) {
@@ -119,7 +119,7 @@ class Backdrop {
       all += mean(light.ambient) + direct;
       kept += light.casts ? direct : 0;
     }
-    return kept / Math.max(all, 1e-9);
+    return kept / Math.max(all, least);
   }
 }
 
