@@ -10,6 +10,7 @@ import numpy as np
 from ravemj.cli.arms import Solution, add_ghost, arm_of, out_of_reach, pose_goal, reached, start_values, validated
 from ravemj.cli.console import console, table
 from ravemj.cli.models import chosen_robots, load_model
+from ravemj.cli.pictures import picture_of
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_size
@@ -105,4 +106,4 @@ def _draw(env: Environment, arm: Manipulator, found: Sequence[Solution], options
     for number, solution in enumerate(found[1:], 2):
         add_ghost(robot, number, solution.values, dofs)
     camera = None if options.camera is None else read_camera(options.camera).T_world_camera
-    write_picture(options.output, env.render(*options.size, camera=camera, background=options.background))
+    write_picture(options.output, picture_of(options, env, camera))

@@ -8,6 +8,7 @@ from ravemj.cli.arm_parsers import add_ik, add_plan
 from ravemj.cli.shared_options import (
     VIDEOS,
     Commands,
+    add_look_options,
     add_model,
     add_picture_options,
     add_robot,
@@ -63,6 +64,7 @@ def _add_view(commands: Commands) -> None:
         "others", nargs="*", type=file_name, metavar="MODEL", help="further models, shown together with the first one"
     )
     add_robot(parser, "robot to look at, selected, so that the sliders turn its joints; default: everything in view")
+    add_look_options(parser)
     parser.add_argument(
         "--watch",
         action="store_true",

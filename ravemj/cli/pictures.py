@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj.cli.console import console, progress, table
 from ravemj.cli.models import load_model, moving_robot, named_robot, shown_sphere
@@ -18,7 +19,8 @@ from ravemj.graphics.rendering.camera import Camera, three_quarter_view
 from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import INSTALL, RAY, requested_backend
 from ravemj.graphics.rendering.doctor import probe_backends
-from ravemj.graphics.simulation_renderer import Format
+from ravemj.graphics.rendering.style import Look, LookChoices
+from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.graphics.video import VIDEO_FORMATS, check_picture, check_target, known_suffix, write_frames, write_picture
 from ravemj.gui.viewers import has_display
 from ravemj.gui.viewers.window import WindowViewer
@@ -48,9 +50,8 @@ def play(options: argparse.Namespace) -> int:
         return 0
     motion = followed_motion(env, motion)
     camera = camera or camera_for_motion(env, motion, options.size[0] / options.size[1])
-    background = env.background if options.background is None else tuple(options.background)
-    shot = Shot(camera, background, Format(*options.size), options.fps)
-    if output is None and _play_in_window(env, motion, shot):
+    shot = Shot(camera, look_of(options, env), Format(*options.size, shadows=options.shadows), options.fps)
+    if output is None and _play_in_window(env, motion, shot, options):
         return 0
     write_video(output or f"{Path(options.model).stem}.mp4", env, motion, shot)
     return 0
@@ -98,7 +99,23 @@ def _checked_values(option: str, values: list[float], body: KinBody) -> list[flo
     return values
 
 
-def _play_in_window(env: Environment, motion: BodyMotion, shot: Shot) -> bool:
+def look_choices(options: argparse.Namespace) -> LookChoices:
+    """Return what the options say about shadows, floor and lights."""
+    return LookChoices(options.shadows, options.floor, options.lights)
+
+
+def look_of(options: argparse.Namespace, env: Environment) -> Look:
+    """Return the look that the options ask for."""
+    return env.look(options.background, look_choices(options))
+
+
+def picture_of(options: argparse.Namespace, env: Environment, camera: ArrayLike | None) -> Frame:
+    """Return a picture as the options ask for it."""
+    look = {"shadows": options.shadows, "floor": options.floor, "lights": options.lights}
+    return env.render(*options.size, camera=camera, background=options.background, **look)
+
+
+def _play_in_window(env: Environment, motion: BodyMotion, shot: Shot, options: argparse.Namespace) -> bool:
     """Play in a window, and wait until it is closed; return False if no window can be opened."""
     if not has_display():
         return False
@@ -107,7 +124,9 @@ def _play_in_window(env: Environment, motion: BodyMotion, shot: Shot) -> bool:
     if not isinstance(viewer, WindowViewer):
         return False
     viewer.SetCamera(shot.camera.T_world_camera)
-    viewer.SetBkgndColor(shot.background)
+    if shot.look.background is not None:
+        viewer.SetBkgndColor(shot.look.background)
+    viewer.choose_look(look_choices(options))
     viewer.play(motion)
     with signals_raised():  # Ctrl-C then leaves time to complete a file that is being saved
         viewer.wait()
@@ -119,7 +138,8 @@ def write_page(
 ) -> None:
     """Write the page that plays a motion, and say so."""
     view = None if camera is None else camera.T_world_camera
-    env.save_html(path, motion, fps=options.fps, camera=view, background=options.background)
+    look = {"shadows": options.shadows, "floor": options.floor, "lights": options.lights}
+    env.save_html(path, motion, fps=options.fps, camera=view, background=options.background, **look)
     print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s; any browser plays it)")
 
 
@@ -129,6 +149,7 @@ def write_video(path: str, env: Environment, motion: BodyMotion, shot: Shot) -> 
     with progress(f"drawing {path}", count) as advance:
         write_frames(path, draw_frames(env, motion, shot), shot.fps, on_frame=advance)
     explain_rays(env, shot.form)
+    explain_shadows(env, shot.form)
     frames = f"{count} frames of {shot.form.width}x{shot.form.height} by {env.renderer.backend(shot.form)}"
     print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s, {frames})")
 
@@ -145,8 +166,8 @@ def render(options: argparse.Namespace) -> int:
     if camera is None and robot is not None:
         camera = three_quarter_view(*shown_sphere(env, robot), width / height)
     matrix = None if camera is None else camera.T_world_camera
-    write_picture(options.output, env.render(width, height, camera=matrix, background=options.background))
-    explain_rays(env, Format(width, height, shadows=True))
+    write_picture(options.output, picture_of(options, env, matrix))
+    explain_rays(env, Format(width, height, options.shadows is not False))
     print(f"wrote {options.output}")
     return 0
 
@@ -155,6 +176,15 @@ def explain_rays(env: Environment, form: Format) -> None:
     """Say how to get OpenGL if a picture was ray-cast for lack of it."""
     if env.renderer.backend(form) == RAY and requested_backend() is None:
         print(f"ravemj: no OpenGL here, so rays drew the picture; faster: {INSTALL['egl']}", file=sys.stderr)
+
+
+def explain_shadows(env: Environment, form: Format) -> None:
+    """Say why a video has no shadows, if nobody has chosen that."""
+    if form.shadows is None and env.renderer.backend(form) != RAY and not env.renderer.has_shadows(form):
+        print(
+            "ravemj: OpenGL draws with the processor here, so the video has no shadows; --shadows draws them",
+            file=sys.stderr,
+        )
 
 
 def doctor(options: argparse.Namespace) -> int:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.cli.arms import add_ghost
-from ravemj.cli.pictures import PAGE, explain_rays, write_page, write_video
+from ravemj.cli.pictures import PAGE, explain_rays, look_of, picture_of, write_page, write_video
 from ravemj.core.output import check_file
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera
@@ -85,9 +85,9 @@ def _followed(plan: Plan) -> BodyMotion:
 
 
 def _shot(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> Shot:
-    env, form = plan.robot.GetEnv(), Format(*options.size)
+    env, form = plan.robot.GetEnv(), Format(*options.size, shadows=options.shadows)
     view = camera or camera_for_motion(env, _followed(plan), form.width / form.height)
-    return Shot(view, env.background if options.background is None else tuple(options.background), form, options.fps)
+    return Shot(view, look_of(options, env), form, options.fps)
 
 
 def _write_picture(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> None:
@@ -96,7 +96,7 @@ def _write_picture(plan: Plan, camera: Camera | None, options: argparse.Namespac
     drawn = _draw(plan, path=True, trees=options.show_tree)
     goal = plan.goals[0] if plan.motion is None else plan.motion.values[-1, plan.dofs]
     add_ghost(plan.robot, 2, goal, plan.dofs)
-    picture = env.render(*options.size, camera=shot.camera.T_world_camera, background=shot.background)
+    picture = picture_of(options, env, shot.camera.T_world_camera)
     write_picture(options.output, picture)
     explain_rays(env, shot.form)
     print(f"wrote {options.output}")

@@ -7,6 +7,7 @@ from typing import TypeAlias
 from ravemj.cli.argument_parser import Parser
 from ravemj.cli.argument_types import argument, colour, file_name, package, size
 from ravemj.formats.shipped import SHIPPED_MODELS
+from ravemj.model.look import FLOORS, LIGHTS
 
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
 
@@ -113,5 +114,27 @@ def add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None
         type=colour,
         metavar="COLOUR",
         help="background: red, green and blue from 0 to 1, as 0.8,0.85,0.9, or a CSS name or #rrggbb; default: the "
-        "model's, or white",
+        "model's, or a gradient and a floor",
+    )
+    add_look_options(parser)
+
+
+def add_look_options(parser: argparse.ArgumentParser) -> None:
+    """Add shadows, floor and lights."""
+    parser.add_argument(
+        "--shadows",
+        action=argparse.BooleanOptionalAction,
+        help="whether lights cast shadows; default: in pictures if OpenGL draws them, else if a graphics card draws",
+    )
+    parser.add_argument(
+        "--floor",
+        choices=FLOORS,
+        default="auto",
+        help="floor with a grid, which nothing collides with; auto, the default: where nothing sets a background",
+    )
+    parser.add_argument(
+        "--lights",
+        choices=LIGHTS,
+        default="both",
+        help="lights: those of a studio, the model's own, or both, the default",
     )

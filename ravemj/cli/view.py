@@ -13,6 +13,7 @@ from ravemj.cli.models import hold_bases, load_model, named_robot, shown_sphere
 from ravemj.cli.reloading import Reloader
 from ravemj.core.signals import signals_delayed, signals_raised
 from ravemj.graphics.rendering import three_quarter_view
+from ravemj.graphics.rendering.style import LookChoices
 from ravemj.gui.viewers import Viewer, has_display
 from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment, Robot
@@ -58,7 +59,7 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Show the name of the model, the floor, and from a corner the robot, or everything if the file has no camera."""
+    """Show the name of the model, and from a corner the robot, or everything if the file has no camera."""
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)
@@ -66,7 +67,7 @@ def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: arg
         viewer.SetCamera(camera.T_world_camera, float(np.linalg.norm(center - camera.position)))
     if robot is not None:
         viewer.interaction.choose(robot.simulation_state)
-    viewer.interaction.controls.display.shown |= {"floor"}
+    viewer.choose_look(LookChoices(options.shadows, options.floor, options.lights))
     if options.physics:
         hold_bases(env)
         env.SetPhysicsEngine("mujoco")

@@ -15,11 +15,15 @@ from ravemj.engine.simulation import Compiled, Simulation
 from ravemj.errors import Diagnostics, OutputError
 from ravemj.formats.mjcf import Mjcf, Options
 from ravemj.formats.mjcf.document import ASSETS
-from ravemj.formats.mjcf.lines import Lines, comment_text
+from ravemj.formats.mjcf.lines import Lines, attribute_text, comment_text
+from ravemj.model.look import STUDIO_PREFIX
 from ravemj.model.scene import Scene
 
 START = "loaded"
 """Name of the keyframe with the joint values that the model was loaded with."""
+
+_LIGHT_DISTANCE = 2.0
+"""Distance of lights from the middle of a model, in its extents."""
 
 _MARK = "<!-- made by ravemj"
 _MESHES = "mesh-*.obj"
@@ -36,15 +40,27 @@ def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options
     """
     scene = Scene(tuple(body.scene for body in simulation.bodies), simulation.view, simulation.gravity)
     compiled = Compiled(scene, diagnostics, options)
+    mjcf = replace(compiled.mjcf, text=_with_placed_lights(compiled.mjcf.text, compiled.model))
     start = _qpos(compiled.model, simulation.compiled())
     if np.array_equal(start, compiled.model.qpos0):
-        return compiled.mjcf
+        return mjcf
     keyframe = Lines(indent=1)
     keyframe.open("keyframe")
     keyframe.element("key", name=START, qpos=tuple(start.tolist()))
     keyframe.close("keyframe")
-    head, end = compiled.mjcf.text.rsplit("</mujoco>", 1)
-    return replace(compiled.mjcf, text="\n".join([f"{head}{keyframe.text[0]}", *keyframe.text[1:], f"</mujoco>{end}"]))
+    head, end = mjcf.text.rsplit("</mujoco>", 1)
+    return replace(mjcf, text="\n".join([f"{head}{keyframe.text[0]}", *keyframe.text[1:], f"</mujoco>{end}"]))
+
+
+def _with_placed_lights(text: str, model: mujoco.MjModel) -> str:
+    """Place the directional lights so that the shadow maps of MuJoCo's viewers, which begin there, have all bodies."""
+    for number in range(model.nlight):
+        light = model.light(number)
+        if light.name.startswith(STUDIO_PREFIX):
+            position = model.stat.center - _LIGHT_DISTANCE * model.stat.extent * light.dir
+            attribute = attribute_text(tuple(position.round(6).tolist()))
+            text = text.replace(f'<light name="{light.name}"', f'<light name="{light.name}" pos="{attribute}"', 1)
+    return text
 
 
 def _qpos(model: mujoco.MjModel, current: Compiled) -> Floats:

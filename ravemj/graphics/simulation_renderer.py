@@ -20,19 +20,12 @@ from ravemj.graphics.rendering import (
     three_quarter_view,
     view_from_above,
 )
-from ravemj.graphics.rendering.contexts import RAY
-from ravemj.graphics.rendering.style import AS_IT_IS
+from ravemj.graphics.rendering.backdrop import lowest_point
+from ravemj.graphics.rendering.style import AS_IT_IS, Look
 from ravemj.model.drawing import NOTHING, Primitives, merge
 
 Frame = NDArray[np.uint8]
 Drawn = TypeVar("Drawn")
-
-_FINER = 2
-"""Pictures with shadows are drawn with so many times the rows and columns, and averaged: the edges of shadows, which
-have no samples of their own, become smooth."""
-
-_MOST_PIXELS = 8_300_000
-"""Pixels of the largest picture that is drawn finer: 4K."""
 
 
 class Format(NamedTuple):
@@ -40,7 +33,7 @@ class Format(NamedTuple):
 
     width: int = 640  # [pixels]
     height: int = 480  # [pixels]
-    shadows: bool = False  # whether lights cast some; too slow for videos without a graphics card
+    shadows: bool | None = None  # whether lights cast some; None: if OpenGL draws with a graphics card
     samples: int = 4  # per pixel against jagged edges: 4, or 0 for speed
     scale: float = 1.0  # columns as a part of those that it is shown with: points and lines are so much narrower
 
@@ -71,7 +64,7 @@ class SimulationRenderer:
     def render(
         self,
         camera: Camera,
-        background: ArrayLike,
+        look: Look | ArrayLike,
         form: Format,
         drawings: bool = True,
         gizmos: Primitives = NOTHING,
@@ -81,7 +74,7 @@ class SimulationRenderer:
 
         Args:
             camera: Where the picture is taken from.
-            background: Colour where nothing is: red, green, blue from 0 to 1.
+            look: Background, floor and lights; a colour is a background without floor, with the model's lights.
             form: Size and quality.
             drawings: False: without the drawings of scripts.
             gizmos: What else is drawn.
@@ -98,15 +91,10 @@ class SimulationRenderer:
             primitives = self._simulation.drawings.primitives() if drawings else NOTHING
             shown = merge([primitives, gizmos]) if len(gizmos) else primitives
             renderer = self._current(form)
-            finer = self._finer(form)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
             self._kept.shown, self._kept.published = (shown, style), self._simulation.published.number
-        widened = shown.widened(finer * form.scale)
         with StateLock():
-            if finer == 1:
-                return renderer.render(self._kept.data, camera, background, widened, style)
-            picture = renderer.render(self._kept.data, camera.enlarged(finer), background, widened, style)
-        return _averaged(picture, finer)
+            return renderer.render(self._kept.data, camera, look, shown.widened(form.scale), style)
 
     def depth(self, camera: Camera, form: Format) -> NDArray[np.float32]:
         """Return how far away the bodies are: along the viewing direction [m], shape (height, width); else infinite."""
@@ -125,7 +113,7 @@ class SimulationRenderer:
         with StateLock():
             return measure(renderer, self._kept.data)
 
-    def render_again(self, camera: Camera, background: ArrayLike, form: Format) -> Frame | None:
+    def render_again(self, camera: Camera, look: Look | ArrayLike, form: Format) -> Frame | None:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
 
         Bodies are where they were then, or where they were published since; there are shadows if there were some.
@@ -140,12 +128,17 @@ class SimulationRenderer:
         shown, style = self._kept.shown
         with StateLock():
             self._kept.renderer.resize(form.width, form.height, form.samples)
-            return self._kept.renderer.render(self._kept.data, camera, background, shown.widened(form.scale), style)
+            return self._kept.renderer.render(self._kept.data, camera, look, shown.widened(form.scale), style)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
         with self._simulation.lock:
             return self._current(form).backend
+
+    def has_shadows(self, form: Format) -> bool:
+        """Return whether such pictures have shadows: rays draw none."""
+        with self._simulation.lock:
+            return self._current(form).has_shadows
 
     def _current(self, form: Format) -> Renderer:
         key = (self._simulation.version, form.shadows)
@@ -156,14 +149,8 @@ class SimulationRenderer:
             size = form.width, form.height
             self._kept.renderer = open_renderer(model, *size, shadows=form.shadows, samples=form.samples)
             self._kept.key = (self._simulation.version, form.shadows)  # compiling makes another version
-        finer = self._finer(form)
-        self._kept.renderer.resize(finer * form.width, finer * form.height, form.samples)
+        self._kept.renderer.resize(form.width, form.height, form.samples)
         return self._kept.renderer
-
-    def _finer(self, form: Format) -> int:
-        """Return how many times the rows and columns of a picture are drawn."""
-        is_small = _FINER**2 * form.width * form.height <= _MOST_PIXELS
-        return _FINER if form.shadows and is_small and self._kept.renderer.backend != RAY else 1
 
     def close(self) -> None:
         """Free the renderer of this thread."""
@@ -184,15 +171,14 @@ class SimulationRenderer:
         """Return the file's camera, else a view of the whole scene that fits: width divided by height is ``aspect``."""
         return self.file_camera() or three_quarter_view(*self.bounding_sphere(), aspect)
 
+    def lowest_point(self) -> float:
+        """Return the least z [m] of all that is drawn; infinite where nothing is."""
+        with self._simulation.lock:
+            compiled = self._simulation.compiled()
+            return lowest_point(compiled.model, compiled.data)
+
     def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
         """Return centre (3,) and radius [m] of a sphere around all that is drawn."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             return bounding_sphere(compiled.model, compiled.data)
-
-
-def _averaged(picture: Frame, finer: int) -> Frame:
-    """Return a picture with fewer rows and columns, each pixel the mean of several."""
-    height, width = picture.shape[0] // finer, picture.shape[1] // finer
-    blocks = picture.reshape(height, finer, width, finer, 3)
-    return np.rint(blocks.mean(axis=(1, 3), dtype=np.float32)).astype(np.uint8)

@@ -12,6 +12,7 @@ from ravemj.core.transforms import Floats, Pose
 from ravemj.model.chains import adjacent_pairs, separate_pairs
 from ravemj.model.inertia import principal_frame
 from ravemj.model.joints import poses_at
+from ravemj.model.look import WHITE
 from ravemj.model.mimic import MimicJoints
 from ravemj.model.scene import (
     AttachedSensor,
@@ -76,7 +77,7 @@ class _Comparison:
         if first.gravity is not None and second.gravity is not None:
             yield from self._near(part, "gravity", first.gravity, second.gravity)
         if first.view is not None and second.view is not None:
-            yield from self._near(part, "background", first.view.background, second.view.background)
+            yield from self._near(part, "background", *(view.background or WHITE for view in (first.view, second.view)))
             yield from self._poses(part, "camera", first.view.T_world_camera, second.view.T_world_camera)
         for one, other in zip(first.bodies, second.bodies, strict=False):
             yield from self._bodies(one, other)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, Ints, pose_of
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.graphics.rendering import Camera, Pinhole
+from ravemj.graphics.rendering import Camera, Look, Pinhole
 from ravemj.graphics.simulation_renderer import Format
 from ravemj.model import scene
 from ravemj.rave.enums import SensorType
@@ -337,7 +337,7 @@ class Instrument:
     def picture(self, device: scene.Intrinsics, place: Place, stamp: int) -> CameraSensorData:
         """Return a camera's picture."""
         env, (camera, form) = self._env, _camera(device, place)
-        picture = env.renderer.render(camera, env.background, form, drawings=False)
+        picture = env.renderer.render(camera, Look.of_sensor(env.own_background), form, drawings=False)
         if self._deviation:
             picture = np.clip(np.rint(self._noisy(picture.astype(float))), 0, 255).astype(np.uint8)
         return CameraSensorData(stamp, place.T_world_sensor, picture, intrinsics_of(device))
@@ -442,7 +442,7 @@ class Instrument:
 
 def _camera(device: scene.Intrinsics, place: Place) -> tuple[Camera, Format]:
     pinhole = Pinhole(device.fx, device.fy, device.cx, device.cy)
-    return Camera(place.T_world_sensor, calibration=pinhole), Format(device.width, device.height)
+    return Camera(place.T_world_sensor, calibration=pinhole), Format(device.width, device.height, shadows=False)
 
 
 _MEASURES: Mapping[type, Callable[[Instrument, Any, Place, int], SensorData]] = MappingProxyType(

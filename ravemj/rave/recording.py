@@ -1,7 +1,9 @@
 """Videos of a robot that follows a motion."""
 
+import math
 import os
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,7 +14,7 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera, three_quarter_view
-from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.rendering.style import AS_USUAL, LightNames, Look, LookChoices
 from ravemj.graphics.shown_path import ShownPath
 from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
@@ -28,10 +30,10 @@ _POSES_FOR_THE_VIEW = 17  # configurations along a motion that the camera has to
 
 
 class Shot(NamedTuple):
-    """The settings of a video: camera, background, size and quality of the frames, and frames per second."""
+    """The settings of a video: camera, look, size and quality of the frames, and frames per second."""
 
     camera: Camera
-    background: tuple[float, float, float]
+    look: Look
     form: Format
     fps: float
 
@@ -47,6 +49,9 @@ def record(  # noqa: PLR0913 - keyword arguments
     fps: float = 30.0,
     camera: ArrayLike | None = None,
     background: ArrayLike | None = None,
+    shadows: bool | None = None,
+    floor: str = "auto",
+    lights: LightNames = "both",
     on_frame: Callable[[int], None] | None = None,
 ) -> Path:
     """Write a video of a robot that follows a motion. Afterwards the robot is at the end of the motion.
@@ -65,7 +70,12 @@ def record(  # noqa: PLR0913 - keyword arguments
         fps: Frames per second.
         camera: ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's, else the file's, else a view
             of the whole motion.
-        background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else white.
+        background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else a gradient.
+        shadows: Whether lights cast shadows; None: if OpenGL draws with a graphics card, as they take most of the time
+            without one.
+        floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto``: one where neither script nor
+            file sets a background.
+        lights: ``studio``, ``model`` (the model's own lights) or ``both``.
         on_frame: Called with the number of frames drawn so far.
 
     Returns:
@@ -83,11 +93,12 @@ def record(  # noqa: PLR0913 - keyword arguments
     """
     from ravemj.graphics.video import write_frames  # noqa: PLC0415 - slow to import
 
+    choices = LookChoices(shadows, floor, lights)
     followed = followed_motion(env, motion, robot)
-    form = Format(width, height)
+    form = Format(width, height, shadows)
     shot = Shot(
         camera_for_motion(env, followed, form.aspect) if camera is None else Camera.from_matrix(camera),
-        env.background if background is None else checked_colour(background),
+        env.look(background, choices),
         form,
         fps,
     )
@@ -105,10 +116,12 @@ def followed_motion(env: "Environment", motion: MotionLike, robot: "KinBody | No
 
 def draw_frames(env: "Environment", motion: BodyMotion, shot: Shot) -> Iterator[Frame]:
     """Move bodies along a motion, and yield the frames."""
+    with env:
+        look = replace(shot.look, lowest=lowest_of_motion(env, motion)) if shot.look.floor else shot.look
     for time in motion.frame_times(shot.fps):
         with env:
             motion.place(time)
-            frame = env.renderer.render(shot.camera, shot.background, shot.form)
+            frame = env.renderer.render(shot.camera, look, shot.form)
         yield frame
 
 
@@ -128,19 +141,29 @@ def camera_for_motion(env: "Environment", motion: BodyMotion, aspect: float) -> 
     chosen = env.renderer.file_camera() if env.GetViewer() is None else env.default_camera()
     if chosen is not None:
         return chosen
-    before = [(body, body.pose(), body.kinematics.values()) for body in motion.bodies]
     spheres = [env.renderer.bounding_sphere()]
-    for time in np.linspace(0.0, motion.duration, _POSES_FOR_THE_VIEW):
-        motion.place(float(time))
-        spheres.append(env.renderer.bounding_sphere())
-    for body, pose, values in before:
-        body.set_pose(pose)
-        body.set_values(values)
+    spheres += [env.renderer.bounding_sphere() for _ in _along(motion)]
     lowest = np.min([center - radius for center, radius in spheres], axis=0)
     highest = np.max([center + radius for center, radius in spheres], axis=0)
     center = (lowest + highest) / 2
     reach = max(float(np.linalg.norm(part - center)) + radius for part, radius in spheres)
     return three_quarter_view(center, reach, aspect)
+
+
+def lowest_of_motion(env: "Environment", motion: BodyMotion) -> float:
+    """Return the least z [m] of what is drawn along a motion, so that the floor stands still."""
+    return min(env.renderer.lowest_point() for _ in _along(motion))
+
+
+def _along(motion: BodyMotion) -> Iterator[None]:
+    """Place the bodies at some configurations along a motion, one after the other, and then where they were."""
+    before = [(body, body.pose(), body.kinematics.values()) for body in motion.bodies]
+    for time in np.linspace(0.0, motion.duration, _POSES_FOR_THE_VIEW):
+        motion.place(float(time))
+        yield
+    for body, pose, values in before:
+        body.set_pose(pose)
+        body.set_values(values)
 
 
 _ASPECT = 4 / 3
@@ -156,6 +179,7 @@ def animate(
     fps: float = 30.0,
     camera: ArrayLike | None = None,
     background: ArrayLike | None = None,
+    choices: LookChoices = AS_USUAL,
 ) -> Animation:
     """Return the page of a motion; ``Environment.animation`` says what the arguments are."""
     if not _LOWEST_FPS <= fps <= _HIGHEST_FPS:  # NaN is refused, too
@@ -170,10 +194,11 @@ def animate(
         else:
             view = camera_for_motion(env, followed, _ASPECT)
         shown = followed.bodies if followed is not None else () if robot is None else (robot.simulation_state,)
+        lowest = math.inf if followed is None else lowest_of_motion(env, followed)
         recording = _recorded(env, shown, followed, fps)
         title = ", ".join(body.scene.name for body in shown) or "ravemj"
-        colour = env.background if background is None else checked_colour(background)
-        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, colour, title)
+        look = replace(env.look(background, choices), lowest=lowest)
+        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, look, title, choices.shadows)
         compiled, drawings = env.simulation.compiled(), env.simulation.drawings.primitives()
         return Animation(animation_page(compiled.model, compiled.data, recording, appearance, drawings))
 

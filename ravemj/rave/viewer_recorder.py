@@ -34,7 +34,7 @@ class _Order(NamedTuple):
 
 
 class ViewerRecorder(Module):
-    """Writes videos of the viewer's view; without a viewer, of the view of ``env.render``, without shadows.
+    """Writes videos of the viewer's view; without a viewer, of the view of ``env.render``.
 
     ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins a video. It has a frame for each 1/FPS of
     simulation time (``simtime``, ``controller``) or of real time (``realtime``). The suffix of the file selects the
@@ -76,9 +76,9 @@ class ViewerRecorder(Module):
         return self._drawn > before
 
     def _picture(self, width: int, height: int) -> Frame:
-        """Return a frame like those of viewers. It has no shadows, which would take most of the time."""
+        """Return a frame like those of viewers; it has shadows if OpenGL draws with a graphics card."""
         env = self._env
-        return env.renderer.render(env.default_camera(width / height), env.background, Format(width, height))
+        return env.renderer.render(env.default_camera(width / height), env.look(), Format(width, height))
 
     def _is_writing(self) -> bool:
         return self._thread is not None and self._thread.is_alive()

@@ -618,7 +618,7 @@ class TestFindings:
         write(f"<Environment>{tags}</Environment>", "inner.xml")
         view = read(write(f"<Environment>{inner.format(tags)}</Environment>")).scene.view
         assert view.T_world_camera.position == (1, 2, 3)
-        assert view.background == (1, 1, 1)
+        assert view.background is None
 
     def test_several_values_of_one_kind_are_no_repetition(self, read_text):
         children = "<axis1>0 0 1</axis1><axis2>1 0 0</axis2><hardmaxvel>1 1</hardmaxvel><maxjerk>1 1</maxjerk>"

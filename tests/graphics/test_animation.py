@@ -303,7 +303,7 @@ class TestInABrowser:
             env.drawlinestrip([[-0.4, -0.3, 0], [0.4, -0.3, 0]], 5, [0, 0.6, 0.6]),
             env.drawtrimesh([[-0.4, 0.2, 0], [-0.2, 0.2, 0], [-0.4, 0.3, 0]], [[0, 1, 2]], [0.6, 0.6, 0]),
         ]
-        player = opened(env.animation(camera=ABOVE).html)
+        player = opened(env.animation(camera=ABOVE, background=[1, 1, 1]).html)
         picture = player.picture()
         size = picture.shape[1::-1]
         for point, colour in (

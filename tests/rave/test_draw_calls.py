@@ -23,10 +23,11 @@ PINK = [255, 128, 128]
 
 @pytest.fixture
 def env():
-    """An environment without bodies, seen along x by a viewer without a window."""
+    """An environment without bodies, seen along x on white by a viewer without a window."""
     env = ravemj.Environment()
     env.SetViewer("offscreen")
     env.GetViewer().SetCamera(T_AHEAD)
+    env.GetViewer().SetBkgndColor([1, 1, 1])
     yield env
     env.Destroy()
 

@@ -4,8 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from ravemj.core.caching import cached_property
-from ravemj.core.transforms import ZERO, conjugate, rotate
+from ravemj.core.transforms import ZERO, conjugate, rotate, rows_from_wxyz
 from ravemj.errors import Diagnostics, Source
 from ravemj.formats.mjcf.equality import EqualityWriter
 from ravemj.formats.mjcf.excludes import WeldGroups, excluded_pairs
@@ -13,11 +15,27 @@ from ravemj.formats.mjcf.geoms import GeomWriter
 from ravemj.formats.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
 from ravemj.formats.mjcf.lines import Attribute, Lines, pose_attributes
 from ravemj.model.joints import moving_direction, relative_pose
+from ravemj.model.look import (
+    AZIMUTH,
+    ELEVATION,
+    FILL,
+    HORIZON,
+    KEY,
+    LINES,
+    SKY,
+    STUDIO_PREFIX,
+    ZENITH,
+    Light,
+    first_rotation,
+)
 from ravemj.model.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
 from ravemj.model.shape_bodies import MASSLESS
 
 ASSETS = "assets"
 """Folder of the meshes, beside the MJCF file."""
+
+_SKY_SIZE, _GRID_SIZE = 32, 128
+"""Texels along a side of a face of the sky, and of a cell of the floor's grid."""
 
 MECHANISM_MEMORY = "1M"
 """Working memory of a model without contacts; MuJoCo's default is several times the model's own size, for each body."""
@@ -102,6 +120,8 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
     """
     options = options or Options()
     writer = _Writer(diagnostics, options)
+    if not options.mechanism_only:
+        _write_lights(writer.bodies, scene.view or View())
     for index, body in enumerate(scene.bodies):
         writer.write_body(index, body)
     out = Lines()
@@ -141,10 +161,12 @@ def _memory(lines: Sequence[str]) -> str:
 
 def _write_look(out: Lines, view: View, meshes: Lines) -> None:
     """Write lights, the classes of geoms, the background and the meshes."""
+    level = HORIZON if view.background is None else view.background
     out.open("visual")
-    out.element(
-        "headlight", active=1, ambient=(0.34, 0.34, 0.34), diffuse=(0.26, 0.26, 0.26), specular=(0.05, 0.05, 0.05)
-    )
+    if view.T_world_camera is None:  # where MuJoCo's own viewers look from
+        out.element("global", azimuth=180.0 + AZIMUTH, elevation=-ELEVATION)
+    out.element("headlight", active=1, **_light_attributes(FILL))
+    out.element("rgba", fog=(*level, 1.0), haze=(*level, 1.0))
     out.close("visual")
     out.open("default")
     out.open("default", **{"class": "visual"})
@@ -154,12 +176,32 @@ def _write_look(out: Lines, view: View, meshes: Lines) -> None:
     out.element("geom", group=3)
     out.close("default")
     out.close("default")
-    colour: dict[str, Attribute] = {"rgb1": view.background, "rgb2": view.background}
     out.open("asset")
-    out.element("texture", name="background", type="skybox", builtin="flat", width=8, height=48, **colour)
+    top, bottom = (ZENITH, level) if view.background is None else (level, level)
+    size: dict[str, Attribute] = {"width": _SKY_SIZE, "height": 6 * _SKY_SIZE}
+    out.element("texture", name="background", type="skybox", builtin="gradient", rgb1=top, rgb2=bottom, **size)
+    grid: dict[str, Attribute] = {"width": _GRID_SIZE, "height": _GRID_SIZE}
+    lines: dict[str, Attribute] = {"mark": "edge", "markrgb": (LINES, LINES, LINES), "rgb1": (1.0, 1.0, 1.0)}
+    out.element("texture", name="floor", type="2d", builtin="flat", **lines, **grid)
+    out.element("material", name="floor", texture="floor")
     out.text += meshes.text
     out.sources += meshes.sources
     out.close("asset")
+
+
+def _light_attributes(light: Light) -> dict[str, Attribute]:
+    parts = {"ambient": light.ambient, "diffuse": light.diffuse, "specular": light.specular}
+    return {name: (part, part, part) for name, part in parts.items()}
+
+
+def _write_lights(out: Lines, view: View) -> None:
+    """Write the lights of pictures, as they are for the first camera."""
+    camera = view.T_world_camera
+    R_world_camera = first_rotation() if camera is None else np.array(rows_from_wxyz(camera.wxyz))
+    for name, light in (("key", KEY), ("sky", SKY)):
+        direction = tuple(light.direction_in_world(R_world_camera).round(6).tolist())
+        attributes: dict[str, Attribute] = {"castshadow": light.casts_shadows, **_light_attributes(light)}
+        out.element("light", name=f"{STUDIO_PREFIX}{name}", type="directional", dir=direction, **attributes)
 
 
 @dataclass(slots=True)
@@ -188,9 +230,6 @@ class _Writer:
         self.diagnostics = diagnostics
         self.options = options
         self.bodies = Lines(2)
-        if not options.mechanism_only:
-            light: dict[str, Attribute] = {"diffuse": (0.4, 0.4, 0.4), "specular": ZERO}
-            self.bodies.element("light", type="directional", dir=(-0.4, 0.4, -1.0), **light)
         self.excludes = Lines(2)
         self.actuators = Lines(2)
         self.geometries = GeomWriter(diagnostics, decomposed=options.decomposed)

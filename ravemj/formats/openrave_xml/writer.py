@@ -80,7 +80,7 @@ class _Writer:
         self.geoms = GeomWriter(self.out, diagnostics, meshes)
 
     def write_view(self, view: View) -> None:
-        if view.background != View().background:
+        if view.background is not None:
             self.out.element("bkgndColor", view.background)
         if view.T_world_camera is not None:
             camera = settled.pose(view.T_world_camera)

@@ -27,13 +27,14 @@ from ravemj.graphics.rendering.camera import (
     three_quarter_view,
     view_from_above,
 )
-from ravemj.graphics.rendering.checks import WHITE
-from ravemj.graphics.rendering.style import AS_IT_IS, Style, drawn_geoms
+from ravemj.graphics.rendering.style import AS_IT_IS, Look, Style, drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
+from ravemj.model.look import WHITE
 
 __all__ = [
     "Camera",
     "CameraIntrinsics",
+    "Look",
     "Pinhole",
     "Renderer",
     "Style",
@@ -53,15 +54,17 @@ class Renderer(Protocol):
 
     Attributes:
         backend: What draws: ``egl``, ``osmesa``, ``glfw`` or ``ray``.
+        has_shadows: Whether lights that cast shadows do so.
     """
 
     backend: str
+    has_shadows: bool
 
     def render(
         self,
         data: mujoco.MjData,
         camera: Camera,
-        background: ArrayLike = WHITE,
+        look: Look | ArrayLike = WHITE,
         primitives: Primitives = NOTHING,
         style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
@@ -71,7 +74,8 @@ class Renderer(Protocol):
             data: State of the model with the poses computed (``mj_kinematics`` or ``mj_forward``). Where the
                 model has lights, they are placed (``mj_camlight``).
             camera: Where the picture is taken from.
-            background: Colour where nothing is: red, green, blue in 0..1.
+            look: Background, floor and lights; a colour (red, green, blue in 0..1) is a background without floor, with
+                the lights of the model.
             primitives: What is drawn beside the model's geoms.
             style: How the geoms are drawn.
 
@@ -123,7 +127,7 @@ def open_renderer(
     width: int,
     height: int,
     *,
-    shadows: bool = False,
+    shadows: bool | None = False,
     samples: int = 4,
     backend: str | None = None,
 ) -> Renderer:
@@ -133,7 +137,7 @@ def open_renderer(
         model: What is drawn; geoms may change their poses and colours later, but not their number.
         width: Columns of the pictures.
         height: Rows of the pictures.
-        shadows: Whether the model's lights cast shadows; costly without a graphics card. Rays ignore it.
+        shadows: Whether lights cast shadows; costly without a graphics card. None: if there is one. Rays ignore it.
         samples: Samples per pixel against jagged edges: 4 for stills, 0 for speed.
         backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``; by default what ``MUJOCO_GL`` names, or any.
 

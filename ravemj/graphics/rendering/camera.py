@@ -18,6 +18,7 @@ from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints, normalize, rows_from_wxyz
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.style import drawn_geoms
+from ravemj.model.look import first_rotation, rotation_along
 
 DEFAULT_FOVY = math.radians(45)
 """Vertical field of view of OpenRAVE's viewers [rad]."""
@@ -146,7 +147,7 @@ class Camera:
 
 def view_from_above(center: ArrayLike, radius: float) -> Camera:
     """Return the view with which OpenRAVE's window opens: straight down, world +y up; see ``three_quarter_view``."""
-    return _looking_at(center, radius, forward=(0.0, 0.0, -1.0), up=(0.0, 1.0, 0.0))
+    return _looking_at(center, radius, rotation_along((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)))
 
 
 def three_quarter_view(center: ArrayLike, radius: float, aspect: float = 1.0) -> Camera:
@@ -157,10 +158,7 @@ def three_quarter_view(center: ArrayLike, radius: float, aspect: float = 1.0) ->
         radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height, or into its width.
         aspect: Width of the picture divided by its height.
     """
-    azimuth, elevation = math.radians(40), math.radians(25)
-    level = -math.cos(elevation)
-    forward = (level * math.cos(azimuth), level * math.sin(azimuth), -math.sin(elevation))
-    return _looking_at(center, radius / min(1.0, aspect), forward, up=(0.0, 0.0, 1.0))
+    return _looking_at(center, radius / min(1.0, aspect), first_rotation())
 
 
 def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:
@@ -191,16 +189,30 @@ def geom_corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> Flo
     return turned + data.geom_xpos[geoms][:, None]
 
 
-def _looking_at(
-    center: ArrayLike, radius: float, forward: tuple[float, float, float], up: tuple[float, float, float]
-) -> Camera:
-    z = np.array(forward)
-    x = np.cross(z, up)
-    x /= np.linalg.norm(x)
+def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
+    """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
+
+    ``size`` is width and height of the picture [pixels], ``depths`` the nearest and farthest that are drawn [m].
+    """
+    near, far = depths
+    right_down_forward = camera.rotation
+    fx, fy, cx, cy = camera.pinhole(*size)
+    left, right = -cx / fx * near, (size[0] - cx) / fx * near
+    for eye in scene.camera:  # two, for stereo; a mono picture takes their mean
+        eye.pos = camera.position
+        eye.forward = right_down_forward[:, 2]
+        eye.up = -right_down_forward[:, 1]
+        eye.frustum_near, eye.frustum_far = near, far
+        eye.frustum_top, eye.frustum_bottom = cy / fy * near, (cy - size[1]) / fy * near
+        eye.frustum_center, eye.frustum_width = (left + right) / 2, (right - left) / 2  # half the width
+        eye.orthographic = 0
+
+
+def _looking_at(center: ArrayLike, radius: float, rotation: Floats) -> Camera:
     distance = (radius if radius > 0 else 1.0) / math.sin(0.5 * DEFAULT_FOVY)
     T_world_camera = np.eye(4)
-    T_world_camera[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
-    T_world_camera[:3, 3] = np.asarray(center, dtype=np.float64) - distance * z
+    T_world_camera[:3, :3] = rotation
+    T_world_camera[:3, 3] = np.asarray(center, dtype=np.float64) - distance * rotation[:, 2]
     return Camera(T_world_camera)
 
 

@@ -6,8 +6,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ravemj.errors import ArgumentError
 
-WHITE = (1.0, 1.0, 1.0)
-
 
 def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:
     """Return a colour as three floats.

@@ -41,6 +41,9 @@ _BY_ENVIRONMENT = {
     **{name: name for name in GL_BACKENDS},
     **{name: "glfw" for name in ("glx", "wgl", "cgl")},
 }
+_SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader", "basic render")
+"""Parts of the names of OpenGL drivers that draw with the processor."""
+
 _LOG = logging.getLogger("ravemj")
 
 _Made = TypeVar("_Made")
@@ -174,6 +177,18 @@ def attempt(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
         except BaseException:
             context.close()
             raise
+
+
+def draws_with_hardware() -> bool:
+    """Return whether a graphics card draws in the current OpenGL context; False where that is not known."""
+    try:
+        with variable_restored("PYOPENGL_PLATFORM"):
+            gl = importlib.import_module("OpenGL.GL")
+            name = bytes(gl.glGetString(gl.GL_RENDERER)).decode(errors="replace").lower()
+    except Exception as error:  # of PyOpenGL, which raises what it likes
+        _LOG.info("OpenGL does not say what draws: %s", one_line(error))
+        return False
+    return not any(part in name for part in _SOFTWARE)
 
 
 def one_line(error: BaseException) -> str:

@@ -197,7 +197,7 @@ class Raster:
     def _lit(self, ray: Ints, depth: Floats, directions: Floats, normals: Floats, rgba: Floats) -> Fragments:
         to_world = self.camera.rotation.T
         rays = directions @ to_world
-        light = self.lights.on(self.camera.position + depth[:, None] * rays, rays, normals @ to_world)
+        light, _ = self.lights.on(self.camera.position + depth[:, None] * rays, rays, normals @ to_world)
         return _flat(ray, depth, np.column_stack([np.minimum(rgba[:, :3] * light, 1), rgba[:, 3]]))
 
     def _pairs(self, low: Floats, high: Floats) -> Iterator[tuple[Ints, Ints, Floats]]:

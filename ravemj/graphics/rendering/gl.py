@@ -7,12 +7,14 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.core.locks import is_left_to_end
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import Renderer
+from ravemj.graphics.rendering.backdrop import sky_colours
 from ravemj.graphics.rendering.camera import Camera
-from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
+from ravemj.graphics.rendering.checks import check_data
 from ravemj.graphics.rendering.contexts import OffscreenContext, close_at_exit
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
-from ravemj.graphics.rendering.style import AS_IT_IS, Style
+from ravemj.graphics.rendering.style import AS_IT_IS, Look, Style
 from ravemj.model.drawing import NOTHING, Primitives
+from ravemj.model.look import WHITE
 
 _DEPTH_ZERO_FAR = 1
 """MuJoCo's ``mjDEPTH_ZEROFAR``: depths are handed out as they are drawn, which loses no digits."""
@@ -39,31 +41,39 @@ class GlRenderer(Renderer):
                 stage.close()
                 raise RenderingError("the OpenGL driver has no offscreen framebuffers")
             self._gl_scene = stage
+            self.has_shadows = stage.has_shadows
         close_at_exit(self)
 
     def render(
         self,
         data: mujoco.MjData,
         camera: Camera,
-        background: ArrayLike = WHITE,
+        look: Look | ArrayLike = WHITE,
         primitives: Primitives = NOTHING,
         style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
-        color = color_bytes(background)
-        stage = self._filled_stage(data, camera, primitives, style)
+        chosen = Look.of(look)
+        stage = self._filled_stage(data, camera, primitives, style, chosen)
         if stage.is_empty:
-            return np.broadcast_to(color, (*self._size[::-1], 3)).copy()
+            return self._backdrop(chosen, camera)
         with self._context.current():
-            stage.draw(self._viewport, color)
+            stage.draw(self._viewport)
             picture = self._read(stage)
         if not stage.has_background:
-            picture[~self._codes(stage).any(axis=2)] = color
+            empty = ~self._codes(stage).any(axis=2)
+            picture[empty] = self._backdrop(chosen, camera)[empty]
         return picture
+
+    def _backdrop(self, look: Look, camera: Camera) -> NDArray[np.uint8]:
+        """Return a picture of the background alone."""
+        columns, rows = camera.ray_parts(*self._size)
+        rays = columns + rows
+        return np.rint(255 * sky_colours(look, rays[..., 2] / np.linalg.norm(rays, axis=2))).astype(np.uint8)
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
-        stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS)
+        stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS, Look())
         return stage.geom_ids(self._codes(stage))
 
     def resize(self, width: int, height: int, samples: int) -> None:
@@ -78,7 +88,7 @@ class GlRenderer(Renderer):
 
     def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
-        stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS)
+        stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS, Look())
         width, height = self._size
         buffer = np.empty((height, width), dtype=np.float32)
         with self._context.current():
@@ -113,11 +123,13 @@ class GlRenderer(Renderer):
             stage.draw_ids(self._viewport)
             return self._read(stage)
 
-    def _filled_stage(self, data: mujoco.MjData, camera: Camera, primitives: Primitives, style: Style) -> GlScene:
+    def _filled_stage(
+        self, data: mujoco.MjData, camera: Camera, primitives: Primitives, style: Style, look: Look
+    ) -> GlScene:
         if self._gl_scene is None:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
-        self._gl_scene.fill(data, camera, self._size, primitives, style)
+        self._gl_scene.fill(data, camera, self._size, primitives, style, look)
         return self._gl_scene
 
     def _read(self, stage: GlScene, depth: NDArray[np.float32] | None = None) -> NDArray[np.uint8]:

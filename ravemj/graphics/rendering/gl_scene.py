@@ -4,6 +4,7 @@ A ``GlScene`` belongs to one model and one OpenGL context. Its methods need that
 calling thread; making it current is the caller's business, which is why a window can use the same code.
 """
 
+import copy
 import logging
 import threading
 from collections.abc import Generator, Sequence
@@ -16,20 +17,27 @@ from numpy.typing import NDArray
 from ravemj.core.blocks import block
 from ravemj.core.forks import in_child
 from ravemj.core.transforms import Floats
-from ravemj.graphics.rendering.camera import Camera, bounding_sphere
+from ravemj.graphics.rendering.backdrop import Floor, FloorLevel, skybox
+from ravemj.graphics.rendering.camera import Camera, aim, bounding_sphere
+from ravemj.graphics.rendering.contexts import draws_with_hardware
 from ravemj.graphics.rendering.drawing_geoms import add_drawing_geoms
-from ravemj.graphics.rendering.style import AS_IT_IS, DRAWN_GROUPS, Style, drawn_geoms
+from ravemj.graphics.rendering.lights import place_lights
+from ravemj.graphics.rendering.style import AS_IT_IS, DRAWN_GROUPS, Look, Style, drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
+from ravemj.model.look import FLOOR_REACH
 
-SHADOW_SIZE = 2048
-"""Texels along one side of the shadow map: half of MuJoCo's default, which costs a third more on a CPU."""
+SHADOW_SIZE = 1024
+"""Texels along one side of a shadow map: more cost much more on a CPU, and the main light has several maps."""
 
-_SHADOW_REACH = 2.0
+_SHADOW_REACH = 1.05
 """Half the side of the shadow map, in radii of the scene.
 
 MuJoCo's offset between a surface and its own shadow grows with it: with 1 there are specks of shadow on surfaces that
 are far from the light.
 """
+
+_SHADOW_DISTANCE = 1.1
+"""Distance of lights from what their shadow maps show [radii of the scene]: the floor is no nearer to them."""
 
 _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""
@@ -47,6 +55,12 @@ _SMALLEST = 1e-3
 _WIDEST = 1e-6
 """Nearest depth, as a part of the farthest one: with less, MuJoCo loses the background."""
 
+FLOOR_MATERIAL = "floor"
+"""The material of MJCF files that has the grid of the floor."""
+
+_FLOOR_BELOW = 1e-4
+"""How far below the bodies the floor is drawn, in radii of the scene: a body's own floor hides it."""
+
 _painting = threading.Lock()
 """Held while the texture of a model has a background's colour."""
 
@@ -59,13 +73,16 @@ def _free_painting() -> None:
     _painting = threading.Lock()
 
 
+_PLAIN = Look()
+
+
 @dataclass(frozen=True)
 class Quality:
     """What an OpenGL context is made for; it cannot be changed afterwards."""
 
     width: int  # columns of the offscreen buffer
     height: int  # rows of the offscreen buffer
-    shadows: bool = False  # whether lights that cast shadows do so; MuJoCo's headlight never does
+    shadows: bool | None = False  # whether lights that cast shadows do so; None: if there is a graphics card
     samples: int = 4  # per pixel against jagged edges, 0 or 4
 
 
@@ -74,15 +91,18 @@ class GlScene:
 
     def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
         self._model = model
-        with _quality_of(model, replace(quality, samples=_SAMPLES)):
+        self.has_shadows = draws_with_hardware() if quality.shadows is None else quality.shadows
+        with _quality_of(model, replace(quality, samples=_SAMPLES, shadows=self.has_shadows)):
             self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
         self.set_buffer(quality.width, quality.height, quality.samples)
-        self._shadows = quality.shadows
         self._has_warned = False
         self._make_scene(_SPARE_GEOMS)
         self._option = drawing_option()
         self._skybox = _find_skybox(model)
-        self._background: bytes | None = None
+        self._painted: object = None
+        self._level = FloorLevel(model)
+        self._floor: Floor | None = None
+        self._material = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_MATERIAL.value, FLOOR_MATERIAL)
 
     @property
     def has_background(self) -> bool:
@@ -95,7 +115,7 @@ class GlScene:
         return self.scene.ngeom == 0
 
     def _make_scene(self, room: int) -> None:
-        self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room)
+        self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room + 1)  # the last one is for the floor
         self._room = room
 
     def fill(
@@ -105,17 +125,19 @@ class GlScene:
         size: tuple[int, int],
         primitives: Primitives = NOTHING,
         style: Style = AS_IT_IS,
+        look: Look = _PLAIN,
     ) -> None:
-        """Take over the poses of the geoms, the drawings and the point of view.
+        """Take over the poses of the geoms, the drawings, the point of view and the look.
 
         With points or lines there are no shadows: MuJoCo would draw these once more for each light that casts some, and
         add the colours up. ``size`` is columns and rows of the viewport.
         """
         self._make_room(len(primitives))
         has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
-        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._shadows and not has_lines
-        self._contents = Contents.of(self._model, data, primitives)
-        depths = self.aim(camera, size)
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self.has_shadows and not has_lines
+        self._look, self._floor = look, None if style.wireframe else self._level.floor(data, look)
+        self._contents = Contents.of(self._model, data, primitives, self._floor)
+        aim(self.scene, camera, size, self._contents.depths(camera))
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         user_camera = mujoco.MjvCamera()
@@ -123,17 +145,50 @@ class GlScene:
         everything = mujoco.mjtCatBit.mjCAT_ALL.value
         style.apply(self._option)
         mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
-        if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
-            self._cover_with_shadows(data, near=depths[0])
+        self._lights = [copy.copy(light) for light in self.scene.lights[: self.scene.nlight]]
         style.finish(self._model, self.scene)
         self._widths = [(array, array.copy()) for array in add_drawing_geoms(self.scene, primitives, camera, *size)]
+        self._filled = self.scene.ngeom
+        self.aim(camera, size)
 
-    def aim(self, camera: Camera, size: tuple[int, int]) -> tuple[float, float]:
-        """Look at what was filled in from elsewhere; return the nearest and the farthest depth that is drawn [m]."""
-        depths = self._contents.depths(camera)
-        aim(self.scene, camera, size, depths)
+    def aim(self, camera: Camera, size: tuple[int, int]) -> None:
+        """Look at what was filled in from elsewhere."""
+        near, far = self._contents.depths(camera)
+        aim(self.scene, camera, size, (near, far))
         self._columns = size[0]
-        return depths
+        place_lights(self._model, self.scene, self._lights, self._look, camera.rotation, soft=self.has_shadows)
+        if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
+            self._cover_with_shadows(near)
+        self.scene.ngeom = self._filled
+        if self._floor is not None and self._floor.is_below(camera) and self._filled < self.scene.maxgeom:
+            self._add_floor(self._floor, camera)
+
+    def _add_floor(self, floor: Floor, camera: Camera) -> None:
+        """Append the floor, in colours that become its own under the lights, and let it fade away."""
+        start, end = floor.fading(camera)
+        half = floor.cell * np.ceil(FLOOR_REACH * end / floor.cell)
+        middle = floor.cell * np.rint(camera.position[:2] / floor.cell)
+        position = np.array([*middle, floor.height - _FLOOR_BELOW * floor.radius])
+        light = sum(
+            (light.ambient + light.diffuse * max(-float(light.dir[2]), 0.0) for light in self._drawn_lights()),
+            start=np.full(3, 1e-3),
+        )
+        glow = max(float(np.max(floor.colour - light)), 0.0)  # it is as bright as it should be in any light
+        rgba = np.array([*floor.colour / (light + glow), 1], dtype=np.float32)
+        slot = self.scene.geoms[self.scene.ngeom]
+        size = np.array([half, half, 1.0])
+        mujoco.mjv_initGeom(slot, mujoco.mjtGeom.mjGEOM_PLANE, size, position, np.eye(3).reshape(-1), rgba)
+        slot.category, slot.segid = mujoco.mjtCatBit.mjCAT_DECOR, -1
+        slot.specular = slot.reflectance = 0.0
+        slot.matid, slot.emission = self._material, glow
+        if self._material >= 0:
+            self.context.mat_texrepeat[2 * self._material : 2 * self._material + 2] = 2 * half / floor.cell
+        self.scene.ngeom += 1
+        self.context.fogStart, self.context.fogEnd = start, end
+        self.context.fogRGBA = np.array([*floor.horizon, 1], dtype=np.float32)
+
+    def _drawn_lights(self) -> Sequence[mujoco.MjvLight]:
+        return self.scene.lights[: self.scene.nlight]
 
     def set_buffer(self, width: int, height: int, samples: int) -> None:
         """Give the offscreen buffer another size or other samples per pixel, 0 or 4."""
@@ -152,24 +207,28 @@ class GlScene:
         if self._room < min(figures, _MAX_FIGURES):
             self._make_scene(min(2 * figures, _MAX_FIGURES))
 
-    def draw(self, viewport: mujoco.MjrRect, background: NDArray[np.uint8]) -> None:
+    def draw(self, viewport: mujoco.MjrRect) -> None:
         """Draw into a rectangle of the current framebuffer, in pixels from its lower left corner.
 
-        Where it has fewer columns than the size that was filled in for, points and lines are narrower. The background,
-        (3,) in 0..255, is black where the model has no skybox texture.
+        Where it has fewer columns than the size that was filled in for, points and lines are narrower. The background
+        is black where the model has no skybox texture.
         """
-        self._paint_background(background)
+        self._paint_background()
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_FOG] = self.scene.ngeom > self._filled
         for widths, whole in self._widths:
             widths[:] = viewport.width / self._columns * whole
         mujoco.mjr_render(viewport, self.scene, self.context)
 
     def draw_ids(self, viewport: mujoco.MjrRect) -> None:
         """Draw geom numbers instead of colours; :meth:`geom_ids` reads them back."""
-        flags = self.scene.flags.copy()
+        flags, count = self.scene.flags.copy(), self.scene.ngeom
+        self.scene.ngeom = self._filled
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_FOG] = False
         self.scene.flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = True
         self.scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
         mujoco.mjr_render(viewport, self.scene, self.context)
         self.scene.flags[:] = flags
+        self.scene.ngeom = count
 
     def geom_ids(self, pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
         """Return the geom that each pixel drawn by :meth:`draw_ids` shows: (..., 3) to (...), -1 for none."""
@@ -184,31 +243,32 @@ class GlScene:
         """Free the resources on the graphics card."""
         self.context.free()
 
-    def _cover_with_shadows(self, data: mujoco.MjData, near: float) -> None:
+    def _cover_with_shadows(self, near: float) -> None:
         """Move directional lights back until their shadow map covers the scene.
 
         Where they stand makes no difference to their light. MuJoCo looks from them with the camera's depths.
         """
-        center, radius = bounding_sphere(self._model, data)
+        center, radius = self._contents.spheres[0]
         self.context.shadowClip = _SHADOW_REACH * radius
-        for light in self.scene.lights[: self.scene.nlight]:
+        for light in self._drawn_lights():
             if light.type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL and light.castshadow:
-                light.pos = center - (near + 1.05 * radius) * light.dir
+                light.pos = center - (near + _SHADOW_DISTANCE * radius) * light.dir
 
-    def _paint_background(self, background: NDArray[np.uint8]) -> None:
-        """Upload a new skybox where the colour changed; the model keeps its own texture."""
-        if self._skybox is None or self._background == background.tobytes():
+    def _paint_background(self) -> None:
+        """Upload a new skybox where the background changed; the model keeps its own texture."""
+        background = self._look.background
+        if self._skybox is None or self._painted == (background,):
             return
         model, texture = self._model, self._skybox
-        channels = int(model.tex_nchannel[texture])
+        width, channels = int(model.tex_width[texture]), int(model.tex_nchannel[texture])
         start = int(model.tex_adr[texture])
-        stop = start + int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
+        stop = start + width * int(model.tex_height[texture]) * channels
         with _painting:
             original = model.tex_data[start:stop].copy()
-            model.tex_data[start:stop].reshape(-1, channels)[:, :3] = background
+            model.tex_data[start:stop].reshape(-1, width, channels)[:, :, :3] = skybox(self._look, width)
             mujoco.mjr_uploadTexture(model, self.context, texture)
             model.tex_data[start:stop] = original
-        self._background = background.tobytes()
+        self._painted = (background,)
 
 
 def drawing_option() -> mujoco.MjvOption:
@@ -221,41 +281,29 @@ def drawing_option() -> mujoco.MjvOption:
     return option
 
 
-def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
-    """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
-
-    ``size`` is width and height of the picture [pixels], ``depths`` the nearest and farthest that are drawn [m].
-    """
-    near, far = depths
-    right_down_forward = camera.rotation
-    fx, fy, cx, cy = camera.pinhole(*size)
-    left, right = -cx / fx * near, (size[0] - cx) / fx * near
-    for eye in scene.camera:  # two, for stereo; a mono picture takes their mean
-        eye.pos = camera.position
-        eye.forward = right_down_forward[:, 2]
-        eye.up = -right_down_forward[:, 1]
-        eye.frustum_near, eye.frustum_far = near, far
-        eye.frustum_top, eye.frustum_bottom = cy / fy * near, (cy - size[1]) / fy * near
-        eye.frustum_center, eye.frustum_width = (left + right) / 2, (right - left) / 2  # half the width
-        eye.orthographic = 0
-
-
 @dataclass(frozen=True, eq=False)
 class Contents:
     """How far what is drawn reaches."""
 
     spheres: tuple[tuple[Floats, float], ...]  # centres and radii around geoms, and around drawings if there are some
-    floor: float  # for models with planes, how far these are drawn [m]; else 0
+    planes: float  # for models with planes, how far these are drawn [m]; else 0
+    floor: Floor | None  # what the bodies stand on
 
     @classmethod
-    def of(cls, model: mujoco.MjModel, data: mujoco.MjData, primitives: Primitives = NOTHING) -> "Contents":
-        """Return how far a model and drawings reach."""
+    def of(
+        cls,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        primitives: Primitives = NOTHING,
+        floor: Floor | None = None,
+    ) -> "Contents":
+        """Return how far a model, drawings and the floor reach."""
         spheres = [bounding_sphere(model, data)]
         if len(primitives):
             center, radius = primitives.bounding_sphere()
             spheres.append((center, max(radius, _SMALLEST)))
         has_planes = (drawn_geoms(model) & (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)).any()
-        return cls(tuple(spheres), 5 * model.vis.map.zfar * model.stat.extent if has_planes else 0.0)
+        return cls(tuple(spheres), 5 * model.vis.map.zfar * model.stat.extent if has_planes else 0.0, floor)
 
     def depths(self, camera: Camera) -> tuple[float, float]:
         """Return depths [m] between which everything lies that a camera can see, wherever it stands.
@@ -269,9 +317,10 @@ class Contents:
             nearer, farther = _depths_of_sphere(*sphere, camera)
             far = max(far, farther)
             near = max(min(near, nearer), _WIDEST * far)
-        if self.floor:
+        planes = self.planes if self.floor is None else max(self.planes, FLOOR_REACH * self.floor.fading(camera)[1])
+        if planes:
             near = min(near, 1e-2 * radius)
-            far = max(far, self.floor)
+            far = max(far, planes)
         return near, far
 
 

@@ -1,12 +1,17 @@
-"""Which geoms of a model are drawn, and how: the rules of MuJoCo's visualiser, and the styles of viewers."""
+"""Which geoms of a model are drawn, and how: the rules of MuJoCo's visualiser, the styles of viewers, the look."""
 
+import math
 from dataclasses import dataclass
+from typing import Literal
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.model.look import FLOORS, LIGHTS, WHITE, Rgb
 
 DRAWN_GROUPS = np.array([1, 1, 1, 0, 0, 0], dtype=np.uint8)
 """Geom groups that a default ``mjvOption`` draws: 0, 1 and 2."""
@@ -85,3 +90,67 @@ class Style:
 
 
 AS_IT_IS = Style()
+
+
+LightNames = Literal["studio", "model", "both", "sensor"]
+
+
+@dataclass(frozen=True)
+class Look:
+    """Background, floor and lights of a picture; ``ravemj.model.look`` has the numbers.
+
+    Attributes:
+        background: Red, green, blue from 0 to 1; None: a vertical gradient.
+        floor: Whether there is a floor below the bodies. It is no body: nothing but pictures shows it.
+        lights: The lights. ``model`` leaves those of a model as they are, ``sensor`` are those of simulated cameras.
+        lowest: Height [m] at which the floor is at most, for pictures of a motion.
+    """
+
+    background: Rgb | None = WHITE
+    floor: bool = False
+    lights: LightNames = "model"
+    lowest: float = math.inf
+
+    @classmethod
+    def of(cls, look: "Look | ArrayLike") -> "Look":
+        """Return a look as it is, and for a colour the one with this background and the model's own lights.
+
+        Raises:
+            ArgumentError: this is no colour.
+        """
+        return look if isinstance(look, Look) else cls(checked_colour(look))
+
+    @classmethod
+    def of_sensor(cls, background: Rgb | None) -> "Look":
+        """Return the look of images of simulated cameras: white where nothing sets a background."""
+        return cls(background or WHITE, lights="sensor")
+
+
+@dataclass(frozen=True)
+class LookChoices:
+    """What users choose of a look.
+
+    Attributes:
+        shadows: Whether lights cast shadows; None: as is usual for such pictures.
+        floor: One of ``FLOORS``.
+        lights: One of ``LIGHTS``.
+
+    Raises:
+        ArgumentError: a choice is none of these.
+    """
+
+    shadows: bool | None = None
+    floor: str = "auto"
+    lights: LightNames = "both"
+
+    def __post_init__(self) -> None:
+        for name, value, choices in (("floor", self.floor, FLOORS), ("lights", self.lights, LIGHTS)):
+            if value not in choices:
+                raise ArgumentError(f"{name}: is {value!r}, and should be one of {', '.join(choices)}")
+
+    def look(self, background: Rgb | None) -> Look:
+        """Return the look of pictures with a background; None where nothing sets one."""
+        return Look(background, background is None if self.floor == "auto" else self.floor == "on", self.lights)
+
+
+AS_USUAL = LookChoices()

@@ -12,8 +12,10 @@ import numpy as np
 
 from ravemj.core.output import AnyPath, new_file
 from ravemj.core.transforms import Floats
-from ravemj.graphics.rendering import Camera
+from ravemj.graphics.rendering import Camera, Look
+from ravemj.graphics.rendering.backdrop import FloorLevel
 from ravemj.graphics.rendering.camera import bounding_sphere
+from ravemj.graphics.webgl.look import packed_look
 from ravemj.graphics.webgl.packing import Package, pack_drawings, pack_scene
 from ravemj.graphics.webgl.surfaces import surfaces
 from ravemj.model.drawing import NOTHING, Primitives
@@ -43,14 +45,15 @@ class Appearance(NamedTuple):
         camera: The camera.
         aspect: The smallest width, divided by the height, of a picture that shows all that the camera should show.
             Narrower pages have a larger vertical angle.
-        background: Red, green and blue from 0 to 1.
+        look: Background, floor and lights.
         title: The title.
     """
 
     camera: Camera
     aspect: float
-    background: tuple[float, float, float]
+    look: Look
     title: str
+    shadows: bool | None = None  # whether lights cast shadows; None: if there is time for them
 
 
 class Animation(NamedTuple):
@@ -103,6 +106,7 @@ def animation_page(
         "title": html.escape(appearance.title),
         "style": _file("animation.css"),
         "camera": _file("camera.js"),
+        "look": _file("look.js"),
         "renderer": _file("renderer.js"),
         "sharpness": _file("sharpness.js"),
         "wheel": _file("wheel.js"),
@@ -147,7 +151,7 @@ def _pack_view(package: Package, model: mujoco.MjModel, data: mujoco.MjData, app
         "distance": max(distance, 0.1 * radius),
         "aspect": appearance.aspect,
     }
-    package.document["background"] = list(appearance.background)
+    package.document["look"] = packed_look(FloorLevel(model), data, appearance.look, shadows=appearance.shadows)
 
 
 def _file(name: str) -> str:

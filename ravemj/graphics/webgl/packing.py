@@ -67,7 +67,7 @@ class Package:
 
 
 def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None:
-    """Add surfaces of a model: ``meshes``, ``shapes``, ``bodies``, ``lights``, and the ``ball`` that spheres are."""
+    """Add surfaces of a model: ``meshes``, ``shapes``, ``bodies``, and the ``ball`` that spheres are."""
     package.document["meshes"] = [_packed_mesh(package, mesh) for mesh in shown.meshes]
     package.document["ball"] = _packed_mesh(package, round_mesh(0.0))
     package.document["shapes"] = [
@@ -81,7 +81,6 @@ def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None
         for shape in shown.shapes
     ]
     package.document["bodies"] = [model.body(number).name for number in range(model.nbody)]
-    package.document["lights"] = _lights(model)
 
 
 def pack_drawings(package: Package, drawings: Primitives) -> None:
@@ -122,15 +121,3 @@ def _packed_batch(package: Package, batch: PrimitiveBatch) -> dict[str, Any]:
         "sizes": package.array(batch.sizes.astype(np.float32)),
         "rgba": package.array(np.clip(batch.rgba, 0, 1).astype(np.float32)),
     }
-
-
-def _lights(model: mujoco.MjModel) -> list[dict[str, Any]]:
-    """Return the lights, all directional; the first is that of the camera, which has no direction of its own."""
-    others = [model.light(number) for number in range(model.nlight)]
-    lights = [
-        {name: getattr(light, name).tolist() for name in ("ambient", "diffuse", "specular")}
-        for light in (model.vis.headlight, *others)
-    ]
-    for packed, light in zip(lights[1:], others, strict=True):
-        packed["direction"] = light.dir.tolist()
-    return lights

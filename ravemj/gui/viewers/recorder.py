@@ -13,6 +13,7 @@ from pathlib import Path
 
 from ravemj.core.flags import Flag
 from ravemj.errors import RavemjError
+from ravemj.graphics.rendering import Look
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Interaction, Notices, Playback
 from ravemj.gui.viewers.sharpness import bounded_size
@@ -23,18 +24,14 @@ _LONGEST_END = 5.0
 
 _LOG = logging.getLogger("ravemj")
 
-_Colour = tuple[float, float, float]
-
 
 class FrameSource:
     """Draws what a view shows, frame by frame. It holds the view weakly, so that a closed view is freed."""
 
-    def __init__(
-        self, interaction: Interaction, renderer: SimulationRenderer, background: _Colour, ratio: float = 1.0
-    ) -> None:
-        """Watch a view; its background is in 0..1, and a point has ``ratio`` pixels."""
+    def __init__(self, interaction: Interaction, renderer: SimulationRenderer, look: Look, ratio: float = 1.0) -> None:
+        """Watch a view of some look, of which a point has ``ratio`` pixels."""
         self._interaction, self._renderer = weakref.ref(interaction), weakref.ref(renderer)
-        self._background = background
+        self._look = look
         width, height = (round(ratio * length) for length in interaction.view.size)
         self._form = Format(*bounded_size(width, height))
 
@@ -44,7 +41,7 @@ class FrameSource:
         if interaction is None or renderer is None:
             return None
         over, camera = interaction.overlay(), interaction.drawn_view.camera
-        return renderer.render(camera, self._background, self._form, gizmos=over.primitives, style=over.style)
+        return renderer.render(camera, self._look, self._form, gizmos=over.primitives, style=over.style)
 
     def close(self) -> None:
         """Free what this thread has drawn with."""

@@ -16,10 +16,12 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
 from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.rendering.style import LightNames, Look, LookChoices
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Resize
 from ravemj.gui.viewers.interactive import Callback, Callbacks, Interactive
 from ravemj.gui.viewers.recorder import Recorder
+from ravemj.model.look import WHITE
 from ravemj.model.scene import View
 
 _SIZE = 640, 480
@@ -49,13 +51,14 @@ class Viewer(Interactive):
         interaction: Takes events of mouse and keys; windows hand in theirs.
     """
 
-    _internal = ("environment", "take_over")
+    _internal = ("choose_look", "environment", "look", "own_background", "take_over")
 
     def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
         self._renderer = renderer
         self._name = name
         super().__init__(simulation, renderer.file_camera() or renderer.camera_from_above(), _SIZE)
-        self._background = simulation.view.background
+        self._background = simulation.view.background  # None: nobody has set one
+        self._choices = LookChoices()
         self._recorder = Recorder(self.interaction.controls.notices)
         self._user_lines: list[str] = []
         weakref.finalize(self, self._recorder.end)
@@ -318,10 +321,12 @@ class Viewer(Interactive):
             raise ArgumentError(f"K: the focal lengths are {fx:g} and {fy:g}, and should be positive")
         camera = Camera(Camera.from_matrix(transform).T_world_camera, calibration=Pinhole(fx, fy, cx, cy))
         form = self._format(width, height, "GetCameraImage")
-        return self._renderer.render(camera, self._background, form, self._figures_in_camera)
+        return self._renderer.render(
+            camera, Look.of_sensor(self._background), form._replace(shadows=False), self._figures_in_camera
+        )
 
     def SetBkgndColor(self, color: ArrayLike) -> None:
-        """Set the colour behind everything.
+        """Set the colour behind everything, in place of the gradient and the floor of pictures without one.
 
         Args:
             color: Red, green, blue from 0 to 1.
@@ -353,26 +358,52 @@ class Viewer(Interactive):
 
     @property
     def background(self) -> tuple[float, float, float]:
-        """The colour behind everything: red, green, blue from 0 to 1."""
+        """The colour behind everything: red, green, blue from 0 to 1; white where nobody has set one."""
+        return self._background or WHITE
+
+    @property
+    def own_background(self) -> tuple[float, float, float] | None:
+        """The colour behind everything that a script or a file has set, or None."""
         return self._background
 
-    def render(self, width: int | None = None, height: int | None = None) -> Frame:
+    @property
+    def look(self) -> Look:
+        """Background, floor and lights of what the viewer shows."""
+        return self._choices.look(self._background)
+
+    def choose_look(self, choices: LookChoices) -> None:
+        """Set floor, lights and shadows of what the viewer shows; before a window has drawn."""
+        self._choices = choices
+
+    def render(
+        self,
+        width: int | None = None,
+        height: int | None = None,
+        *,
+        shadows: bool | None = None,
+        floor: str = "auto",
+        lights: LightNames = "both",
+    ) -> Frame:
         """Draw what the viewer sees, the cube or cylinder of what is selected included.
 
         Args:
             width: Columns [pixels]; None: as ``SetSize`` says, at first 640.
             height: Rows [pixels]; None: as ``SetSize`` says, at first 480.
+            shadows: Whether lights cast shadows; None: if OpenGL draws.
+            floor: ``on`` draws a floor with a grid, ``off`` none, ``auto`` one where nothing sets a background.
+            lights: ``studio``, ``model`` (the model's own lights) or ``both``.
 
         Returns:
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
-            ArgumentError: no picture has such a size.
+            ArgumentError: no picture has such a size, or there is no such floor, or there are no such lights.
             RenderingError: nothing can draw here.
         """
-        form = self._format(width, height, "render")
+        form = self._format(width, height, "render")._replace(shadows=shadows is not False)
+        look = LookChoices(shadows, floor, lights).look(self._background)
         over = self.interaction.overlay()
-        picture = self._renderer.render(self.camera, self._background, form, gizmos=over.primitives, style=over.style)
+        picture = self._renderer.render(self.camera, look, form, gizmos=over.primitives, style=over.style)
         self._image_callbacks.call(picture)
         return picture
 

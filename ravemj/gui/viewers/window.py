@@ -156,7 +156,9 @@ class WindowViewer(Viewer):
     def _surface(self, window: GlfwWindow) -> Surface | None:
         """Return what is drawn on; None while it is minimised."""
         width, height = window.pixels
-        return Surface(self._background, (width, height), window.pixel_ratio) if width and height else None
+        return (
+            Surface(self.look, self._choices.shadows, (width, height), window.pixel_ratio) if width and height else None
+        )
 
     def _take_in(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
         """Do what people did, and return whether the window has to be drawn."""
@@ -186,7 +188,7 @@ class WindowViewer(Viewer):
             self._image_callbacks.call(painter.read(surface.pixels))
         painter.draw_overlay(surface)
         window.set_cursor(painter.cursor)
-        red, green, blue = (round(255 * shade) for shade in surface.background)
+        red, green, blue = (round(255 * shade) for shade in self.background)
         window.set_background((red, green, blue))
         window.swap()
 
@@ -200,7 +202,7 @@ class WindowViewer(Viewer):
 
     def _grant(self, request: Request | str, window: GlfwWindow) -> None:
         """Do what a button asked for that needs the window."""
-        source = FrameSource(self.interaction, self._renderer, self._background, window.pixel_ratio)
+        source = FrameSource(self.interaction, self._renderer, self.look, window.pixel_ratio)
         if request is Request.PICTURE:
             self._recorder.save_picture(source)
         elif request is Request.VIDEO:

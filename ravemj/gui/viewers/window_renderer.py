@@ -10,20 +10,22 @@ from numpy.typing import NDArray
 from ravemj.engine.simulation import Simulation
 from ravemj.engine.simulation.published import Published
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
-from ravemj.graphics.rendering.style import Style
+from ravemj.graphics.rendering.style import Look, Style
 from ravemj.gui.interaction import Interaction, Overlay, View
 from ravemj.gui.viewers.sharpness import CRISP, Level, Sharpness
 from ravemj.gui.viewers.window_overlay import OverlayPainter
 from ravemj.model.drawing import NOTHING, Primitives, merge
+from ravemj.model.look import HORIZON
 
 _WINDOW = mujoco.mjtFramebuffer.mjFB_WINDOW.value
 _OFFSCREEN = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
 
 
 class Surface(NamedTuple):
-    """What is drawn on: its background in 0..1, width and height [pixels], and how many pixels a point has."""
+    """What is drawn on: the look, whether lights cast shadows (None: with a graphics card), size, pixels of a point."""
 
-    background: tuple[float, float, float]
+    look: Look
+    shadows: bool | None
     pixels: tuple[int, int]
     ratio: float
 
@@ -76,8 +78,9 @@ class WindowRenderer:
         self._published = simulation.published.number
         self._seen_view = self._view.camera, self._view.size, interaction.mode, surface, self._published
         self._primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
-        stage = self._prepared_scene(compiled.model, simulation.version)
-        stage.fill(compiled.data, self._view.camera, surface.pixels, self._primitives, self._overlay.style)
+        stage = self._prepared_scene(compiled.model, simulation.version, surface.shadows)
+        style = self._overlay.style
+        stage.fill(compiled.data, self._view.camera, surface.pixels, self._primitives, style, surface.look)
         self._bodies = looks, _content(self._overlay.primitives), self._overlay.style
         return True
 
@@ -106,14 +109,15 @@ class WindowRenderer:
         data = mujoco.MjData(self._model)
         self._published = published.number
         if published.copy_to(data, self._model):
-            stage.fill(data, view.camera, surface.pixels, self._primitives, style)
+            stage.fill(data, view.camera, surface.pixels, self._primitives, style, surface.look)
             self._bodies = self._published
             self._seen = None  # whoever has the simulation may put the bodies back to where they were seen
 
-    def _prepared_scene(self, model: mujoco.MjModel, key: object) -> GlScene:
+    def _prepared_scene(self, model: mujoco.MjModel, version: int, shadows: bool | None) -> GlScene:
+        key = version, shadows
         if self._gl_scene is None or self._scene_key != key:
             self.close()
-            self._gl_scene, self._model, self._scene_key = GlScene(model, Quality(1, 1)), model, key
+            self._gl_scene, self._model, self._scene_key = GlScene(model, Quality(1, 1, shadows)), model, key
         return self._gl_scene
 
     def is_due(self, now: float) -> bool:
@@ -144,9 +148,9 @@ class WindowRenderer:
         mujoco.mjr_setBuffer(_OFFSCREEN, stage.context)
         whole = mujoco.MjrRect(0, 0, *self._buffer)
         if stage.is_empty:
-            mujoco.mjr_rectangle(whole, *surface.background, 1.0)
+            mujoco.mjr_rectangle(whole, *(surface.look.background or HORIZON), 1.0)
         else:
-            stage.draw(whole, np.rint(np.multiply(surface.background, 255)).astype(np.uint8))
+            stage.draw(whole)
         mujoco.mjr_finish()
         self._sharpness.drew(level, time.monotonic() - begin)
 

@@ -13,11 +13,11 @@ class View(Record):
     """The view that a file asks for.
 
     Attributes:
-        background: Colour behind everything.
+        background: Colour behind everything, or None where the file sets none.
         T_world_camera: Pose of the camera (z forward, y down), or None where the file has no camera.
     """
 
-    background: Rgb = (1.0, 1.0, 1.0)
+    background: Rgb | None = None
     T_world_camera: Pose | None = None
 
 

@@ -17,9 +17,11 @@ from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import AABB, OrientedBox
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.rendering.checks import checked_colour
+from ravemj.graphics.rendering.style import AS_USUAL, LightNames, Look, LookChoices
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.model import drawing
 from ravemj.model.drawing import Drawings, Primitives
+from ravemj.model.look import WHITE
 from ravemj.rave.interface import EnvironmentPart
 
 if TYPE_CHECKING:
@@ -139,10 +141,7 @@ class Viewing(EnvironmentPart):
     ``env.SetViewer('offscreen')`` is enough.
     """
 
-    _internal = (
-        "open_viewer",
-        "renderer",
-    )
+    _internal = ("look", "open_viewer", "own_background", "renderer")
 
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, which replaces earlier ones. ``RaveCreateViewer`` attaches additional viewers.
@@ -269,6 +268,9 @@ class Viewing(EnvironmentPart):
         *,
         camera: ArrayLike | None = None,
         background: ArrayLike | None = None,
+        shadows: bool | None = None,
+        floor: str = "auto",
+        lights: LightNames = "both",
     ) -> Frame:
         """Draw a picture, with or without a display.
 
@@ -277,13 +279,18 @@ class Viewing(EnvironmentPart):
             height: The height of the picture [pixels].
             camera: ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's camera, else the file's,
                 else a view of the whole scene.
-            background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else white.
+            background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else a gradient.
+            shadows: Whether lights cast shadows; None: if OpenGL draws.
+            floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto``: one where neither script
+                nor file sets a background.
+            lights: ``studio``, ``model`` (the model's own lights) or ``both``.
 
         Returns:
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
-            ArgumentError: the camera is not a rigid transform, or the background is not a colour.
+            ArgumentError: the camera is not a rigid transform, the background is not a colour, or the floor or the
+                lights are none of these.
             RenderingError: no renderer works on this machine; ``ravemj doctor`` says why.
 
         Example:
@@ -291,12 +298,24 @@ class Viewing(EnvironmentPart):
             >>> imageio.v3.imwrite("pendulum.png", env.render(640, 480))
         """
         self._check_alive()
-        form = Format(width, height, shadows=True)
+        form = Format(width, height, shadows=shadows is not False)
         view = self.default_camera(form.aspect) if camera is None else Camera.from_matrix(camera)
-        colour = self.background if background is None else checked_colour(background)
-        return self._renderer.render(view, colour, form)
+        return self._renderer.render(view, self.look(background, LookChoices(shadows, floor, lights)), form)
 
-    def animation(
+    def look(self, background: ArrayLike | None = None, choices: LookChoices = AS_USUAL) -> Look:
+        """Return background, floor and lights of pictures; without a background, the viewer's, else the file's.
+
+        Raises:
+            ArgumentError: the background is not a colour.
+        """
+        return choices.look(self.own_background if background is None else checked_colour(background))
+
+    @property
+    def own_background(self) -> tuple[float, float, float] | None:
+        """The background that the viewer or the file has; None where neither sets one."""
+        return self._simulation.view.background if self._viewer is None else self._viewer.own_background
+
+    def animation(  # noqa: PLR0913 - keyword arguments
         self,
         motion: "MotionLike | None" = None,
         *,
@@ -304,6 +323,9 @@ class Viewing(EnvironmentPart):
         fps: float = 30.0,
         camera: ArrayLike | None = None,
         background: ArrayLike | None = None,
+        shadows: bool | None = None,
+        floor: str = "auto",
+        lights: LightNames = "both",
     ) -> "Animation":
         """Return an HTML page that plays a motion and can be turned and zoomed without a server.
 
@@ -318,7 +340,11 @@ class Viewing(EnvironmentPart):
             fps: Poses stored for each second. The page interpolates between them at the rate of the screen.
             camera: The first ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's, else the
                 file's, else a view of the whole motion.
-            background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else white.
+            background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else a gradient.
+            shadows: Whether lights cast shadows; None: if the browser has time for them.
+            floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto``: one where neither script
+                nor file sets a background.
+            lights: ``studio``, ``model`` (the model's own lights) or ``both``.
 
         Returns:
             The page: ``save("swing.html")`` writes it, ``html`` is its text.
@@ -333,9 +359,10 @@ class Viewing(EnvironmentPart):
         from ravemj.rave.recording import animate  # noqa: PLC0415 - few scripts want it
 
         self._check_alive()
-        return animate(cast("Environment", self), motion, robot, fps, camera, background)
+        choices = LookChoices(shadows, floor, lights)
+        return animate(cast("Environment", self), motion, robot, fps, camera, background, choices)
 
-    def save_html(
+    def save_html(  # noqa: PLR0913 - keyword arguments
         self,
         path: AnyPath,
         motion: "MotionLike | None" = None,
@@ -344,6 +371,9 @@ class Viewing(EnvironmentPart):
         fps: float = 30.0,
         camera: ArrayLike | None = None,
         background: ArrayLike | None = None,
+        shadows: bool | None = None,
+        floor: str = "auto",
+        lights: LightNames = "both",
     ) -> "Path":
         """Write a motion, or the scene as it is, as one HTML file that needs neither a server nor a network.
 
@@ -354,6 +384,9 @@ class Viewing(EnvironmentPart):
             fps: Poses stored for each second.
             camera: The first ``T_world_camera``.
             background: Red, green, blue from 0 to 1.
+            shadows: Whether lights cast shadows.
+            floor: ``auto``, ``on`` or ``off``.
+            lights: ``studio``, ``model`` or ``both``.
 
         Returns:
             The path.
@@ -363,7 +396,16 @@ class Viewing(EnvironmentPart):
             OutputError: the file cannot be written; no partial file is left behind.
         """
         check_file(path)
-        page = self.animation(motion, robot=robot, fps=fps, camera=camera, background=background)
+        page = self.animation(
+            motion,
+            robot=robot,
+            fps=fps,
+            camera=camera,
+            background=background,
+            shadows=shadows,
+            floor=floor,
+            lights=lights,
+        )
         return page.save(path)
 
     def default_camera(self, aspect: float = 4 / 3) -> Camera:
@@ -376,7 +418,7 @@ class Viewing(EnvironmentPart):
     @property
     def background(self) -> tuple[float, float, float]:
         """The default background of pictures: the viewer's, else the file's, else white."""
-        return self._simulation.view.background if self._viewer is None else self._viewer.background
+        return self.own_background or WHITE
 
     @property
     def renderer(self) -> SimulationRenderer:

@@ -1162,7 +1162,11 @@ class MjrContext:
     charHeight: int
     charHeightBig: int
     currentBuffer: int
+    fogEnd: float
+    fogRGBA: NDArray[np.float32]
+    fogStart: float
     glInitialized: int
+    mat_texrepeat: NDArray[np.float32]
     offFBO: int
     offHeight: int
     offSamples: int

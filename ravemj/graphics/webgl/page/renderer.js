@@ -57,9 +57,10 @@ const SURFACE_FRAGMENT = `#version 300 es
 precision highp float;
 const int MOST = 8;
 uniform vec3 eye, ambient, diffuse[MOST], specular[MOST], direction[MOST];
-uniform int lights; uniform bool isLit; uniform float gloss;
+uniform int lights; uniform bool isLit, casts[MOST]; uniform float gloss, nudge;
 in vec3 at, normal; in vec4 color;
 out vec4 pixel;
+${SHADOW}
 void main() {
   if (!isLit) { pixel = color; return; }
   vec3 towards = normalize(eye - at), n = normalize(normal);
@@ -69,8 +70,9 @@ void main() {
     if (i >= lights) break;
     float cosine = dot(n, -direction[i]);
     if (cosine <= 0.0) continue;
-    light += cosine * diffuse[i];
-    shine += pow(max(dot(n, normalize(towards - direction[i])), 0.0), 64.0) * specular[i];
+    float part = casts[i] ? litPart(at + nudge * n) : 1.0;
+    light += part * cosine * diffuse[i];
+    shine += part * pow(max(dot(n, normalize(towards - direction[i])), 0.0), 64.0) * specular[i];
   }
   pixel = vec4(min(color.rgb * light + gloss * shine, 1.0), color.a);
 }`;
@@ -140,6 +142,9 @@ class Renderer {
     this.gl = gl;
     this.surface = compile(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
     this.line = compile(gl, LINE_VERTEX, LINE_FRAGMENT);
+    this.backdrop = new Backdrop(gl);
+    this.shadowMap = new ShadowMap(gl);
+    this.isWeak = isSoftware(gl);
     this.parts = new Map();
     this.groups = new Map();
     gl.enable(gl.DEPTH_TEST);
@@ -159,12 +164,35 @@ class Renderer {
     });
     this.ball = (instances) => this.mesh(content.ball, array, instances);
     if (content.drawings) this.show("drawings", content.drawings, array);
-    const lights = content.lights, sum = (i) => lights.reduce((total, { ambient }) => total + ambient[i], 0);
-    gl.useProgram(this.surface.program);
-    gl.uniform1i(this.surface.lights, lights.length);
-    gl.uniform3fv(this.surface.ambient, [0, 1, 2].map(sum));
-    gl.uniform3fv(this.surface.diffuse, lights.flatMap(({ diffuse }) => diffuse));
-    gl.uniform3fv(this.surface.specular, lights.flatMap(({ specular }) => specular));
+    if (content.look) this.look = content.look;
+  }
+
+  /** Hand the lights of the look to the program of surfaces. */
+  setLights(view) {
+    const { gl, surface, look: { lights, steepness } } = this;
+    const sum = (i) => lights.reduce((total, { ambient }) => total + ambient[i], 0);
+    gl.uniform1i(surface.lights, lights.length);
+    gl.uniform3fv(surface.ambient, [0, 1, 2].map(sum));
+    for (const name of ["diffuse", "specular"]) gl.uniform3fv(surface[name], lights.flatMap((light) => light[name]));
+    gl.uniform3fv(surface.direction, lights.flatMap((light) => directionOf(light, view, steepness)));
+    gl.uniform1iv(surface.casts, lights.map(({ casts }) => casts));
+    gl.uniform1f(surface.nudge, 2 * (this.shadowMap.radius || 0) / SHADOW_SIZE);
+    this.shadowMap.use(surface);
+  }
+
+  /** Find out what the main light sees, if there is time. */
+  castShadows(view, level) {
+    const { gl, surface, shadowMap, look: { lights, shadows, steepness } } = this, light = lights.find(({ casts }) => casts);
+    const isWanted = shadows === null ? !this.isWeak && level.scale === 1 : shadows;
+    shadowMap.isOn = Boolean(isWanted && light && !this.hasEdgesOnly) &&
+      shadowMap.aim(directionOf(light, view, steepness), this.shapes);
+    if (!shadowMap.isOn) return;
+    shadowMap.begin();
+    gl.useProgram(surface.program);
+    gl.uniformMatrix4fv(surface.clip, false, shadowMap.clip);
+    gl.uniform1i(surface.isLit, false);
+    for (const shape of this.shapes) if (shape.rgba[3] >= 1) this.drawShape(shape, SOLID);
+    shadowMap.end();
   }
 
   /** Make a part of what is on the graphics card anew. */
@@ -313,8 +341,10 @@ class Renderer {
   }
 
   /** Draw the scene as a view sees it, with some samples for each pixel. */
-  draw(view, marked, { samples, scale }) {
+  draw(view, marked, level) {
+    const { samples, scale } = level;
     this.prepare(view);
+    this.castShadows(view, level);
     if (samples === 1) return this.drawAll(view, marked, scale);
     const { gl } = this, size = [gl.drawingBufferWidth, gl.drawingBufferHeight];
     this.bindSamples(samples, ...size);
@@ -339,10 +369,12 @@ class Renderer {
   }
 
   drawAll(view, marked, scale) {
-    const { gl, background } = this;
-    gl.clearColor(...(background || this.content.background), 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const { gl } = this;
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    this.backdrop.draw(view, this.look, this.shadowMap);
     this.setUp(view, true, scale);
+    this.setLights(view);
     const figures = [...this.groups.values()].flatMap((group) => group.figures);
     const all = [...this.shapes, ...figures], isSolid = ({ rgba }) => rgba[3] >= 1;
     for (const shape of all.filter(isSolid)) this.drawShape(shape, this.tinted(shape, marked));
@@ -453,7 +485,6 @@ class Renderer {
     gl.uniformMatrix4fv(surface.clip, false, clip);
     gl.uniform3fv(surface.eye, view.position);
     gl.uniform1i(surface.isLit, isLit);
-    gl.uniform3fv(surface.direction, this.content.lights.flatMap(({ direction }) => direction || z));
   }
 
   /** Draw a shape of a body, or a figure. */

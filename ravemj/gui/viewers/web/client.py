@@ -11,6 +11,7 @@ from typing import NamedTuple, Protocol
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
+from ravemj.graphics.rendering import Look
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay, Resize
 from ravemj.gui.interaction.shortcuts import page_sections
@@ -51,9 +52,10 @@ class Connection(Protocol):
 
 
 class PageStyle(NamedTuple):
-    """How all pages of a viewer look: the background in 0..1, and the title."""
+    """How all pages of a viewer look: background, floor and lights, whether these cast shadows, and the title."""
 
-    background: tuple[float, float, float]
+    look: Look
+    shadows: bool | None
     title: str
 
 
@@ -212,7 +214,7 @@ class Client:
         self._seen, self._seen_view, self._says_locked = seen, self._view(style), False
         self._overlay = overlay = self.interaction.overlay()
         if self._feed is not None:
-            self._stage = Stage.of(self._simulation, overlay, self._scenes)
+            self._stage = Stage.of(self._simulation, overlay, self._scenes, style.look, shadows=style.shadows)
         return overlay
 
     def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
@@ -235,7 +237,7 @@ class Client:
             self._stage = self._stage.with_published(self._simulation.published)
             return self._news(self._feed, self._stage, self._overlay, style)
         level = self._level(now)
-        return self._renderer.render_again(self.interaction.drawn_view.camera, style.background, self._form(level))
+        return self._renderer.render_again(self.interaction.drawn_view.camera, style.look, self._form(level, style))
 
     def _view(self, style: PageStyle) -> object:
         """Return what is equal for as long as the view looks the same, apart from texts and bodies not published."""
@@ -261,15 +263,16 @@ class Client:
 
     def _picture(self, overlay: Overlay, style: PageStyle, level: Level = CRISP) -> Frame:
         begin = time.monotonic()
-        camera, form = self.interaction.drawn_view.camera, self._form(level)
-        picture = self._renderer.render(camera, style.background, form, gizmos=overlay.primitives, style=overlay.style)
+        camera, form = self.interaction.drawn_view.camera, self._form(level, style)
+        picture = self._renderer.render(camera, style.look, form, gizmos=overlay.primitives, style=overlay.style)
         self._sharpness.drew(level, time.monotonic() - begin)
         return picture
 
-    def _form(self, level: Level) -> Format:
+    def _form(self, level: Level, style: PageStyle) -> Format:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, LARGEST_SIDE / max(width, height), 1.0) * level.scale
-        return Format(*bounded_size(shrink * width, shrink * height), samples=level.samples, scale=shrink)
+        size = bounded_size(shrink * width, shrink * height)
+        return Format(*size, shadows=style.shadows, samples=level.samples, scale=shrink)
 
     def send_picture(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
@@ -307,7 +310,7 @@ class Client:
     def _news(self, feed: Feed, stage: Stage, overlay: Overlay, style: PageStyle) -> list[str | bytes]:
         """Return what a page that draws by itself has not been sent yet."""
         labels = [(*label.point.tolist(), label.text) for label in overlay.labels]
-        text = {**self._text(overlay, style), "labels": labels, "background": style.background, "crisp": True}
+        text = {**self._text(overlay, style), "labels": labels, "look": stage.look, "crisp": True}
         return feed.messages(stage, self.interaction.drawn_view, text, self._acknowledged)
 
     def _text(self, overlay: Overlay, style: PageStyle) -> dict[str, object]:

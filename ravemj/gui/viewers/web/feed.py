@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, wxyz_from_rows
 from ravemj.engine.simulation import Simulation
 from ravemj.engine.simulation.published import Published
-from ravemj.graphics.rendering.style import geom_rgba
+from ravemj.graphics.rendering.style import Look, geom_rgba
+from ravemj.graphics.webgl.look import packed_look
 from ravemj.graphics.webgl.packing import Package, pack_drawings
 from ravemj.gui.interaction import Overlay, View
 from ravemj.gui.interaction.control import Control
@@ -56,6 +57,7 @@ class Stage(NamedTuple):
         edges: Whether only edges are drawn.
         model: What numbers the bodies.
         published: How often a script had published where the bodies are.
+        look: Background, floor and lights, as pages draw them.
     """
 
     scene: Scene
@@ -67,9 +69,12 @@ class Stage(NamedTuple):
     edges: bool
     model: mujoco.MjModel
     published: int
+    look: dict[str, Any]
 
     @classmethod
-    def of(cls, simulation: Simulation, overlay: Overlay, scenes: Scenes) -> "Stage":
+    def of(
+        cls, simulation: Simulation, overlay: Overlay, scenes: Scenes, look: Look, *, shadows: bool | None = None
+    ) -> "Stage":
         """Return what is seen of a simulation, which the caller has locked."""
         compiled = simulation.compiled()
         model, data, style = compiled.model, compiled.data, overlay.style
@@ -84,6 +89,7 @@ class Stage(NamedTuple):
             style.wireframe,
             model,
             simulation.published.number,
+            packed_look(scenes.level(model), data, look, shadows=shadows),
         )
 
     def with_published(self, published: Published) -> "Stage":

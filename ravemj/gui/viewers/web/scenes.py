@@ -9,6 +9,7 @@ import numpy as np
 
 from ravemj.core.transforms import Ints
 from ravemj.graphics.rendering import Style
+from ravemj.graphics.rendering.backdrop import FloorLevel
 from ravemj.graphics.webgl.packing import Package, pack_scene
 from ravemj.graphics.webgl.surfaces import surfaces
 
@@ -42,6 +43,7 @@ class Scenes:
 
     def __init__(self) -> None:
         self._scenes: dict[object, Scene] = {}
+        self._level: FloorLevel | None = None
         self._lock = threading.Lock()
 
     def of(self, model: mujoco.MjModel, version: int, style: Style) -> Scene:
@@ -53,6 +55,13 @@ class Scenes:
             for oldest in list(self._scenes)[:-_MOST]:
                 del self._scenes[oldest]
             return scene
+
+    def level(self, model: mujoco.MjModel) -> FloorLevel:
+        """Return what finds the floor of a model."""
+        with self._lock:
+            if self._level is None or self._level.model is not model:
+                self._level = FloorLevel(model)
+            return self._level
 
     def content(self, name: str) -> bytes | None:
         """Return the scene of a name; None where there is none."""

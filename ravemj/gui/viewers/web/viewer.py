@@ -179,7 +179,7 @@ class WebViewer(Viewer):
         """
         client = self._clients[connection]
         client.take_in(messages, self.server.complain)
-        style = PageStyle(self._background, self._title)
+        style = PageStyle(self.look, self._choices.shadows, self._title)
         picture = client.attend(connection, style, is_watched=bool(self._image_callbacks))
         if client.take_moved():
             with self._lock:  # or a script's camera, which comes to the views one by one, would be lost
@@ -213,7 +213,7 @@ class WebViewer(Viewer):
             except RavemjError as error:
                 client.interaction.controls.notices.say(error.message)
         elif request is Request.VIDEO:
-            source = FrameSource(client.interaction, self._renderer, self._background)
+            source = FrameSource(client.interaction, self._renderer, self.look)
             self._recorder.record(source, self.playback, partial(self._keep_video, client.interaction))
         else:
             client.send_text(connection, request)

@@ -159,7 +159,7 @@ function requestDrawing() {
 
 function draw() {
   if (!drawing || !drawing.view) return;
-  drawing.renderer.background = overlay.background;
+  drawing.renderer.look = overlay.look;
   drawing.renderer.hasEdgesOnly = overlay.edges;
   drawing.draw();
   drawLabels(overlay.labels.flatMap(([x, y, z, words]) => {
