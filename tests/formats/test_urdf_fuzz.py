@@ -19,7 +19,8 @@ VALUES = [
     b"", b" ", b"nan", b"inf", b"-1", b"0", b"1e400", b"1e300", b"-1e-300", b"0 0 0", b"1 0", b"1 2 3 4", b"x" * 5000,
     b"floating", b"planar", b"fixed", b"continuous", b"prismatic", b"arm", b"base", b"tcp", b"jaw", b"other_jaw",
     b"package://", b"package://../x", b"package://desk_arm/../../../etc/hostname", b"file:///etc/hostname", b"..",
-    b"http://example.com/a.stl", b"/dev/zero", b"/etc/hostname", b"model://%00/x.stl", b"a/b", b"pi", b"a*b+(c", b"&#233;",
+    b"http://example.com/a.stl", b"/dev/zero", b"/etc/hostname", b"model://%00/x.stl", b"a/b", b"pi", b"a*b+(c",
+    b"&#233;",
 ]  # fmt: skip
 TAGS = [b"link", b"joint", b"mimic", b"visual", b"collision", b"group", b"chain", b"material", b"mesh", b"Link", b"x:y"]
 _ELEMENT = re.compile(rb"<(\w+)[^<>]*/>|<(joint|link|visual|collision|inertial|group)\b[^<>]*>.*?</\2>", re.DOTALL)
