@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from ravemj.errors import Diagnostics, SourceError
+from ravemj.errors import Diagnostics, LimitError, SourceError
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.formats.urdf import OR_URDF, arms, check_robot
@@ -183,7 +183,12 @@ def _add_srdf(body: BodyBuilder, tree: RobotTree, root: Element, context: Contex
     if document is not None:
         from ravemj.formats.urdf.srdf import add_srdf  # noqa: PLC0415 - many robots have none
 
-        add_srdf(body, tree, document, context, state)
+        try:
+            add_srdf(body, tree, document, context, state)
+        except SourceError as error:
+            if state or isinstance(error, LimitError):
+                raise
+            context.diagnostics.error("broken-file", error.message, error.source, error.hint)
     elif state:
         raise SourceError(f"there is no state '{state}': the robot has no SRDF", root.source, "name one with --srdf")
     if not body.manipulators and wanted != NO_SRDF:
