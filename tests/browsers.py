@@ -200,7 +200,7 @@ class Desk:
     def expected(self, page=None) -> np.ndarray:
         over = self.viewer._views[(page or self.page).evaluate("tab")].overlay()
         look = {"gizmos": over.primitives, "style": over.style}
-        return self.viewer._renderer.render(self.core.view.camera, self.viewer.background, Format(*SIZE), **look)
+        return self.viewer._renderer.render(self.core.view.camera, self.viewer.look, Format(*SIZE), **look)
 
     def await_camera(self) -> None:
         """Wait until the page's camera is the core's, in numbers and in pixels."""

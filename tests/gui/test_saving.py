@@ -34,7 +34,7 @@ def viewer(env, tmp_path, monkeypatch):
 
 
 def look(viewer) -> FrameSource:
-    return FrameSource(viewer.interaction, viewer._renderer, viewer.background)
+    return FrameSource(viewer.interaction, viewer._renderer, viewer.look)
 
 
 def record(viewer) -> None:

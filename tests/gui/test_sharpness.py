@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from ravemj.graphics.rendering import Look
 from ravemj.gui.viewers.sharpness import BUDGET, CRISP, LEVELS, REST, Sharpness, period
 from ravemj.gui.viewers.web.client import Client, PageStyle
 from ravemj.gui.viewers.web.scenes import Scenes
@@ -86,7 +87,7 @@ def test_a_page_is_looked_after_at_once_again_when_something_changes(env, monkey
     for seconds, values in ((0, [0, 0]), (0.5, [0, 0]), (5, [0, 0]), (6, [0.1, 0]), (20, [0.1, 0])):
         monkeypatch.setattr(time, "monotonic", lambda seconds=seconds: now + seconds)
         env.GetRobots()[0].SetDOFValues(values)
-        client.attend(Deaf(), PageStyle((1.0, 1.0, 1.0), "ravemj"))
+        client.attend(Deaf(), PageStyle(Look(), None, "ravemj"))
         client.take_in(['{"type": "ready"}'], pytest.fail)
         periods.append(client.patience)
     assert periods == [1 / 60, 1 / 60, 1 / 30, 1 / 60, 1 / 30]

@@ -232,6 +232,7 @@ class TestEndings:
 
     def test_a_viewer_of_a_destroyed_environment_shows_an_empty_world(self, env, viewer):
         viewer.SetCamera(FROM_FRONT)
+        viewer.SetBkgndColor([1, 1, 1])
         viewer.interaction.handle(Key("escape"))
         env.Destroy()
         for event in (Move(320, 300), Press(320, 300), Move(350, 320), Release(350, 320)):
@@ -245,6 +246,7 @@ class TestEndings:
 
     def test_a_body_that_is_removed_while_it_is_selected(self, env, robot, viewer):
         viewer.SetCamera(FROM_FRONT)
+        viewer.SetBkgndColor([1, 1, 1])
         viewer.SetSize(640, 480)
         ((x, y),), _ = viewer.camera.project([(0.01, 0, -0.3)], 640, 480)
         viewer.interaction.handle(Key("escape"))

@@ -263,7 +263,7 @@ class TestWhatIsSent:
         with Page(viewer) as page:
             page.settled()
             await_that(lambda: pictures)
-            assert np.array_equal(pictures[-1], viewer.render(*SIZE))
+            assert np.array_equal(pictures[-1], viewer.render(*SIZE, shadows=False))
         handle.Close()
 
     @pytest.mark.parametrize("itself", [None, 1, "yes", [], {}])

@@ -291,6 +291,7 @@ viewer.SetCamera([[0, 0, 1, -3], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 viewer.SetSize(320, 240)
 viewer.Move(30, 40)
 viewer.SetTitle('ravemj draws')
+viewer.SetBkgndColor([1, 1, 1])
 pictures, turns = [], []
 kept = [viewer.RegisterViewerImageCallback(pictures.append),
         viewer.RegisterViewerThreadCallback(lambda: turns.append(threading.current_thread().name))]

@@ -1,5 +1,6 @@
 """The whole MJCF document."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
@@ -7,7 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from ravemj.core.caching import cached_property
-from ravemj.core.transforms import ZERO, conjugate, rotate, rows_from_wxyz
+from ravemj.core.transforms import ZERO, Floats, conjugate, rotate, rows_from_wxyz
 from ravemj.errors import Diagnostics, Source
 from ravemj.formats.mjcf.equality import EqualityWriter
 from ravemj.formats.mjcf.excludes import WeldGroups, excluded_pairs
@@ -16,8 +17,6 @@ from ravemj.formats.mjcf.inertia import inertia_attributes, is_rounding, legal_i
 from ravemj.formats.mjcf.lines import Attribute, Lines, pose_attributes
 from ravemj.model.joints import moving_direction, relative_pose
 from ravemj.model.look import (
-    AZIMUTH,
-    ELEVATION,
     FILL,
     HORIZON,
     KEY,
@@ -163,8 +162,9 @@ def _write_look(out: Lines, view: View, meshes: Lines) -> None:
     """Write lights, the classes of geoms, the background and the meshes."""
     level = HORIZON if view.background is None else view.background
     out.open("visual")
-    if view.T_world_camera is None:  # where MuJoCo's own viewers look from
-        out.element("global", azimuth=180.0 + AZIMUTH, elevation=-ELEVATION)
+    x, y, z = _first_rotation(view)[:, 2].tolist()  # along which MuJoCo's own viewers look at first
+    azimuth, elevation = math.degrees(math.atan2(y, x)), math.degrees(math.atan2(z, math.hypot(x, y)))
+    out.element("global", azimuth=round(azimuth, 6) % 360.0, elevation=round(elevation, 6))
     out.element("headlight", active=1, **_light_attributes(FILL))
     out.element("rgba", fog=(*level, 1.0), haze=(*level, 1.0))
     out.close("visual")
@@ -194,10 +194,15 @@ def _light_attributes(light: Light) -> dict[str, Attribute]:
     return {name: (part, part, part) for name, part in parts.items()}
 
 
+def _first_rotation(view: View) -> Floats:
+    """Return ``R_world_camera`` of the first camera."""
+    camera = view.T_world_camera
+    return first_rotation() if camera is None else np.array(rows_from_wxyz(camera.wxyz))
+
+
 def _write_lights(out: Lines, view: View) -> None:
     """Write the lights of pictures, as they are for the first camera."""
-    camera = view.T_world_camera
-    R_world_camera = first_rotation() if camera is None else np.array(rows_from_wxyz(camera.wxyz))
+    R_world_camera = _first_rotation(view)
     for name, light in (("key", KEY), ("sky", SKY)):
         direction = tuple(light.direction_in_world(R_world_camera).round(6).tolist())
         attributes: dict[str, Attribute] = {"castshadow": light.casts_shadows, **_light_attributes(light)}

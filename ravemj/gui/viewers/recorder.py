@@ -35,13 +35,14 @@ class FrameSource:
         width, height = (round(ratio * length) for length in interaction.view.size)
         self._form = Format(*bounded_size(width, height))
 
-    def frame(self) -> Frame | None:
-        """Return what the view shows now, always of one size; None once there is none."""
+    def frame(self, *, is_still: bool = False) -> Frame | None:
+        """Return what the view shows now, always of one size; None once there is none. Stills have shadows."""
         interaction, renderer = self._interaction(), self._renderer()
         if interaction is None or renderer is None:
             return None
         over, camera = interaction.overlay(), interaction.drawn_view.camera
-        return renderer.render(camera, self._look, self._form, gizmos=over.primitives, style=over.style)
+        form = self._form._replace(shadows=True) if is_still else self._form
+        return renderer.render(camera, self._look, form, gizmos=over.primitives, style=over.style)
 
     def close(self) -> None:
         """Free what this thread has drawn with."""
@@ -162,7 +163,7 @@ class Recorder:
 def _write_picture(path: Path, source: FrameSource) -> None:
     from ravemj.graphics.video import write_picture  # noqa: PLC0415 - slow to import
 
-    frame = source.frame()
+    frame = source.frame(is_still=True)
     source.close()
     if frame is not None:
         write_picture(path, frame)

@@ -276,7 +276,8 @@ class Client:
 
     def send_picture(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
-        content = encoding.resting(self._picture(self.interaction.overlay(), style), is_exact=True)
+        shaded = style._replace(shadows=style.shadows is not False)
+        content = encoding.resting(self._picture(self.interaction.overlay(), shaded), is_exact=True)
         self.send_file(connection, free_path(".png").name, content)
 
     def send_file(self, connection: Connection, name: str, content: bytes) -> None:
