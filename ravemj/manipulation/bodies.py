@@ -12,8 +12,7 @@ from ravemj.engine.affine import translation_columns
 from ravemj.engine.collision.findings import Checker, Findings
 from ravemj.engine.collision.moving import moving_test
 from ravemj.engine.collision.pairs import Pairs
-from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
-from ravemj.engine.collision.region import touching_region
+from ravemj.engine.collision.queries import MovedBy, body_and_others, itself, touching_region
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.engine.simulation.body import SavedConfiguration

@@ -12,8 +12,7 @@ from ravemj.manipulation.arm_search import ArmSearch
 from ravemj.manipulation.bodies import USER, Bodies, Conditions
 from ravemj.planning.constrained_edges import ConstrainedEdges, bent_path
 from ravemj.planning.edges import Allowed, nearby
-from ravemj.planning.problem import Problem
-from ravemj.planning.rrt import End, Search
+from ravemj.planning.rrt import End, Problem, Search
 from ravemj.planning.shortcuts import shorten
 from ravemj.planning.space import Space
 from ravemj.planning.tracking import LARGEST_JUMP, track

@@ -7,14 +7,10 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges, path_is_allowed
-from ravemj.planning.ramp_shortcuts import Piece, faster, lines
-from ravemj.planning.retiming.jerk_limited import JerkLimited
-from ravemj.planning.retiming.linear import Linear
-from ravemj.planning.retiming.parabolic import Parabolic
-from ravemj.planning.retiming.polynomials import Cubic, Quintic
+from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
 from ravemj.planning.retiming.segments import Interpolated, Limits, Profile, RetimingError, Timed, retime
 from ravemj.planning.retiming.topp_ra import ToppRa
-from ravemj.planning.shortcuts import shorten
+from ravemj.planning.shortcuts import Piece, faster, lines, shorten
 from ravemj.trajectories.conversion import FindBody
 from ravemj.trajectories.groups import DELTATIME, Group
 from ravemj.trajectories.layout import (

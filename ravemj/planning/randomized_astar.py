@@ -10,8 +10,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges
-from ravemj.planning.rrt import Budget, End, Search, without_repetitions
-from ravemj.planning.trees import Tree
+from ravemj.planning.rrt import Budget, End, Search, Tree, without_repetitions
 
 _STEP = 0.3
 """How far [rad or m] neighbours are."""

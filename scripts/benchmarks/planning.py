@@ -14,7 +14,7 @@ from benchmarks.measure import ROOT, Row, microseconds, take_turns
 from ravemj.core.transforms import Floats, Ints
 from ravemj.manipulation.bodies import Bodies
 from ravemj.planning.edges import Edges, length
-from ravemj.planning.retiming.parabolic import Parabolic
+from ravemj.planning.retiming.polynomials import Parabolic
 from ravemj.planning.retiming.segments import Limits, retime
 from ravemj.planning.rrt import Budget, Search, connect
 from ravemj.planning.shortcuts import shorten

@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 
 from ravemj.planning.edges import LINE, STEP, Edges, bisection_order, length, nearby, path_is_allowed
-from ravemj.planning.ramp_shortcuts import faster, lines
 from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.randomized_astar import search_by_cost
-from ravemj.planning.retiming.jerk_limited import JerkLimited
-from ravemj.planning.retiming.linear import Linear
-from ravemj.planning.retiming.parabolic import Parabolic
-from ravemj.planning.retiming.polynomials import Cubic, Quintic
+from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
 from ravemj.planning.retiming.segments import Limits, OutsideLimitsError, RetimingError, retime
 from ravemj.planning.rrt import Budget, End, MoreGoals, connect, explore, single
-from ravemj.planning.shortcuts import shorten
+from ravemj.planning.shortcuts import faster, lines, shorten
 from ravemj.planning.space import Coordinates, Space
 from ravemj.planning.verification import Samples, flaw
 

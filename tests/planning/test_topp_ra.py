@@ -8,7 +8,7 @@ from test_planners import env, line, robot
 
 import ravemj
 from ravemj import planningutils
-from ravemj.planning.retiming.parabolic import Parabolic
+from ravemj.planning.retiming.polynomials import Parabolic
 from ravemj.planning.retiming.segments import Limits, OutsideLimitsError, RetimingError, retime
 from ravemj.planning.retiming.topp_ra import ToppRa
 from ravemj.planning.space import Coordinates

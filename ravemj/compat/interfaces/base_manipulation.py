@@ -14,7 +14,7 @@ from ravemj.core.arrays import checked_numbers, checked_transform, checked_vecto
 from ravemj.core.transforms import Floats
 from ravemj.manipulation.options import JitterMotion, JointMotion, StraightMotion, ToolMotion, UnsyncMotion, chosen
 from ravemj.rave.modules import base_module
-from ravemj.rave.modules.motions import tool_constraint
+from ravemj.rave.modules.base_manipulation import tool_constraint
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory

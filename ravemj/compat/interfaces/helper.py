@@ -9,7 +9,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.transforms import Floats
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import Module
-from ravemj.rave.modules.motions import Manipulation
+from ravemj.rave.modules.base_manipulation import Manipulation
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT

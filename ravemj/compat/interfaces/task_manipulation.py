@@ -18,7 +18,7 @@ from ravemj.manipulation.options import GraspMotion, chosen
 from ravemj.manipulation.tool import ToolConstraint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import task_module
-from ravemj.rave.modules.grasp_planning import GraspQuery
+from ravemj.rave.modules.task_manipulation import GraspQuery
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory

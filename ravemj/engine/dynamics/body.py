@@ -1,11 +1,8 @@
-"""Velocities, derivatives and dynamics of a body in its present configuration, by MuJoCo.
+"""What MuJoCo writes for each of its velocities, and what is read off it for each DOF."""
 
-The body's own model has a free joint at each root, so a moving base is a velocity like others. What differs from MuJoCo
-is arranged around its functions: the coupling of velocity coordinates to DOFs, and the velocities of links, which are
-the state in OpenRAVE.
-"""
-
+import math
 from collections.abc import Mapping, Sequence
+from typing import Self
 
 import mujoco
 import numpy as np
@@ -13,11 +10,69 @@ import numpy as np
 from ravemj.core.transforms import ZERO, Floats, Ints, Vec3, cross_rows
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap
 from ravemj.engine.dynamics.joint_velocities import JointVelocities
-from ravemj.engine.dynamics.motors import Motors
-from ravemj.engine.dynamics.rows import Rows
 from ravemj.engine.dynamics.tree import Tree
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.scene import Joint
+
+
+class Rows:
+    """Derivatives by MuJoCo's velocities, such as a Jacobian or generalised forces.
+
+    Attributes:
+        matrix: What MuJoCo writes, shape (..., nv).
+    """
+
+    def __init__(self, shape: tuple[int, ...], nv: int, columns: Ints | None) -> None:
+        """Make room for numbers of a shape (without the last axis) for each of MuJoCo's ``nv`` velocities.
+
+        ``columns``: that of each DOF, or ``nv`` for a DOF that moves nothing; None: they are not one to one.
+        """
+        count = math.prod(shape)
+        self._numbers = np.zeros(count * nv + 1)  # the last number stays 0
+        self.matrix = self._numbers[:-1].reshape(*shape, nv)
+        if columns is not None:
+            firsts = nv * np.arange(count).reshape(*shape, 1)
+            self._places = np.where(columns < nv, firsts + columns, count * nv)
+
+    def of_dofs(self, coupling: Floats | None) -> Floats:
+        """Return the derivatives by the DOFs, shape (..., dof); a copy. The coupling matrix is (nv, dof), or none."""
+        return self._numbers[self._places] if coupling is None else self.matrix.dot(coupling)
+
+
+AT_REST = 1e-12
+"""Speed [rad/s or m/s] that counts as none: dry friction jumps there, and speeds read off links are rounded."""
+
+
+class Motors:
+    """Motors of the joints between links, one for each velocity coordinate."""
+
+    def __init__(self, armature: Floats, coulomb: Floats, viscous: Floats) -> None:
+        """Take their data, each of shape (coordinates,).
+
+        Inertia of the rotors behind their gears [kg m^2], friction at any speed [N m] and per speed [N m s/rad].
+        """
+        self._armature, self._coulomb, self._viscous = armature, coulomb, viscous
+
+    @classmethod
+    def of(cls, kinematics: BodyKinematics, tree: Tree) -> Self | None:
+        """Return the motors of a body; None if all its joints move freely and without rotors."""
+        data = np.zeros((3, tree.count))
+        for joint, places in zip(kinematics.body.all_joints, kinematics.joint_qpos, strict=True):
+            for axis, place in zip(joint.axes, places, strict=False):
+                numbers = axis.armature, axis.coulomb_friction, axis.viscous_friction
+                data[:, tree.of_qpos[place]] = numbers
+        return cls(*data) if data.any() else None
+
+    def torques(self, speeds: Floats, accelerations: Floats) -> Floats:
+        """Return the torques and forces [N m or N] that motors need at speeds and accelerations of the coordinates.
+
+        All three have the same shape (coordinates, ...).
+        """
+        armature, coulomb, viscous = (
+            one.reshape(-1, *(1,) * (speeds.ndim - 1)) for one in (self._armature, self._coulomb, self._viscous)
+        )
+        direction = np.where(np.abs(speeds) > AT_REST, np.sign(speeds), 0.0)
+        return armature * accelerations + coulomb * direction + viscous * speeds
 
 
 class BodyDynamics:

@@ -1,6 +1,7 @@
-"""Joint values and link poses of one body, in a MuJoCo model of this body alone."""
+"""The poses of links as matrices."""
 
 import itertools
+from collections.abc import Sequence
 from types import EllipsisType
 from typing import NamedTuple
 
@@ -8,16 +9,54 @@ import mujoco
 import numpy as np
 
 from ravemj.core.caching import cached_property
-from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, wxyz_from_rows
+from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, conjugate, inverse, multiply, wxyz_from_rows
 from ravemj.engine.compiled import Compiled, write_inertial
 from ravemj.engine.kinematics.displacement import fix_to_parents
-from ravemj.engine.kinematics.link_poses import LinkPoses
 from ravemj.engine.kinematics.shown_values import ShownValues
-from ravemj.engine.kinematics.spherical import SphericalJoint
-from ravemj.model.joints import measured_values
+from ravemj.model.joints import measured_values, rotation_vector, wxyz_from_rotation_vector
 from ravemj.model.limits import Limits
 from ravemj.model.mimic import MimicJoints, Multiple
-from ravemj.model.scene import KinBody
+from ravemj.model.scene import Joint, KinBody
+
+
+class LinkPoses:
+    """Gathers the poses of links from MuJoCo's positions and rotations, as fast as numpy can."""
+
+    def __init__(self, data: mujoco.MjData, body_ids: Ints) -> None:
+        self._xpos, self._xmat = data.xpos.reshape(-1), data.xmat.reshape(-1)
+        positions, rotations = len(self._xpos), len(self._xmat)
+        self._numbers = np.append(np.zeros(positions + rotations), (0.0, 1.0))  # and what the last rows consist of
+        self._positions, self._rotations = np.split(self._numbers[:-2], [positions])
+        self._places = np.full((len(body_ids), 4, 4), positions + rotations)
+        self._places[:, 3, 3] += 1
+        self._places[:, :3, 3] = 3 * body_ids[:, None] + np.arange(3)
+        self._places[:, :3, :3] = positions + 9 * body_ids[:, None, None] + np.arange(9).reshape(3, 3)
+
+    def matrices(self) -> Floats:
+        """Return the poses, shape (links, 4, 4); a copy."""
+        self._positions[...], self._rotations[...] = self._xpos, self._xmat
+        return self._numbers[self._places]
+
+
+class SphericalJoint(NamedTuple):
+    """A spherical joint: three DOFs that are a rotation vector, and a quaternion in ``qpos``."""
+
+    joint: Joint
+    dofs: slice
+    qpos: slice
+
+    def to_qpos(self, vector: Sequence[float]) -> tuple[float, float, float, float]:
+        """Return MuJoCo's quaternion; it turns in the child's axes, the rotation vector in the parent's."""
+        rest = self.joint.T_parent_child.wxyz
+        turned = wxyz_from_rotation_vector((vector[0], vector[1], vector[2]))
+        return multiply(conjugate(rest), multiply(turned, rest))
+
+    def to_values(self, wxyz: Sequence[float]) -> tuple[float, float, float]:
+        """Return the rotation vector of MuJoCo's quaternion."""
+        rest = self.joint.T_parent_child.wxyz
+        w, x, y, z = wxyz
+        return rotation_vector(multiply(rest, multiply((w, x, y, z), conjugate(rest))))
+
 
 NO_QPOS = -1
 """In place of an index into ``qpos``, where a joint has none since it moves no link."""

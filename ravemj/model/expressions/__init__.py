@@ -16,8 +16,8 @@ values it can have are bounded, and evaluation takes time in proportion to the l
 """
 
 from ravemj.model.expressions.attributes import before_substitution, joint_variables, linear_mimic, partials, substitute
-from ravemj.model.expressions.errors import ExpressionError
 from ravemj.model.expressions.expression import Expression, parse
+from ravemj.model.expressions.nodes import ExpressionError
 from ravemj.model.expressions.polynomial_fit import fit_polynomial
 
 __all__ = [

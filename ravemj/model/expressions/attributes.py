@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from ravemj.model.expressions.errors import ExpressionError
+from ravemj.model.expressions.nodes import ExpressionError
 
 
 class Replacements(dict[str, str]):

@@ -1,16 +1,31 @@
-"""Nodes of expressions: numbers, variables and calls, in an acyclic graph.
-
-Operators are calls as well: ``1 - x`` is ``Call("sub", (Number(1), Variable("x")))``. Nodes never change, so
-expressions share them: an inline variable that is used twice is one node with two users. A ``Graph`` makes the nodes
-and never makes two alike, which keeps derivatives from growing out of bounds.
-
-A long sum is a deep chain of calls. So nothing here walks by recursion; ``ordered`` gives the order to walk in.
-"""
+"""The one exception of this package."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from ravemj.errors import ArgumentError
 from ravemj.model.expressions.functions import FUNCTIONS
+
+EXCERPT = 20
+
+
+class ExpressionError(ArgumentError):
+    """An equation that cannot be read; one line that names the place.
+
+    Attributes:
+        problem: The error, without the place.
+        position: Index of the character in the text, from 0; where the text ends too early, its length.
+        expected: What could have stood there; may be empty.
+    """
+
+    def __init__(self, problem: str, text: str, position: int, expected: str = "") -> None:
+        before, after = text[max(0, position - EXCERPT) : position], text[position : position + EXCERPT]
+        where = " and".join(f" {side} {part!r}" for side, part in (("after", before), ("before", after)) if part)
+        wanted = f"; expected {expected}" if expected else ""
+        super().__init__(f"{problem} at character {position}{where}{wanted}")
+        self.problem = problem
+        self.position = position
+        self.expected = expected
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,9 +16,8 @@ import re
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
-from ravemj.model.expressions.errors import ExpressionError
 from ravemj.model.expressions.functions import FUNCTIONS, NAMED
-from ravemj.model.expressions.nodes import Call, Graph, Node, ordered
+from ravemj.model.expressions.nodes import Call, ExpressionError, Graph, Node, ordered
 
 MAX_LENGTH = 65_536
 MAX_DEPTH = 64

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.retiming.segments import LONGER, MOST_ATTEMPTS, Limits, Rows, Segment
 
 _SLACK = 1e-12
@@ -132,3 +133,187 @@ class Quintic(Polynomial):
 def _only(limits: Limits, chosen: Any) -> Limits:  # noqa: ANN401 - a mask
     parts = (limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk)
     return Limits(limits.coordinates, *(part[chosen] for part in parts))
+
+
+class Linear:
+    """Drives each segment at the greatest speed of its slowest joint, and jumps to that of the next."""
+
+    interpolation = "linear"
+    order = 1
+    merges = False
+
+    def shortest(self, segment: Segment, limits: Limits) -> float:
+        """Return the time of a segment [s]; the translation of a base counts as one distance, its rotation as one."""
+        parts = limits.coordinates
+        ways, speeds = np.abs(segment.step), limits.velocity
+        if parts.translation or len(parts.rotation) > 1:
+            ways, speeds = _of_base(segment.step, limits)
+        moving = ways > 0
+        with np.errstate(divide="ignore"):
+            return float((ways[moving] / speeds[moving]).max(initial=0.0))
+
+    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows:
+        """Return the one row of a segment."""
+        del limits
+        velocity = segment.step / duration if duration > 0 else np.zeros_like(segment.step)
+        return Rows(np.array([duration]), (segment.step[None], velocity[None]))
+
+
+def _of_base(step: Floats, limits: Limits) -> tuple[Floats, Floats]:
+    """Return the ways and speeds of a segment that moves a base: straight through space, and turning."""
+    parts = limits.coordinates
+    translation, rotation = list(parts.translation), list(parts.rotation)
+    rest = [column for column in range(len(step)) if column not in parts.translation + parts.rotation]
+    ways = [*np.abs(step[rest])]
+    speeds = [*limits.velocity[rest]]
+    for columns, way in ((translation, np.linalg.norm(step[translation])), (rotation, _angle(step[rotation]))):
+        if columns:
+            ways.append(way)
+            speeds.append(limits.velocity[columns].min())
+    return np.array(ways), np.array(speeds)
+
+
+def _angle(step: Floats) -> float:
+    """Return the angle of a difference of angles, rotation vectors or unit quaternions [rad]."""
+    length = float(np.linalg.norm(step))
+    return 4 * float(np.arcsin(min(1.0, length / 2))) if len(step) == 4 else length
+
+
+_SAME_TIME = 1e-10
+"""Changes of acceleration or jerk this near [s] are at one time."""
+
+
+class Parabolic:
+    """Stops at each waypoint; all joints take the time of the slowest.
+
+    A joint that has more time than it needs moves with the least acceleration that does.
+
+    Args:
+        with_changes: Whether there are waypoints where joints change their acceleration.
+    """
+
+    interpolation = "quadratic"
+    order = 1
+    merges = True
+
+    def __init__(self, *, with_changes: bool = True) -> None:
+        self._with_changes = with_changes
+
+    def shortest(self, segment: Segment, limits: Limits) -> float:
+        """Return the time of a segment [s]."""
+        if not segment.is_from_rest_to_rest:
+            ends = segment.start_velocity, segment.end_velocity
+            return float(shortest_ramps(segment.step, *ends, limits.velocity, limits.acceleration).max(initial=0.0))
+        way = np.abs(segment.step)
+        moving = way > 0
+        way, speed, acceleration = way[moving], limits.velocity[moving], limits.acceleration[moving]
+        if not (speed.all() and acceleration.all()):
+            return np.inf
+        cruises = way * acceleration > speed**2
+        times = np.where(cruises, way / speed + speed / acceleration, 2 * np.sqrt(way / acceleration))
+        return float(times.max(initial=0.0))
+
+    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows | None:
+        """Return the rows of a segment: one for each change of acceleration, and its end."""
+        bounds = duration, limits.velocity, limits.acceleration
+        if segment.is_from_rest_to_rest:
+            ramps = fit_from_rest(segment.step, *bounds)
+        else:
+            ramps = fit_ramps(segment.step, segment.start_velocity, segment.end_velocity, *bounds)
+        if ramps is None:
+            return None
+        times = ramps.changes(_SAME_TIME) if self._with_changes else np.array([duration])
+        return Rows(times, ramps.states(times))
+
+
+_SIGNS = (1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0)
+"""Of the jerk in the pieces of a motion."""
+
+
+class JerkLimited:
+    """Stops at each waypoint; accelerations go up and down in straight lines.
+
+    From rest to rest each joint has up to seven pieces of constant jerk, mirrored in its middle. A joint with more time
+    than it needs does the same more slowly.
+    """
+
+    interpolation = "cubic"
+    order = 2
+    merges = True
+
+    def shortest(self, segment: Segment, limits: Limits) -> float:
+        """Return the time of a segment [s]."""
+        if not segment.is_from_rest_to_rest:
+            return np.inf
+        return max((_double_s(*one)[3] for one in _joints(segment.step, limits)), default=0.0)
+
+    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows | None:
+        """Return the rows of a segment: one for each change of jerk, and its end."""
+        joints = _joints(segment.step, limits)
+        changes = [_changes(_double_s(*one), duration) for one in joints]
+        inner = np.unique(np.concatenate([np.zeros(1), *changes]))
+        inner = inner[(inner > _SAME_TIME) & (inner < duration - _SAME_TIME)]
+        times = np.append(inner[np.diff(inner, prepend=0.0) > _SAME_TIME], duration)
+        orders = [np.zeros((len(times), len(segment.step))) for _ in range(3)]
+        for column, own, (way, *_) in zip(np.flatnonzero(segment.step), changes, joints, strict=True):
+            for order, rows in zip(orders, _states(own, way, duration, times), strict=True):
+                order[:, column] = np.sign(segment.step[column]) * rows
+        for order in orders[1:]:
+            order[-1] = 0.0  # exactly at rest
+        return Rows(times, orders)
+
+
+def _joints(step: Floats, limits: Limits) -> list[tuple[float, float, float, float]]:
+    rows = np.stack([np.abs(step), limits.velocity, limits.acceleration, limits.jerk], axis=1)
+    return [(way, speed, acceleration, jerk) for way, speed, acceleration, jerk in rows.tolist() if way > 0]
+
+
+def _double_s(way: float, speed: float, acceleration: float, jerk: float) -> tuple[float, float, float, float]:
+    """Return the times of the fastest motion over a way from rest to rest.
+
+    Returns:
+        How long the jerk lasts, the acceleration with its two flanks, and the whole motion up to where it slows down;
+        and the whole motion [s].
+    """
+    if not (speed > 0 and acceleration > 0 and jerk > 0):
+        return 0.0, 0.0, 0.0, np.inf
+    flank = min(acceleration / jerk, (speed / jerk) ** 0.5)
+    ramp = flank + speed / (jerk * flank)
+    if way >= speed * ramp:  # it cruises
+        return flank, ramp, way / speed, way / speed + ramp
+    if way >= 2 * acceleration**3 / jerk**2:  # it reaches the acceleration
+        flank = acceleration / jerk
+        ramp = flank / 2 + ((flank / 2) ** 2 + way / acceleration) ** 0.5
+    else:
+        flank = (way / (2 * jerk)) ** (1 / 3)
+        ramp = 2 * flank
+    return flank, ramp, ramp, 2 * ramp
+
+
+def _changes(profile: tuple[float, float, float, float], duration: float) -> Floats:
+    """Return when the jerk changes in the same motion over another time [s], from its start on."""
+    flank, ramp, slows, whole = profile
+    changes = np.array([0.0, flank, ramp - flank, ramp, slows, slows + flank, slows + ramp - flank])
+    return changes * (duration / whole)
+
+
+def _states(changes: Floats, way: float, duration: float, times: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return values, velocities and accelerations of a joint at some times, shape (len(times),) each."""
+    ends = np.append(changes[1:], duration)
+    states = [(0.0, 0.0, 0.0)]
+    for jerk, elapsed in zip(_SIGNS, (ends - changes).tolist(), strict=True):
+        states.append(_after(states[-1], jerk, elapsed))
+    scale = way / states[-1][0]
+    piece = np.searchsorted(ends[:-1], times, side="right")
+    value, velocity, acceleration = np.array(states[:-1])[piece].T
+    moved = _after((value, velocity, acceleration), np.array(_SIGNS)[piece], times - changes[piece])
+    return scale * moved[0], scale * moved[1], scale * moved[2]
+
+
+def _after(state: tuple[Any, Any, Any], jerk: Any, elapsed: Any) -> tuple[Any, Any, Any]:  # noqa: ANN401 - or arrays
+    value, velocity, acceleration = state
+    return (
+        value + velocity * elapsed + acceleration * elapsed**2 / 2 + jerk * elapsed**3 / 6,
+        velocity + acceleration * elapsed + jerk * elapsed**2 / 2,
+        acceleration + jerk * elapsed,
+    )

@@ -31,7 +31,7 @@ from ravemj.formats.data_folders import existing
 from ravemj.formats.file_access import FileAccess
 from ravemj.model.scene import Grab, Mesh, Scene
 from ravemj.rave.env.description import Description
-from ravemj.rave.env.json_files import is_json, placed_errors, read_json
+from ravemj.rave.env.saving import is_json, placed_errors, read_json
 from ravemj.rave.infos import EnvironmentBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot

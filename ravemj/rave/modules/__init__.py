@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from ravemj.rave.interface import Command, Module, asked_for
-from ravemj.rave.modules.base_manipulation import BaseManipulation
+from ravemj.rave.modules.base_manipulation import BaseManipulation, Manipulation
 from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, Tokens, commands_of, scene_module
-from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.modules.task_manipulation import TaskManipulation
 
 if TYPE_CHECKING:

@@ -20,10 +20,14 @@ from ravemj.manipulation.options import (
     chosen,
 )
 from ravemj.rave.interface import Command, Module
-from ravemj.rave.modules.base_manipulation import BaseManipulation
-from ravemj.rave.modules.grasp_planning import GraspQuery
-from ravemj.rave.modules.motions import Manipulation, Options, constraint_of, tool_constraint
-from ravemj.rave.modules.task_manipulation import TaskManipulation
+from ravemj.rave.modules.base_manipulation import (
+    BaseManipulation,
+    Manipulation,
+    Options,
+    constraint_of,
+    tool_constraint,
+)
+from ravemj.rave.modules.task_manipulation import GraspQuery, TaskManipulation
 from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory

@@ -11,9 +11,8 @@ from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import matrixFromPose, matrixFromPoses
 from ravemj.manipulation.processing import flag
 from ravemj.planning.edges import Edges
-from ravemj.planning.problem import Problem
 from ravemj.planning.projection import descend
-from ravemj.planning.rrt import Budget, End, Search
+from ravemj.planning.rrt import Budget, End, Problem, Search
 from ravemj.planning.tracking import LARGEST_JUMP, track
 from ravemj.rave.enums import PlannerStatusCode
 from ravemj.rave.planning.path_planners import PathPlanner

@@ -13,9 +13,8 @@ from ravemj.errors import ArgumentError
 from ravemj.manipulation.motions import RefusedError, allowed_ends, find_path, refusal
 from ravemj.planning.edges import Allowed
 from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
-from ravemj.planning.problem import Problem
 from ravemj.planning.randomized_astar import search_by_cost
-from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
+from ravemj.planning.rrt import Budget, End, MoreGoals, Problem, Search, connect, explore, single
 from ravemj.rave.enums import PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.processing import post_process
