@@ -16,7 +16,7 @@ from ravemj.graphics.simulation_renderer import Format
 from ravemj.graphics.video import VIDEO_FORMATS, check_picture, check_target, known_suffix, write_picture
 from ravemj.planning.rrt import Search
 from ravemj.rave import Planner, Robot
-from ravemj.rave.graph_handle import GraphHandle
+from ravemj.rave.env.viewing import GraphHandle
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.recording import Shot, camera_for_motion
 from ravemj.trajectories.body_motion import BodyMotion

@@ -2,24 +2,30 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.findings import Findings, GeometryOf
-from ravemj.manipulation.bodies import USER, Conditions
+from ravemj.manipulation.arm_search import ArmSearch
+from ravemj.manipulation.bodies import USER, Bodies, Conditions
 from ravemj.planning.constrained_edges import ConstrainedEdges, bent_path
 from ravemj.planning.edges import Allowed, nearby
 from ravemj.planning.problem import Problem
 from ravemj.planning.rrt import End, Search
 from ravemj.planning.shortcuts import shorten
 from ravemj.planning.space import Space
+from ravemj.planning.tracking import LARGEST_JUMP, track
 
 _SHORTCUTS = 100
 """The number of attempted shortcuts of a path on a constraint."""
 
 _JITTER_TRIES = 1000
 """The number of random configurations that are tested near a start or goal in collision."""
+
+_CLOSE = 1e-6
+"""The distance from a contact within which joints stop [rad or m]."""
 
 
 class RefusedError(Exception):
@@ -88,13 +94,27 @@ def allowed_ends(
     return kept[0], kept[1]
 
 
-def find_path(problem: Problem, search: Callable[[Problem], Search]) -> Search:
-    """Search for a path. One on a constraint is shortened, and gets waypoints, since smoothers would leave it."""
+def find_path(problem: Problem, search: Callable[[Problem], Search], spacing: float = 0.0) -> Search:
+    """Search for a path. One on a constraint is shortened, and gets waypoints, since smoothers would leave it.
+
+    With a spacing, a weighted distance, the path gets waypoints that are at most so far apart.
+    """
     found, edges = search(problem), problem.edges
     if isinstance(edges, ConstrainedEdges) and found.path is not None:
         path = bent_path(edges, shorten(edges, found.path, _SHORTCUTS, problem.random))
         found = replace(found, path=path, end=End.stuck if path is None else found.end)
+    if spacing > 0 and found.path is not None:
+        found = replace(found, path=_spaced(edges.space, found.path, spacing))
     return found
+
+
+def _spaced(space: Space, path: Floats, spacing: float) -> Floats:
+    rows = [path[:1]]
+    for start, end in pairwise(path):
+        count = max(1, int(np.ceil(space.distance(end, start) / spacing)))
+        parts = np.arange(1, count)[:, None] / count
+        rows += [start + parts * space.difference(end, start), end[None]]
+    return np.concatenate(rows)
 
 
 def jittered(conditions: Conditions, space: Space, configurations: Sequence[Floats], jitter: float) -> list[Floats]:
@@ -107,6 +127,111 @@ def jittered(conditions: Conditions, space: Space, configurations: Sequence[Floa
         test = conditions.allowed()
         found = [nearby(space, one, test, _JITTER_TRIES, jitter, random) for one in configurations]
     return [old if new is None else new for old, new in zip(configurations, found, strict=True)]
+
+
+def free_configuration(
+    conditions: Conditions, space: Space, here: Floats, tries: int, farthest: float
+) -> Floats | None:
+    """Return a configuration if it is allowed, else an allowed one within ``farthest`` [rad or m], or None."""
+    with conditions.kept():
+        return nearby(space, here, conditions.allowed(), tries, farthest, np.random.default_rng(0))
+
+
+def place_for_others(
+    conditions: Conditions, space: Space, here: Floats, others: Bodies, target: Floats, divisions: int, seed: int
+) -> Floats | None:
+    """Return a configuration at or near another one where other joints can move to their target, or None.
+
+    Args:
+        conditions: The conditions of the configuration.
+        space: The configuration space.
+        here: The configuration to begin with.
+        others: The other joints, which are not moved.
+        target: The values of the other joints.
+        divisions: The number of steps in which their motion is tested.
+        seed: The seed of the random numbers.
+    """
+    test, before = conditions.allowed(), others.values()
+    line = before + np.linspace(0.0, 1.0, divisions + 1)[1:, None] * (target - before)
+
+    def is_free(values: Floats) -> bool:
+        others.move(values)
+        return not others.collision()
+
+    def others_can_move(values: Floats) -> bool:
+        if not test(values):
+            return False
+        try:
+            return all(map(is_free, line))
+        finally:
+            others.move(before)
+
+    farthest = float((space.upper - space.lower).max())
+    with conditions.kept(), others.kept():
+        return nearby(space, here, others_can_move, 1000, farthest, np.random.default_rng(seed))
+
+
+def follow_goals(space: Space, first: Floats, count: int, search: Callable[[int], ArmSearch]) -> Floats:
+    """Return joint values that reach one goal after the other without jumps, as far as they can, shape (m, n).
+
+    Args:
+        space: The configuration space of the arm.
+        first: The first row, shape (n,).
+        count: The number of goals.
+        search: Returns the search for a goal, by its number from 1 to ``count``.
+    """
+
+    def solve(number: int, near: Floats) -> list[Floats]:
+        row = search(number).near(near, LARGEST_JUMP) if number else first
+        return [] if row is None else [row]
+
+    return track(space, count + 1, first, solve, lambda number, before, after: True)
+
+
+def move_until_contact(
+    bodies: Bodies, limits: tuple[Floats, Floats], sides: Floats, step: float, touches: Callable[[int], bool]
+) -> Floats:
+    """Return the values at which joints stop: each moves until its links touch something new, or to its limit.
+
+    Joints take turns, one step each, as fingers close at the same time.
+
+    Args:
+        bodies: The joints.
+        limits: Their lower and upper limits [rad or m], each of shape (n,).
+        sides: The sign of the motion of each joint, shape (n,).
+        step: The step between two tests [rad or m].
+        touches: Whether a link that a joint moves touches something, by the index of the joint.
+    """
+    lower, upper = limits
+    with bodies.kept():
+        values = bodies.values()
+        touching = [touches(joint) for joint in range(len(sides))]
+        moving = [joint for joint, side in enumerate(sides) if side != 0]
+        while moving:
+            for joint in tuple(moving):
+                before = values[joint]
+                target = float(np.clip(before + sides[joint] * step, lower[joint], upper[joint]))
+                values[joint] = target
+                bodies.move(values)
+                is_touching = touches(joint)
+                if is_touching and not touching[joint]:
+                    _retreat(bodies, values, joint, before, touches)
+                    moving.remove(joint)
+                elif target in {lower[joint], upper[joint]}:
+                    moving.remove(joint)
+                touching[joint] = is_touching
+        return values
+
+
+def _retreat(bodies: Bodies, values: Floats, joint: int, free: float, touches: Callable[[int], bool]) -> None:
+    """Set a joint to the last value without contact, by bisection between a free value and the current one."""
+    taken = float(values[joint])
+    while abs(taken - free) > _CLOSE:
+        values[joint] = middle = (taken + free) / 2
+        bodies.move(values)
+        taken, free = (middle, free) if touches(joint) else (taken, middle)
+    values[joint] = free
+    bodies.move(values)
 
 
 def _described(conditions: Conditions, index: int) -> str:

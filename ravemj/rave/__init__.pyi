@@ -3,8 +3,8 @@
 from ravemj.core.handles import Handle
 from ravemj.errors import ErrorCode as ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_types import IkParameterizationType as IkParameterizationType
-from ravemj.rave.attached_sensor import AttachedSensor as AttachedSensor
-from ravemj.rave.body.saving import (
+from ravemj.rave.robot.equipment import AttachedSensor as AttachedSensor
+from ravemj.rave.kinbody.state_saver import (
     KinBodyStateSaver as KinBodyStateSaver,
     RobotStateSaver as RobotStateSaver,
     StateRestoreContext as StateRestoreContext,
@@ -15,7 +15,7 @@ from ravemj.rave.collision import (
     CollisionOptionsStateSaver as CollisionOptionsStateSaver,
     RaveCreateCollisionChecker as RaveCreateCollisionChecker,
 )
-from ravemj.rave.connected_body import ConnectedBody as ConnectedBody
+from ravemj.rave.robot.equipment import ConnectedBody as ConnectedBody
 from ravemj.rave.controllers import (
     Controller as Controller,
     IdealController as IdealController,
@@ -24,7 +24,7 @@ from ravemj.rave.controllers import (
     RaveCreateMultiController as RaveCreateMultiController,
     VelocityController as VelocityController,
 )
-from ravemj.rave.creation import (
+from ravemj.rave.registry import (
     RaveCreateKinBody as RaveCreateKinBody,
     RaveCreateRobot as RaveCreateRobot,
     RaveCreateTrajectory as RaveCreateTrajectory,
@@ -66,7 +66,7 @@ from ravemj.rave.environment import (
     load as load,
 )
 from ravemj.rave.geometry import Geometry as Geometry
-from ravemj.rave.graph_handle import GraphHandle as GraphHandle
+from ravemj.rave.env.viewing import GraphHandle as GraphHandle
 from ravemj.rave.ikreturn import (
     IkFailureAccumulatorBase as IkFailureAccumulatorBase,
     IkFailureInfo as IkFailureInfo,
@@ -141,7 +141,7 @@ from ravemj.rave.logs import (
     RaveSetDebugLevel as RaveSetDebugLevel,
 )
 from ravemj.rave.manipulator import Manipulator as Manipulator
-from ravemj.rave.module import Module as Module
+from ravemj.rave.interface import Module as Module
 from ravemj.rave.modules import RaveCreateModule as RaveCreateModule, RaveCreateProblem as RaveCreateProblem
 from ravemj.rave.physics import PhysicsEngine as PhysicsEngine, RaveCreatePhysicsEngine as RaveCreatePhysicsEngine
 from ravemj.rave.planning import (
@@ -151,7 +151,7 @@ from ravemj.rave.planning import (
     PlanningError as PlanningError,
     RaveCreatePlanner as RaveCreatePlanner,
 )
-from ravemj.rave.readables import (
+from ravemj.rave.interface import (
     Readable as Readable,
     ReadableInterface as ReadableInterface,
     SerializableData as SerializableData,
@@ -180,7 +180,7 @@ from ravemj.rave.samplers import (
     SampleDataType as SampleDataType,
     SpaceSampler as SpaceSampler,
 )
-from ravemj.rave.sensor_data import CameraSensorData as CameraSensorData, SensorData as SensorData
+from ravemj.rave.instruments import CameraSensorData as CameraSensorData, SensorData as SensorData
 from ravemj.rave.sensors import RaveCreateSensor as RaveCreateSensor, Sensor as Sensor
 from ravemj.rave.specification import (
     ConfigurationSpecification as ConfigurationSpecification,

@@ -3,14 +3,16 @@
 import logging
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, Self, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import also_named, checked_kind
+from ravemj.core.arrays import checked_transform
 from ravemj.core.blocks import always, exit_in_c
-from ravemj.core.transforms import Ints
+from ravemj.core.transforms import Floats, Ints, Pose, pose_of
 from ravemj.engine.collision import queries
 from ravemj.engine.collision.findings import Collision, Findings, GeometryOf, Listed, Wanted, find
 from ravemj.engine.collision.pairs import Pairs
@@ -18,17 +20,20 @@ from ravemj.engine.collision.queries import LinkOf, Links, MovedBy
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.geometry_functions import Ray
-from ravemj.rave.body.collision import BodyCollision
-from ravemj.rave.collision_extras import CheckerExtras
+from ravemj.geometry_functions import AABB, Ray
+from ravemj.model import scene
+from ravemj.model.shape_bodies import named_body, shape_geometry
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
-from ravemj.rave.geometry_groups import GeometryGroups
-from ravemj.rave.interface import asked_for
+from ravemj.rave.geometry_groups import GeometryGroups, has_group
+from ravemj.rave.interface import Interface, asked_for
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.report import FAR, CollisionPairInfo, CollisionReport, Part
+from ravemj.rave.trimesh import TriMesh, checked_mesh
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+
 
 # Plain numbers: operators of flags take longer than tests of collision.
 _ACTIVE_DOFS = int(CollisionOptions.ActiveDOFs)
@@ -43,15 +48,25 @@ _ARGUMENTS = ("ray", "link1", "link2", "link", "body1", "body2", "body", "bodyex
 """Names of the arguments of ``CheckCollision``, in the order in which they stand without names."""
 
 
-class CollisionChecker(CheckerExtras):
+class CollisionChecker(Interface):
     """Tests whether bodies touch; ``env.GetCollisionChecker()`` returns it.
 
     Boxes, spheres, cylinders, capsules and convex meshes are exact solids. Other meshes are their triangles, as in
     OpenRAVE: what is inside one without touching a triangle does not collide.
     """
 
+    _internal = (
+        "answer",
+        "collides",
+        "find",
+        "groups",
+        "is_plain",
+        "ray_targets",
+        "report",
+        "world",
+    )
+
     _interface_type = InterfaceType.collisionchecker
-    _internal = ("answer", "collides", "find", "groups", "is_plain", "ray_targets", "report", "world")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         super().__init__(env, name)
@@ -125,12 +140,18 @@ class CollisionChecker(CheckerExtras):
             report, arguments = report or arguments[-1], arguments[:-1]
         if report is not None:
             checked_kind(report, CollisionReport, "CheckCollision: report")
-        with self._simulation.lock, self.groups.world() as world:
-            if arguments and isinstance(ray := arguments[0], Ray):
-                return self._check_ray(world, ray, arguments[1:], report)
-            return self.answer(world, self._pairs(world, arguments), report)
+        with self._simulation.lock:
+            if not self.groups.is_used:  # without a context manager, since planners ask this most
+                return self._check(self._simulation.collisions(), arguments, report)
+            with self.groups.world() as world:
+                return self._check(world, arguments, report)
 
-    def CheckSelfCollision(self, linkbody: "BodyCollision | Link", report: CollisionReport | None = None) -> bool:
+    def _check(self, world: CollisionWorld, arguments: tuple[object, ...], report: CollisionReport | None) -> bool:
+        if arguments and isinstance(ray := arguments[0], Ray):
+            return self._check_ray(world, ray, arguments[1:], report)
+        return self.answer(world, self._pairs(world, arguments), report)
+
+    def CheckSelfCollision(self, linkbody: KinBody | Link, report: CollisionReport | None = None) -> bool:
         """Return whether a body collides with itself; see ``body.CheckSelfCollision``.
 
         Args:
@@ -159,7 +180,7 @@ class CollisionChecker(CheckerExtras):
                 return self._pairs_with_others(
                     world, thing, frozenset(map(_state, bodies)), frozenset(map(_link, links))
                 )
-            case (BodyCollision() | Link() as one, BodyCollision() | Link() as other):
+            case (KinBody() | Link() as one, KinBody() | Link() as other):
                 first, second = self._added(one), self._added(other)
                 return queries.each_other(world, first, second, self._active_links(one))
             case _:
@@ -191,7 +212,7 @@ class CollisionChecker(CheckerExtras):
 
     def _active_links(self, argument: object) -> Links:
         """Return the links to which the option ``ActiveDOFs`` restricts the tests of a body; None: all."""
-        if not self._options & _ACTIVE_DOFS or not isinstance(argument, BodyCollision) or argument.moves_as_a_whole():
+        if not self._options & _ACTIVE_DOFS or not isinstance(argument, KinBody) or argument.moves_as_a_whole():
             return None
         return MovedBy(argument.active_dofs())
 
@@ -277,7 +298,7 @@ class CollisionChecker(CheckerExtras):
         """
         if target is ...:
             return None
-        if not isinstance(target, BodyCollision | Link):
+        if not isinstance(target, KinBody | Link):
             raise _not_understood((Ray(np.zeros(3), np.zeros(3)), target))
         thing = self._added(target)
         return world.geoms_of_group(thing) if isinstance(thing, BodyState) else world.geoms_of_link(*thing)
@@ -286,6 +307,137 @@ class CollisionChecker(CheckerExtras):
         if self._env.GetCollisionChecker() is self:
             return f"{self._env!r}.GetCollisionChecker()"
         return f"RaveCreateCollisionChecker({self._env!r}, {self._xmlid!r})"
+
+    groups: GeometryGroups
+
+    def CheckCollisionOBB(
+        self,
+        aabb: AABB,
+        pose: ArrayLike,
+        *arguments: Sequence[KinBody] | CollisionReport | None,
+        bodiesincluded: Sequence[KinBody] | None = None,
+        report: CollisionReport | None = None,
+    ) -> bool:
+        """Return whether a box touches bodies: ``(aabb, pose[, bodiesincluded][, report])``.
+
+        Args:
+            aabb: The box, in its own frame.
+            pose: ``T_world_box``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+            arguments: The others by their places.
+            bodiesincluded: The bodies; left out: all.
+            report: Filled with what is found; the first names in it are those of a body ``box``.
+        """
+        checked_kind(aabb, AABB, "CheckCollisionOBB: aabb")
+        x, y, z = aabb.extents().tolist()
+        T_world_box = pose_of(checked_transform(pose, "CheckCollisionOBB: pose"))
+        cx, cy, cz = aabb.pos().tolist()
+        shape = shape_geometry(scene.Box((x, y, z)), T_world_box @ Pose((cx, cy, cz)), visible=False)
+        for argument in arguments:
+            if isinstance(argument, list | tuple):
+                bodiesincluded = argument
+            else:
+                report = argument or report  # pyright: ignore[reportAssignmentType] - a report is no list
+        return self._collides(shape, bodiesincluded, report)
+
+    def CheckCollisionTriMesh(
+        self,
+        trimesh: TriMesh,
+        *arguments: KinBody | CollisionReport | None,
+        body: KinBody | None = None,
+        report: CollisionReport | None = None,
+    ) -> bool:
+        """Return whether triangles touch bodies: ``(trimesh[, body][, report])``.
+
+        Args:
+            trimesh: The triangles, in the world [m].
+            arguments: The others by their places.
+            body: The only body that counts; left out: all.
+            report: Filled with what is found; the first names in it are those of a body ``box``.
+        """
+        mesh = checked_mesh(trimesh, "CheckCollisionTriMesh: trimesh")
+        given: list[Any] = [one for one in arguments if one is not None]
+        if given and hasattr(given[0], "GetLinks"):
+            body = given.pop(0)
+        report = given.pop(0) if given else report
+        return self._collides(
+            shape_geometry(scene.TriMesh(mesh), Pose(), visible=False), None if body is None else [body], report
+        )
+
+    def _collides(
+        self, shape: scene.Geometry, bodies: Sequence[KinBody] | None, report: CollisionReport | None
+    ) -> bool:
+        simulation = self._env.simulation
+        with simulation.lock:
+            state = simulation.create(named_body(simulation.free_name("box"), [shape]))
+            simulation.insert(state)
+            try:
+                probe = self._env.wrap(state)
+                if bodies is None:
+                    return self.CheckCollision(probe, report=report)
+                return any([self.CheckCollision(probe, body, report=report) for body in bodies])
+            finally:
+                self._env.Remove(self._env.wrap(state))
+
+    def CheckCollisionRays(
+        self,
+        rays: ArrayLike,
+        body: KinBody | None = None,
+        front_facing_only: bool = False,
+        checkPreemptFn: object = None,
+    ) -> tuple[NDArray[np.bool_], Floats]:
+        """Return which rays hit something, shape (n,), and where, shape (n, 6); see ``env.CheckCollisionRays``.
+
+        Args:
+            rays: As there.
+            body: As there.
+            front_facing_only: As there.
+            checkPreemptFn: Not used: the rays are cast at once.
+        """
+        del checkPreemptFn
+        return self._env.CheckCollisionRays(rays, body, front_facing_only)
+
+    def InitKinBody(self, body: KinBody) -> bool:
+        """Return True: ``body`` needs no preparation."""
+        del body
+        return True
+
+    def RemoveKinBody(self, body: KinBody) -> None:
+        """Do nothing about ``body``; OpenRAVE's checkers free memory here."""
+
+    def SetGeometryGroup(self, groupname: str) -> None:
+        """Take a group of geometries in place of those that links have, for all bodies.
+
+        Links without the group keep their geometries, and viewers and physics look at those of all links. A query
+        compiles the world anew where shapes have changed since the last one, as it does without groups.
+
+        Args:
+            groupname: The group, of ``link.SetGroupGeometries``; empty: the geometries that links have.
+        """
+        self.groups.choose(checked_kind(groupname, str, "SetGeometryGroup: groupname", "a text"))
+
+    def GetGeometryGroup(self) -> str:
+        """Return the group of ``SetGeometryGroup``; empty: the geometries that links have."""
+        return self.groups.default
+
+    def SetBodyGeometryGroup(self, body: KinBody, groupname: str) -> bool:
+        """Take a group of geometries for one body; see ``SetGeometryGroup``, which sets it for all of them again.
+
+        Args:
+            body: The body.
+            groupname: The group; empty: the geometries that links have.
+
+        Returns:
+            Whether a link of the body has such a group. If not, nothing changes.
+        """
+        state = body.simulation_state
+        found = has_group(state.scene, checked_kind(groupname, str, "SetBodyGeometryGroup: groupname", "a text"))
+        if found:
+            self.groups.choose(groupname, state)
+        return found
+
+    def GetBodyGeometryGroup(self, body: KinBody) -> str:
+        """Return the group of geometries that is used for ``body``; empty: the geometries that its links have."""
+        return self.groups.of(body.simulation_state)
 
 
 class NoCollisionChecker(CollisionChecker):
@@ -368,7 +520,7 @@ def RaveCreateCollisionChecker(env: "Environment", name: str) -> CollisionChecke
 
 
 def _state(body: object) -> BodyState:
-    if not isinstance(body, BodyCollision):
+    if not isinstance(body, KinBody):
         raise _not_understood((body,))
     return body.simulation_state
 
@@ -380,7 +532,7 @@ def _link(link: object) -> LinkOf:
 
 
 def _thing(argument: object) -> BodyState | LinkOf:
-    return argument.simulation_state if isinstance(argument, BodyCollision) else _link(argument)
+    return argument.simulation_state if isinstance(argument, KinBody) else _link(argument)
 
 
 def _not_understood(arguments: Iterable[object]) -> RavemjError:

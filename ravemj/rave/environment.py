@@ -12,8 +12,6 @@ from ravemj.core.forks import disown, in_child
 from ravemj.engine.simulation import Simulation, both_locks
 from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.enums import CloningOptions
-from ravemj.rave.env.collision import Collision
-from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.json_files import is_json
 from ravemj.rave.env.load_arguments import checked_attributes
 from ravemj.rave.env.loading import Loading
@@ -38,7 +36,7 @@ def _disown_all() -> None:
     _environments.clear()
 
 
-class Environment(Loading, Saving, Collision, Drawing, Viewing):
+class Environment(Loading, Saving, Viewing):
     """A world with robots and other bodies.
 
     Example:

@@ -1,19 +1,202 @@
-"""The base class of all objects of an environment."""
+"""The base class of all objects of an environment, and modules."""
 
+# ruff: noqa: D417 - the functions are methods of classes that have no base in common, and take self
+
+import inspect
 from collections.abc import Callable, Mapping
 from copy import copy
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.engine.simulation import Simulation
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, UnsupportedError
+from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.readables import ReadableInterface
-from ravemj.rave.user_data import Annotations, GetUserData, RemoveUserData, SetUserData
 
 if TYPE_CHECKING:
+    from ravemj.gui.viewers import Viewer
     from ravemj.rave.environment import Environment
+
+
+class Annotations:
+    """The description and the user data of one object."""
+
+    def __init__(self) -> None:
+        self.description = ""
+        self.data: dict[str, Any] = {}
+
+
+class Annotated(Protocol):
+    """An object with annotations: an environment or an interface. The functions below are its methods."""
+
+    annotations: Annotations
+
+
+def SetUserData(self: Annotated, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
+    """Attach an object of the user: ``SetUserData(data)`` or ``SetUserData(key, data)``.
+
+    The object lives as long as what it is attached to. ``GetUserData`` returns it.
+
+    Args:
+        key: The name; or the object itself, if it is the only argument.
+        data: The object.
+    """
+    name, attached = ("", key) if data is ... else (key, data)
+    self.annotations.data[str(name)] = attached
+
+
+def GetUserData(self: Annotated, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
+    """Return the object that ``SetUserData`` attached under the name ``key``, or None."""
+    return self.annotations.data.get(key)
+
+
+def RemoveUserData(self: Annotated, key: str = "") -> bool:
+    """Remove the object that is attached under the name ``key``, and return whether there was one."""
+    return self.annotations.data.pop(key, None) is not None
+
+
+class Readable(ApiObject):
+    """A value with an id. ``stringreaders.CreateStringReadable`` makes one from a text."""
+
+    def __init__(self, id: str, data: Any = "") -> None:  # noqa: ANN401 - what JSON can hold
+        self._id = str(id)
+        self._data = data
+
+    def GetXMLId(self) -> str:
+        """Return the id."""
+        return self._id
+
+    def SerializeXML(self, options: int = 0) -> str:
+        """Return the value as an XML element whose tag is the id; ``options`` has no effect."""
+        from xml.sax.saxutils import escape  # noqa: PLC0415 - imports urllib, which is slow
+
+        del options
+        return f"<{self._id}>{escape(str(self._data))}</{self._id}>"
+
+    def SerializeJSON(self, unitScale: float = 1.0, options: int = 0) -> Any:  # noqa: ANN401 - what JSON can hold
+        """Return the value.
+
+        Args:
+            unitScale: Not used.
+            options: Not used.
+        """
+        del unitScale, options
+        return self._data
+
+    def DeserializeJSON(self, obj: Any, unitScale: float = 1.0) -> None:  # noqa: ANN401 - what JSON can hold
+        """Set the value.
+
+        Args:
+            obj: The value.
+            unitScale: Not used.
+        """
+        del unitScale
+        self._data = obj
+
+    def __repr__(self) -> str:
+        return f"stringreaders.CreateStringReadable({self._id!r}, {self._data!r})"
+
+
+class ReadableInterface(ApiObject):
+    """An object with values under ids."""
+
+    _readables: dict[str, Readable] | None = None
+
+    def GetReadableInterface(self, id: str) -> Readable | None:
+        """Return the value under ``id``, or None."""
+        return (self._readables or {}).get(id)
+
+    def GetReadableInterfaces(self) -> dict[str, Readable]:
+        """Return all values by their ids."""
+        return dict(self._readables or {})
+
+    def SetReadableInterface(self, id: str, readable: Readable | None) -> None:
+        """Attach a value.
+
+        Args:
+            id: The id.
+            readable: The value; None removes the value of that id.
+        """
+        kept = {key: one for key, one in (self._readables or {}).items() if key != id}
+        self._readables = kept if readable is None else kept | {id: readable}
+
+
+class stringreaders:  # noqa: N801 - OpenRAVE's name
+    """Makes values from texts."""
+
+    @staticmethod
+    def CreateStringReadable(id: str, data: str) -> Readable:
+        """Return a text under an id.
+
+        Args:
+            id: The id.
+            data: The text.
+        """
+        return Readable(id, str(data))
+
+
+class xmlreaders:  # noqa: N801 - OpenRAVE's name
+    """Makes values from texts, under OpenRAVE's older names."""
+
+    @staticmethod
+    def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
+        """Return a text under an id.
+
+        Args:
+            xmlid: The id.
+            data: The text.
+        """
+        return Readable(xmlid, str(data))
+
+
+class SerializableData(ApiObject):
+    """A text that scripts attach and read back.
+
+    Args:
+        data: The text.
+    """
+
+    def __init__(self, data: str = "") -> None:
+        self._data = data
+
+    def Serialize(self, options: int = 0) -> str:
+        """Return the text; ``options`` has no effect."""
+        del options
+        return self._data
+
+    def Deserialize(self, data: str) -> None:
+        """Set the text to ``data``."""
+        self._data = data
+
+    def Close(self) -> None:
+        """Clear the text."""
+        self._data = ""
+
+    close = Close
+
+
+class EnvironmentPart(ApiObject):
+    """The base class of the topics of ``Environment``, with the state that they share."""
+
+    def __init__(self) -> None:
+        self._simulation = Simulation()
+        self._renderer = SimulationRenderer(self._simulation)
+        self._viewers: list[Viewer] = []
+        self._found: dict[Diagnostic, None] = {}  # ordered sets: loading a file again adds nothing
+        self._files: dict[str, Source | None] = {}
+        self._is_destroyed = False
+
+    def _check_alive(self) -> None:
+        """Raise an error if the environment has been destroyed."""
+        if self._is_destroyed:
+            raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)
+
+    @property
+    def _viewer(self) -> "Viewer | None":
+        """The first viewer, which ``GetViewer`` returns, or None."""
+        return self._viewers[0] if self._viewers else None
 
 
 Command = Callable[[str], str | None]
@@ -174,3 +357,53 @@ def checked_environment(env: "Environment", caller: str) -> "Environment":
     if not isinstance(env, EnvironmentPart):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ArgumentError(f"{caller}: env is {env!r}, and should be an Environment")
     return env
+
+
+class Module(Interface):
+    """An object that executes commands. ``RaveCreateModule`` makes modules.
+
+    Args:
+        env: The environment.
+        xmlid: The name of the module.
+        start: Called with the arguments of ``env.Add`` when the module is added.
+        commands: The functions that execute commands, by the names of the commands.
+
+    Example:
+        >>> module = RaveCreateModule(env, "BaseManipulation")
+        >>> env.Add(module, True, robot.GetName())
+        >>> module.SendCommand("MoveActiveJoints goal 0.1 0.2 execute 0 outputtraj")[:12]
+        '<trajectory '
+    """
+
+    _interface_type = InterfaceType.module
+    _internal = ("end", "start")
+
+    def __init__(
+        self, env: "Environment", xmlid: str, start: Callable[[str], None], commands: Mapping[str, Command]
+    ) -> None:
+        super().__init__(env, xmlid)
+        self.start = start
+        self._by_name = commands
+
+    def Destroy(self) -> None:
+        """Remove the module from the environment."""
+        self._env.Remove(self)
+
+    def end(self) -> None:
+        """End the work of the module. The environment calls this when it removes the module."""
+
+    def SimulationStep(self, timeelapsed: float) -> bool:
+        """Advance by ``timeelapsed`` [s] and return whether anything was done; ``env.StepSimulation`` calls this."""
+        del timeelapsed
+        return False
+
+    def _known_commands(self) -> Mapping[str, Command]:
+        return self._by_name
+
+    def _help(self) -> str:
+        entries = {"help": "Lists the commands.", **{name: _purpose(one) for name, one in self._by_name.items()}}
+        return "\n".join(f"\n{name}\n{'~' * len(name)}\n\n{purpose}\n" for name, purpose in entries.items())
+
+
+def _purpose(command: Command) -> str:
+    return (inspect.getdoc(command) or "").partition("\n")[0]

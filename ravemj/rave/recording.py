@@ -1,7 +1,7 @@
 """Videos of a robot that follows a motion."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -10,17 +10,19 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import Diagnostic, send_warning
+from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera, three_quarter_view
 from ravemj.graphics.rendering.checks import checked_colour
 from ravemj.graphics.shown_path import ShownPath
 from ravemj.graphics.simulation_renderer import Format, Frame
+from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
 from ravemj.trajectories.body_motion import BodyMotion
 from ravemj.trajectories.motion_arguments import MotionLike, body_motion
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
     from ravemj.rave.kinbody import KinBody
+
 
 _POSES_FOR_THE_VIEW = 17  # configurations along a motion that the camera has to see: enough for full turns of a joint
 
@@ -139,3 +141,58 @@ def camera_for_motion(env: "Environment", motion: BodyMotion, aspect: float) -> 
     center = (lowest + highest) / 2
     reach = max(float(np.linalg.norm(part - center)) + radius for part, radius in spheres)
     return three_quarter_view(center, reach, aspect)
+
+
+_ASPECT = 4 / 3
+"""Width of a picture divided by its height for which the first view is chosen; the page has any."""
+
+_LOWEST_FPS, _HIGHEST_FPS = 0.01, 1000
+
+
+def animate(
+    env: "Environment",
+    motion: MotionLike | None,
+    robot: "KinBody | None" = None,
+    fps: float = 30.0,
+    camera: ArrayLike | None = None,
+    background: ArrayLike | None = None,
+) -> Animation:
+    """Return the page of a motion; ``Environment.animation`` says what the arguments are."""
+    if not _LOWEST_FPS <= fps <= _HIGHEST_FPS:  # NaN is refused, too
+        raise ArgumentError(f"expected from {_LOWEST_FPS} to {_HIGHEST_FPS} frames a second, found {fps}")
+    with env:
+        followed = None if motion is None else followed_motion(env, motion, robot)
+        is_fitted = camera is None and env.GetViewer() is None and env.renderer.file_camera() is None
+        if camera is not None:
+            view = Camera.from_matrix(camera)
+        elif followed is None:
+            view = env.default_camera(_ASPECT)
+        else:
+            view = camera_for_motion(env, followed, _ASPECT)
+        shown = followed.bodies if followed is not None else () if robot is None else (robot.simulation_state,)
+        recording = _recorded(env, shown, followed, fps)
+        title = ", ".join(body.scene.name for body in shown) or "ravemj"
+        colour = env.background if background is None else checked_colour(background)
+        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, colour, title)
+        compiled, drawings = env.simulation.compiled(), env.simulation.drawings.primitives()
+        return Animation(animation_page(compiled.model, compiled.data, recording, appearance, drawings))
+
+
+def _recorded(env: "Environment", bodies: Sequence[BodyState], motion: BodyMotion | None, fps: float) -> Recording:
+    """Move the bodies as the motion says, and return where everything was."""
+    rows: list[tuple[Floats, Floats, Floats]] = []
+    for time in [0.0] if motion is None else motion.frame_times(fps):
+        if motion is not None:
+            motion.place(time)
+        data = env.simulation.compiled().data
+        values = [body.kinematics.values() for body in bodies]
+        rows.append((data.xpos.copy(), data.xquat.copy(), np.concatenate([*values, np.zeros(0)])))
+    joints = [joint for body in bodies for joint in body.scene.joints]
+    return Recording(
+        fps,
+        np.array([row[0] for row in rows]),
+        np.array([row[1] for row in rows]),
+        np.array([row[2] for row in rows]),
+        [(f"{body.scene.name} " if bodies[1:] else "") + name for body in bodies for name in body.scene.dof_names],
+        ["m" if joint.slides(axis) else "rad" for joint in joints for axis in range(len(joint.axes))],
+    )

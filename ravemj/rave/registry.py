@@ -1,4 +1,4 @@
-"""Makes, lists and copies interfaces by kind and name."""
+"""OpenRAVE's functions that make bodies and trajectories."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -6,22 +6,85 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, UnsupportedError
+from ravemj.model.scene import KinBody as SceneBody
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.collision import RaveCreateCollisionChecker
 from ravemj.rave.controllers import RaveCreateController
-from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot, RaveCreateTrajectory
 from ravemj.rave.enums import InterfaceType
+from ravemj.rave.environment import Environment
 from ravemj.rave.iksolver import RaveCreateIkSolver
 from ravemj.rave.interface import Interface, asked_for
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import MODULES, RaveCreateModule
 from ravemj.rave.physics import RaveCreatePhysicsEngine
 from ravemj.rave.planning import RaveCreatePlanner
 from ravemj.rave.planning.names import PLANNERS
+from ravemj.rave.robot import Robot
 from ravemj.rave.samplers import SAMPLERS, RaveCreateSpaceSampler
 from ravemj.rave.sensors import KIND_NAMES, RaveCreateSensor
+from ravemj.rave.trajectory import KIND, Trajectory
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
-    from ravemj.rave.environment import Environment
+
+
+def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
+    """Make a body without links; ``InitFromBoxes`` and the like fill it, ``env.Add`` adds it.
+
+    Args:
+        env: The environment that it is for.
+        name: OpenRAVE's name of the kind of body, which is empty.
+
+    Returns:
+        The body; None for an unknown kind.
+
+    Example:
+        >>> body = ravemj.RaveCreateKinBody(env, "")
+        >>> body.InitFromBoxes([[0, 0, 0, 0.1, 0.2, 0.3]])
+        True
+        >>> body.SetName("box")
+        >>> env.Add(body)
+    """
+    return None if asked_for(env, name, "RaveCreateKinBody")[0] else _empty(env, is_robot=False)
+
+
+def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
+    """Make a robot without links; see ``RaveCreateKinBody``.
+
+    Args:
+        env: The environment that it is for.
+        name: OpenRAVE's name of the kind of robot: empty or ``GenericRobot``.
+
+    Returns:
+        The robot; None for an unknown kind.
+    """
+    kind = asked_for(env, name, "RaveCreateRobot")[0].lower()
+    robot = _empty(env, is_robot=True) if kind in {"", "genericrobot"} else None
+    return robot if isinstance(robot, Robot) else None
+
+
+def _empty(env: Environment, *, is_robot: bool) -> KinBody:
+    scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
+    return env.wrap(env.simulation.create(scene))
+
+
+def RaveCreateTrajectory(env: Environment, name: str = "") -> Trajectory | None:
+    """Make a trajectory.
+
+    Args:
+        env: The environment with the robots that the trajectory may refer to.
+        name: ``GenericTrajectory``, the only type, in any letter case; empty: that one.
+
+    Returns:
+        The trajectory, or None where there is no such type.
+
+    Example:
+        >>> trajectory = RaveCreateTrajectory(env, "")
+        >>> trajectory.Init(robot.GetConfigurationSpecification("linear"))
+    """
+    xmlid = asked_for(env, name, "RaveCreateTrajectory")[0] or KIND
+    return Trajectory(env, xmlid) if xmlid.lower() == KIND.lower() else None
+
 
 SENSOR_SYSTEMS = "sensor systems"
 
@@ -64,7 +127,7 @@ class ManageData(ApiObject):
         raise UnsupportedError("ManageData.Lock", SENSOR_SYSTEMS)
 
 
-def RaveCreateSensorSystem(env: "Environment", name: str) -> None:
+def RaveCreateSensorSystem(env: Environment, name: str) -> None:
     """Refuse to make a sensor system.
 
     Args:
@@ -77,7 +140,7 @@ def RaveCreateSensorSystem(env: "Environment", name: str) -> None:
     raise UnsupportedError(f"sensor system '{name}'", SENSOR_SYSTEMS)
 
 
-def RaveCreateViewer(env: "Environment", name: str) -> "Viewer | None":
+def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
     """Attach another viewer to the environment; ``env.Remove`` closes it.
 
     Args:
@@ -132,7 +195,7 @@ def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's name
     return checked_kind(name, str, "RaveHasInterface: name", "a text").lower() in {one.lower() for one in known}
 
 
-def RaveCreateInterface(env: "Environment", type: InterfaceType, name: str) -> Any:  # noqa: ANN401 - of any kind
+def RaveCreateInterface(env: Environment, type: InterfaceType, name: str) -> Any:  # noqa: ANN401 - of any kind
     """Make an object of any kind: a body, a controller, a trajectory, ...
 
     Args:
@@ -149,7 +212,7 @@ def RaveCreateInterface(env: "Environment", type: InterfaceType, name: str) -> A
     return _MAKERS[InterfaceType(type)][0](env, name)
 
 
-def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | None" = None) -> Any:  # noqa: ANN401 - of the same kind
+def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: Environment | None = None) -> Any:  # noqa: ANN401 - of the same kind
     """Return a copy of an interface, which is not added to the environment.
 
     The copy has the same kind and name, and the state that its ``Clone`` copies.

@@ -84,7 +84,7 @@ class SpaceSampler(Interface):
 
     def SampleSequence(
         self, type: SampleDataType, num: int, interval: int = Interval.Closed
-    ) -> "Floats | NDArray[np.uint32]":
+    ) -> Floats | NDArray[np.uint32]:
         """Return the next points of the sequence in one row, shape (num * dof,).
 
         Args:
@@ -97,7 +97,7 @@ class SpaceSampler(Interface):
 
     def SampleSequence2D(
         self, type: SampleDataType, num: int, interval: int = Interval.Closed
-    ) -> "Floats | NDArray[np.uint32]":
+    ) -> Floats | NDArray[np.uint32]:
         """Return the next points of the sequence, shape (num, dof).
 
         Args:
@@ -186,7 +186,7 @@ class _Random:
         lower, upper = self.limits()
         return self._generator.uniform(lower, upper, (count, len(lower)))
 
-    def integers(self, count: int) -> "NDArray[np.uint32]":
+    def integers(self, count: int) -> NDArray[np.uint32]:
         """Return the next points as integers, shape (count, dof)."""
         return self._generator.integers(0, 2**32, (count, self._dof), dtype=np.uint32)
 
@@ -214,7 +214,7 @@ class _Configurations(_Random):
 
     kinds = frozenset({SampleDataType.Real})
 
-    def __init__(self, limits: "Callable[[], tuple[Floats, Floats]]") -> None:
+    def __init__(self, limits: Callable[[], tuple[Floats, Floats]]) -> None:
         super().__init__()
         self.limits = limits
 

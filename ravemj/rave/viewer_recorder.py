@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ravemj.core.flags import Handover
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame
-from ravemj.rave.module import Module
+from ravemj.rave.interface import Module
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -3,19 +3,18 @@
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
 from collections.abc import Sequence
-from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ravemj.compat.interfaces.helper import Helper, given, numbers, several, whole_numbers
+from ravemj.compat.interfaces.helper import Helper, given, several
 from ravemj.compat.planningutils import RetimeTrajectory, VerifyTrajectory
 from ravemj.compat.refusal import refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
+from ravemj.manipulation.options import JitterMotion, JointMotion, StraightMotion, ToolMotion, UnsyncMotion, chosen
 from ravemj.rave.modules import base_module
-from ravemj.rave.modules.base_manipulation import HAND_SEARCH
-from ravemj.rave.modules.motions import SearchOptions
+from ravemj.rave.modules.motions import tool_constraint
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
@@ -90,8 +89,8 @@ class BaseManipulation(Helper):
         dof = self.robot.GetActiveDOF()
         wanted, starts = _rows("goal", goal, goals, dof), _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
-        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter, steplength))
-        traj = self._base.move_joints(wanted, search, starts=starts, postprocessing=post)
+        options = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength)
+        traj = self._base.move_joints(wanted, chosen(JointMotion, options), starts=starts, postprocessing=post)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveManipulator(
@@ -125,8 +124,9 @@ class BaseManipulation(Helper):
         """
         del releasegil
         wanted = _rows("goal", goal, goals, len(self._base.arm().description.arm_dofs))
-        search = SearchOptions().changed(_effort(maxiter, maxtries, jitter, steplength))
-        return self._done(self._base.move_manipulator(wanted, search), execute, outputtraj, outputtrajobj)
+        options = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength)
+        traj = self._base.move_manipulator(wanted, chosen(JointMotion, options))
+        return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveToHandPosition(
         self,
@@ -204,7 +204,7 @@ class BaseManipulation(Helper):
             >>> basemanip.MoveToHandPosition(matrices=[T_world_tool], constraintfreedoms=[1, 1, 0, 0, 0, 0])
         """
         del affinedofs, minimumgoalpaths, jittergoal, goalmaxtries, releasegil, freevalues
-        options = _effort(maxiter, maxtries, jitter, steplength) | given(
+        constraint = given(
             constraintfreedoms=constraintfreedoms,
             constraintmatrix=constraintmatrix,
             constrainttaskmatrix=constrainttaskmatrix,
@@ -220,12 +220,19 @@ class BaseManipulation(Helper):
             goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
         others = [*given(ikparam=ikparam).values(), *several(ikparams, "ikparams")]
         goals += [checked_kind(one, IkParameterization, "ikparam") for one in others]
-        counts = whole_numbers(seedik=seedik, goalsamples=goalsamples or goalmaxsamples)
+        options = given(
+            maxiter=maxiter,
+            maxtries=maxtries,
+            jitter=jitter,
+            steplength=steplength,
+            seedik=seedik,
+            goalsamples=goalsamples or goalmaxsamples,
+            goalsampleprob=goalsampleprob,
+        )
         traj = self._base.move_to_hand_position(
             goals,
-            HAND_SEARCH.changed(options),
-            **counts,
-            **numbers(goalsampleprob=goalsampleprob),
+            chosen(ToolMotion, options),
+            constraint=tool_constraint(constraint),
             starts=_rows("initialconfigs", None, initialconfigs, len(self._base.arm().description.arm_dofs)),
             postprocessing=postprocessing,
         )
@@ -269,9 +276,11 @@ class BaseManipulation(Helper):
         """
         del greedysearch, maxdeviationangle, steplength, planner
         start = None if starteematrix is None else checked_transform(starteematrix, "starteematrix")
-        options = given(starteematrix=start) | whole_numbers(minsteps=minsteps, maxsteps=maxsteps)
-        options |= numbers(stepsize=stepsize, ignorefirstcollision=ignorefirstcollision)
-        traj = self._base.move_hand_straight(checked_vector(direction, 3, "direction"), **options)
+        steps = given(
+            minsteps=minsteps, maxsteps=maxsteps, stepsize=stepsize, ignorefirstcollision=ignorefirstcollision
+        )
+        options = chosen(StraightMotion, steps)
+        traj = self._base.move_hand_straight(checked_vector(direction, 3, "direction"), options, start)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveUnsyncJoints(
@@ -306,8 +315,8 @@ class BaseManipulation(Helper):
         indices = checked_whole_numbers(jointinds, "jointinds").tolist()
         if not len(values) == len(indices) > 0:
             raise AssertionError(f"jointvalues: are {len(values)}, and there are {len(indices)} jointinds")
-        options = whole_numbers(maxtries=maxtries, maxdivision=maxdivision) | given(planner=planner)
-        traj = self._base.move_unsync_joints(values, indices, **options)
+        options = chosen(UnsyncMotion, given(maxtries=maxtries, maxdivision=maxdivision, planner=planner))
+        traj = self._base.move_unsync_joints(values, indices, options)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def JitterActive(
@@ -334,7 +343,7 @@ class BaseManipulation(Helper):
         Raises:
             PlanningError: there is no such configuration.
         """
-        found = self._base.jitter_active(**whole_numbers(maxiter=maxiter), **numbers(jitter=jitter))
+        found = self._base.jitter_active(chosen(JitterMotion, given(maxiter=maxiter, jitter=jitter)))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
     def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:
@@ -384,13 +393,6 @@ class BaseManipulation(Helper):
         "inverse kinematics (IK) with filters of its own",
         "self ikparam cone solveall filteroptions",
     )
-
-
-def _effort(
-    maxiter: int | None, maxtries: int | None, jitter: float | None, steplength: float | None
-) -> dict[str, Any]:
-    """Return the effort of a search, as options."""
-    return whole_numbers(maxiter=maxiter, maxtries=maxtries) | numbers(jitter=jitter, steplength=steplength)
 
 
 def _rows(name: str, one: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:

@@ -6,10 +6,9 @@ from typing import Any, TypeVar
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
 from ravemj.rave.environment import Environment
-from ravemj.rave.module import Module
+from ravemj.rave.interface import Module
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
@@ -100,24 +99,6 @@ class Helper(ApiObject):
 def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any kind
     """Return the options that are not None."""
     return {name: value for name, value in options.items() if value is not None}
-
-
-def numbers(**options: float | None) -> dict[str, Any]:
-    """Return the options that are not None, as finite numbers.
-
-    Raises:
-        ArgumentError: one is no finite number.
-    """
-    return {name: checked_vector([value], 1, name).item() for name, value in given(**options).items()}
-
-
-def whole_numbers(**options: int | None) -> dict[str, Any]:
-    """Return the options that are not None, as whole numbers.
-
-    Raises:
-        ArgumentError: one is no whole number.
-    """
-    return {name: checked_whole_numbers([value], name).item() for name, value in given(**options).items()}
 
 
 def several(values: Iterable[Thing] | None, name: str) -> list[Thing]:

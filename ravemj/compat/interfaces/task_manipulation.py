@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.compat.interfaces.helper import Helper, given, numbers
+from ravemj.compat.interfaces.helper import Helper, given
 from ravemj.compat.refusal import lacking, refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
+from ravemj.manipulation.options import GraspMotion, chosen
 from ravemj.manipulation.tool import ToolConstraint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import task_module
@@ -233,9 +234,10 @@ class TaskManipulation(Helper):
         body = checked_kind(target or getattr(gmodel, "target", None), KinBody, "GraspPlanning: target")
         columns = graspindices or getattr(gmodel, "graspindices", {})
         options = given(seedgrasps=seedgrasps, seeddests=seeddests, seedik=seedik, maxiter=maxiter)
-        options |= given(randomgrasps=randomgrasps, randomdests=randomdests) | numbers(steplength=steplength)
+        options |= given(randomgrasps=randomgrasps, randomdests=randomdests, steplength=steplength)
+        options |= {"approachoffset": approachoffset}
         places = [checked_transform(one, "destposes") for one in (() if destposes is None else destposes)]
-        plan = self._task.plan_grasp(GraspQuery(body, rows, columns, approachoffset, places, **options))
+        plan = self._task.plan_grasp(GraspQuery(body, rows, columns, places, chosen(GraspMotion, options)))
         return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj) or None
 
     def EvaluateConstraints(

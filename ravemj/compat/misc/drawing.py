@@ -9,8 +9,8 @@ from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.rave.env.viewing import GraphHandle
 from ravemj.rave.environment import Environment
-from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.specification import IkParameterization
 
 _FRAMES = {

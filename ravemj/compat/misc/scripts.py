@@ -12,9 +12,9 @@ from ravemj.core.output import AnyPath
 from ravemj.errors import RavemjError
 from ravemj.rave import logs
 from ravemj.rave.collision import CollisionChecker, RaveCreateCollisionChecker
-from ravemj.rave.creation import RaveCreateTrajectory
 from ravemj.rave.enums import DebugLevel
 from ravemj.rave.environment import Environment
+from ravemj.rave.registry import RaveCreateTrajectory
 from ravemj.rave.trajectory import Trajectory
 
 _LEVELS = {level.name.lower(): level for level in DebugLevel}

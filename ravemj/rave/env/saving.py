@@ -15,9 +15,9 @@ from ravemj.errors import ArgumentError, Diagnostics, UnsupportedError, send_war
 from ravemj.model.scene import Inertial, KinBody, Scene, View
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import SelectionOptions
+from ravemj.rave.env.contents import selects
 from ravemj.rave.env.description import Description
 from ravemj.rave.env.json_files import is_json, save_json
-from ravemj.rave.env.selection import selects
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.geom_writer import MeshFormat

@@ -4,21 +4,28 @@ Their fields have OpenRAVE's names; numbers may be lists or arrays. ``SerializeJ
 infos to OpenRAVE's JSON and back.
 """
 
-from ravemj.rave.infos.body import ExtractInfoOptions, KinBodyInfo, RobotBaseInfo, body_of
-from ravemj.rave.infos.connected import ConnectedBodyInfo, GrabbedInfo
-from ravemj.rave.infos.environment import EnvironmentBaseInfo
-from ravemj.rave.infos.geometry import GeometryInfo
-from ravemj.rave.infos.geometry_sizes import AxialSlice, SideWall, SideWallType
-from ravemj.rave.infos.joint import JointInfo
-from ravemj.rave.infos.link import LinkInfo
-from ravemj.rave.infos.motor import (
+from ravemj.rave.infos.body import (
+    AttachedSensorInfo,
+    ConnectedBodyInfo,
+    EnvironmentBaseInfo,
+    ExtractInfoOptions,
+    GrabbedInfo,
+    GripperInfo,
+    KinBodyInfo,
+    ManipulatorInfo,
+    RobotBaseInfo,
+    body_of,
+)
+from ravemj.rave.infos.geometry import AxialSlice, GeometryInfo, SideWall, SideWallType
+from ravemj.rave.infos.joint import (
     ElectricMotorActuatorInfo,
     JointControlInfo_ExternalDevice,
     JointControlInfo_IO,
     JointControlInfo_RobotController,
     JointControlMode,
+    JointInfo,
 )
-from ravemj.rave.infos.robot import AttachedSensorInfo, GripperInfo, ManipulatorInfo
+from ravemj.rave.infos.link import LinkInfo
 
 __all__ = [
     "AttachedSensorInfo",

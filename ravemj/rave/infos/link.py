@@ -19,9 +19,8 @@ from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import ParameterFields, info_class, json_field, pose
+from ravemj.rave.infos.base import POSE, TEXT, Form, ParameterFields, info_class, infos, json_field, lengths, pose
 from ravemj.rave.infos.geometry import GeometryInfo
-from ravemj.rave.infos.json import POSE, TEXT, Form, infos, lengths
 
 if TYPE_CHECKING:
     from ravemj.model.builder import LinkBuilder

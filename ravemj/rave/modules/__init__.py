@@ -1,21 +1,18 @@
 """Modules, under OpenRAVE's names: they plan and execute motions.
 
 ``motions`` plans and executes a motion; ``base_manipulation`` and ``task_manipulation`` are the motions of the modules
-of these names. ``commands`` offers them as text commands, which ``tokens`` parses.
+of these names. ``commands`` offers them as text commands.
 """
 
 import logging
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ravemj.rave.interface import asked_for
-from ravemj.rave.module import Command, Module
+from ravemj.rave.interface import Command, Module, asked_for
 from ravemj.rave.modules.base_manipulation import BaseManipulation
-from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, commands_of
+from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, Tokens, commands_of, scene_module
 from ravemj.rave.modules.motions import Manipulation
-from ravemj.rave.modules.scene_saver import scene_module
 from ravemj.rave.modules.task_manipulation import TaskManipulation
-from ravemj.rave.modules.tokens import Tokens
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -8,34 +8,31 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.arm_search import ArmSearch
-from ravemj.manipulation.bodies import Bodies
-from ravemj.planning.edges import nearby
+from ravemj.manipulation.motions import follow_goals, free_configuration, place_for_others
+from ravemj.manipulation.options import JitterMotion, JointMotion, StraightMotion, ToolMotion, UnsyncMotion
+from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.rrt import MoreGoals
-from ravemj.planning.tracking import LARGEST_JUMP, track
 from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.modules.motions import Manipulation, Postprocessing, SearchOptions
+from ravemj.rave.modules.motions import Manipulation, Postprocessing
 from ravemj.rave.planning.names import is_planner
-from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
 _CHECKED = int(IkFilterOptions.CheckEnvCollisions)
 
-HAND_SEARCH = SearchOptions(maxtries=3, jitter=0.03)
-"""OpenRAVE's defaults for motions to poses of the tool."""
-
 
 class BaseManipulation(Manipulation):
     """Plans motions of the active DOFs, of an arm, or of its tool."""
 
-    def move_manipulator(self, goals: Sequence[Floats], search: SearchOptions) -> Trajectory:
+    def move_manipulator(self, goals: Sequence[Floats], options: JointMotion) -> Trajectory:
         """Return a motion of the active manipulator's arm to one of several goals, each of shape (arm dof,).
 
         Raises:
             PlanningError: no motion was found.
         """
-        return self.move_joints(goals, search, dofs=self.arm().description.arm_dofs)
+        return self.move_joints(goals, options, dofs=self.arm().description.arm_dofs)
 
     def arm(self) -> Manipulator:
         """Return the active manipulator.
@@ -51,11 +48,9 @@ class BaseManipulation(Manipulation):
     def move_to_hand_position(
         self,
         goals: Sequence[IkParameterization],
-        search: SearchOptions,
+        options: ToolMotion,
         *,
-        seedik: int = 8,
-        goalsamples: int = 40,
-        goalsampleprob: float = 0.1,
+        constraint: ToolConstraint | None = None,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
     ) -> Trajectory:
@@ -63,10 +58,8 @@ class BaseManipulation(Manipulation):
 
         Args:
             goals: The goals of the tool.
-            search: The effort of the search.
-            seedik: The number of IK solutions that are goals from the start.
-            goalsamples: The largest number of IK solutions that are goals.
-            goalsampleprob: The fraction of the iterations that ask for a further IK solution.
+            options: The effort of the search.
+            constraint: The constraint of the tool along the whole motion; None for none.
             starts: The possible starts of the arm; by default its current values.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
 
@@ -76,6 +69,7 @@ class BaseManipulation(Manipulation):
         """
         if not goals:
             raise PlanningError("there is no goal")
+        seedik, goalsamples = options.seedik, options.goalsamples
         if min(seedik, goalsamples) < 0:
             raise ArgumentError(f"seedik is {seedik} and goalsamples {goalsamples}, and both should be 0 or more")
         manip = self._solvable()
@@ -84,9 +78,16 @@ class BaseManipulation(Manipulation):
         if not found:
             raise PlanningError("inverse kinematics (IK) has no solution without collisions for any of the goals")
         rest = islice(stream, goalsamples - len(found))
-        more = MoreGoals(lambda: next(rest, None), goalsampleprob)
-        dofs = manip.description.arm_dofs
-        return self.move_joints(found, search, dofs=dofs, starts=starts, postprocessing=postprocessing, more=more)
+        more = MoreGoals(lambda: next(rest, None), options.goalsampleprob)
+        return self.move_joints(
+            found,
+            options,
+            dofs=manip.description.arm_dofs,
+            starts=starts,
+            postprocessing=postprocessing,
+            more=more,
+            constraint=constraint,
+        )
 
     def _solvable(self) -> Manipulator:
         manip = self.arm()
@@ -97,27 +98,20 @@ class BaseManipulation(Manipulation):
     def move_hand_straight(
         self,
         direction: Floats,
-        *,
-        stepsize: float = 0.01,
-        minsteps: int = 0,
-        maxsteps: int = 10000,
+        options: StraightMotion,
         starteematrix: Floats | None = None,
-        ignorefirstcollision: float = 0.1,
     ) -> Trajectory:
         """Return a motion of the arm that moves its tool along a straight line, as far as the arm can follow.
 
         Args:
             direction: The direction of the line in the world, of any length, shape (3,).
-            stepsize: The distance between consecutive poses of the tool [m].
-            minsteps: The smallest number of steps.
-            maxsteps: The largest number of steps.
+            options: Its steps.
             starteematrix: ``T_world_tool`` at the start; by default the current pose.
-            ignorefirstcollision: The length of the line, from its start, in which collisions do not count [m].
 
         Raises:
             PlanningError: the arm can follow for less than ``minsteps`` steps.
         """
-        length = float(np.linalg.norm(direction))
+        length, stepsize = float(np.linalg.norm(direction)), options.stepsize
         if not (np.isfinite(length) and length > 0 and stepsize > 0):
             raise ArgumentError(f"direction {direction.tolist()} and stepsize {stepsize:g} should not be 0")
         manip = self._solvable()
@@ -126,20 +120,20 @@ class BaseManipulation(Manipulation):
         present, reached = manip.GetArmDOFValues(), 0
         firsts = [present]
         if starteematrix is not None:
-            firsts = _search(manip, T_world_tool, check=ignorefirstcollision < 0).every()
+            firsts = _search(manip, T_world_tool, options.ignorefirstcollision < 0).every()
             firsts.sort(key=lambda row: float(np.abs(row - present).max()))
 
         def pose(number: int) -> tuple[Floats, bool]:
             T_world_goal = T_world_tool.copy()
             T_world_goal[:3, 3] += step * number
-            return T_world_goal, number * stepsize > ignorefirstcollision
+            return T_world_goal, number * stepsize > options.ignorefirstcollision
 
         for row in firsts:
-            rows = self.follow(manip, pose, maxsteps, row)
+            rows = self.follow(manip, pose, options.maxsteps, row)
             reached = max(reached, len(rows) - 1)
-            if reached >= max(minsteps, 1):
+            if reached >= max(options.minsteps, 1):
                 return self.straight(rows, manip.description.arm_dofs)
-        raise PlanningError(f"the tool gets {reached} steps far, and should get {max(minsteps, 1)}")
+        raise PlanningError(f"the tool gets {reached} steps far, and should get {max(options.minsteps, 1)}")
 
     def follow(
         self, manip: Manipulator, pose: Callable[[int], tuple[Floats, bool]], count: int, first: Floats
@@ -153,24 +147,13 @@ class BaseManipulation(Manipulation):
             first: The joint values to start from, shape (n,), which are the first row.
         """
         space = self.stated(manip.description.arm_dofs).space()
-
-        def solve(number: int, near: Floats) -> list[Floats]:
-            if not number:
-                return [first]
-            T_world_tool, check = pose(number)
-            row = _search(manip, T_world_tool, check=check).near(near, LARGEST_JUMP)
-            return [] if row is None else [row]
-
-        return track(space, count + 1, first, solve, lambda number, before, after: True)
+        return follow_goals(space, first, count, lambda number: _search(manip, *pose(number)))
 
     def move_unsync_joints(
         self,
         hand: Floats,
         indices: Sequence[int],
-        *,
-        maxtries: int = 1,
-        maxdivision: int = 10,
-        planner: str = "BasicRRT",
+        options: UnsyncMotion,
     ) -> Trajectory:
         """Return a motion of the active DOFs to a place where other joints can reach given values without collisions.
 
@@ -179,41 +162,24 @@ class BaseManipulation(Manipulation):
         Args:
             hand: The values for the other joints.
             indices: The DOF indices of the other joints.
-            maxtries: The number of attempts.
-            maxdivision: The number of steps in which the motion of the other joints is tested.
-            planner: The name of the planner.
+            options: How to look for the place.
 
         Raises:
             PlanningError: no motion was found.
         """
-        robot = self.robot
+        maxdivision = options.maxdivision
         if not np.isfinite(hand).all() or maxdivision < 1:
             message = f"jointvalues are {hand.tolist()} in {maxdivision} divisions"
             raise ArgumentError(f"{message}, and should be finite numbers in 1 at least")
-        values, before = self.stated(), robot.GetDOFValues(indices)
+        values, others = self.stated(), self.bodies_of(indices)
         space, here = values.space(), values.vectors["_vinitialconfig"]
-        moving = self.bodies_of(indices)
-        test = values.conditions.allowed()
-
-        def hand_can_move(active: Floats) -> bool:
-            if not test(active):
-                return False
-            try:
-                parts = np.linspace(0.0, 1.0, maxdivision + 1)[1:]
-                return all(_free(moving, before + part * (hand - before)) for part in parts)
-            finally:
-                moving.move(before)
-
-        farthest = float((space.upper - space.lower).max())
-        for attempt in range(maxtries):
-            with values.conditions.kept(), moving.kept():
-                random = np.random.default_rng(attempt)
-                goal = nearby(space, here, hand_can_move, 1000, farthest, random)
+        for attempt in range(options.maxtries):
+            goal = place_for_others(values.conditions, space, here, others, hand, maxdivision, attempt)
             if goal is None:
                 continue
             if goal is here:
                 return self.straight(here[None])
-            found = self._by(planner, lambda goal=goal: self.move_joints([goal], SearchOptions()))
+            found = self._by(options.planner, lambda goal=goal: self.move_joints([goal], JointMotion()))
             if found is not None:
                 return found
         raise PlanningError("there is no place where the joints can move to their values")
@@ -227,27 +193,20 @@ class BaseManipulation(Manipulation):
         finally:
             self.planner = old
 
-    def jitter_active(self, maxiter: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
-        """Return a free configuration of the active DOFs within ``jitter`` [rad or m], and the straight motion to it.
+    def jitter_active(self, options: JitterMotion) -> tuple[Floats, Trajectory]:
+        """Return a free configuration of the active DOFs near the current one, and the straight motion to it.
 
         Raises:
-            PlanningError: none of ``maxiter`` random configurations is free of collisions.
+            PlanningError: none of the random configurations is free of collisions.
         """
         values = self.stated()
         here = values.vectors["_vinitialconfig"]
-        with values.conditions.kept():
-            random = np.random.default_rng(0)
-            found = nearby(values.space(), here, values.conditions.allowed(), maxiter, jitter, random)
+        found = free_configuration(values.conditions, values.space(), here, options.maxiter, options.jitter)
         if found is None:
-            raise PlanningError(f"{maxiter} configurations within {jitter:g} are all in collision")
+            raise PlanningError(f"{options.maxiter} configurations within {options.jitter:g} are all in collision")
         return found, self.straight(here[None] if found is here else np.stack([here, found]))
 
 
-def _free(bodies: Bodies, values: Floats) -> bool:
-    bodies.move(values)
-    return not bodies.collision()
-
-
-def _search(manip: Manipulator, T_world_tool: Floats, *, check: bool) -> ArmSearch:
+def _search(manip: Manipulator, T_world_tool: Floats, check: bool) -> ArmSearch:
     options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions
     return manip.search(T_world_tool, int(options))

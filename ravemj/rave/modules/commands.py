@@ -1,30 +1,170 @@
-"""The commands of the modules for manipulation, as text."""
+"""The arguments of commands: texts and numbers, taken off a line one after the other."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import wraps
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import matrixFromPose
-from ravemj.rave.module import Command
-from ravemj.rave.modules.base_manipulation import HAND_SEARCH, BaseManipulation
+from ravemj.manipulation.options import (
+    GraspMotion,
+    JitterMotion,
+    JointMotion,
+    StraightMotion,
+    ToolMotion,
+    UnsyncMotion,
+    chosen,
+)
+from ravemj.rave.interface import Command, Module
+from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspQuery
-from ravemj.rave.modules.motions import Manipulation, Options, SearchOptions, constraint_of
+from ravemj.rave.modules.motions import Manipulation, Options, constraint_of, tool_constraint
 from ravemj.rave.modules.task_manipulation import TaskManipulation
-from ravemj.rave.modules.tokens import Reader, Tokens, flag, read_options, switch, text
-from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+
+class Tokens:
+    """The tokens of a text, taken one after the other.
+
+    Attributes:
+        words: The tokens that are left.
+    """
+
+    def __init__(self, text: str) -> None:
+        self.words = text.split()
+
+    def next(self, wanted: str = "a word") -> str:
+        """Return the next token.
+
+        Raises:
+            ArgumentError: there is none.
+        """
+        if not self.words:
+            raise ArgumentError(f"the text ends where {wanted} should follow")
+        return self.words.pop(0)
+
+    def __bool__(self) -> bool:
+        return bool(self.words)
+
+    def number(self) -> float:
+        """Return the next token as a number.
+
+        Raises:
+            ArgumentError: the token is not a number.
+        """
+        word = self.next("a number")
+        try:
+            return float(word)
+        except ValueError:
+            raise ArgumentError(f"'{word}' should be a number") from None
+
+    def integer(self) -> int:
+        """Return the next token as an integer."""
+        number = self.number()
+        if not number.is_integer():
+            raise ArgumentError(f"{number:g} should be a whole number")
+        return int(number)
+
+    def count(self) -> int:
+        """Return the next token as a number of things that follow."""
+        count = self.integer()
+        if count < 0:
+            raise ArgumentError(f"{count} should be how many follow, 0 or more")
+        return count
+
+    def numbers(self, count: int) -> Floats:
+        """Return the next tokens as numbers, shape (count,)."""
+        return np.array([self.number() for _ in range(count)])
+
+    def rows(self, width: int) -> Floats:
+        """Return rows of numbers, shape (n, width); the number of rows is the first token."""
+        return self.numbers(self.count() * width).reshape(-1, width)
+
+    def list(self) -> Floats:
+        """Return numbers, shape (n,); the number of them is the first token."""
+        return self.numbers(self.count())
+
+    def matrix(self) -> Floats:
+        """Return a pose, shape (4, 4), from 12 numbers by columns, as OpenRAVE writes it."""
+        pose = np.eye(4)
+        pose[:3] = self.numbers(12).reshape(4, 3).T
+        return pose
+
+
+Reader = Callable[[Tokens], Any]
+
+
+def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
+    """Return the options in a text: names, each followed by the tokens that its reader takes.
+
+    Raises:
+        ArgumentError: an option is unknown, or is followed by wrong tokens.
+    """
+    tokens, found = Tokens(text), dict[str, Any]()
+    while tokens:
+        name = tokens.next().lower()
+        if name not in readers:
+            raise ArgumentError(f"the command has no argument '{name}'; it takes {', '.join(readers)}")
+        try:
+            found[name] = readers[name](tokens)
+        except ArgumentError as error:
+            raise ArgumentError(f"{name}: {error.message}") from None
+    return found
+
+
+def switch(tokens: Tokens) -> bool:
+    """Return True for an option without a value."""
+    del tokens
+    return True
+
+
+def flag(tokens: Tokens) -> bool:
+    """Return whether the next token is not 0."""
+    return bool(tokens.number())
+
+
+def text(tokens: Tokens) -> str:
+    """Return the next token."""
+    return tokens.next()
+
+
+_READERS: Mapping[object, Reader] = {int: Tokens.integer, float: Tokens.number, bool: flag, str: text}
+
+
+def readers_of(kind: type) -> dict[str, Reader]:
+    """Return what reads the options of a motion, by their types."""
+    return {row.name: _READERS[row.type] for row in fields(kind)}
+
+
+def scene_module(env: "Environment", xmlid: str) -> Module:
+    """Make a module that saves all bodies of an environment."""
+
+    def savescene(arguments: str) -> str:
+        """Save all bodies as OpenRAVE XML: ``savescene filename F``; meshes go into the folder ``meshes`` beside F."""
+        options = read_options(arguments, {"filename": text})
+        if not options:
+            raise ArgumentError("savescene: give the file: savescene filename F")
+        env.Save(options["filename"], atts={"format": "openrave"})
+        return ""
+
+    return Module(env, xmlid, lambda arguments: None, {"savescene": savescene})
+
 
 Kind = TypeVar("Kind", bound=Manipulation)
 
 _OUTPUT: Mapping[str, Reader] = {"execute": flag, "outputtraj": switch}
 _SEARCH: Mapping[str, Reader] = {
-    **{"maxiter": Tokens.integer, "maxtries": Tokens.integer, "jitter": Tokens.number, "steplength": Tokens.number},
+    **readers_of(JointMotion),
     **_OUTPUT,
 }
 
@@ -72,60 +212,56 @@ def _move_active_joints(base: BaseManipulation, arguments: str) -> str:
     options = read_options(arguments, readers)
     goals, starts = [*options.get("goal", ()), *options.get("goals", ())], options.get("initialconfigs", ())
     post = (options["postprocessingplanner"], "") if "postprocessingplanner" in options else None
-    search = SearchOptions().changed(options)
-    return _reply(base, base.move_joints(goals, search, starts=starts, postprocessing=post), options)
+    traj = base.move_joints(goals, chosen(JointMotion, options), starts=starts, postprocessing=post)
+    return _reply(base, traj, options)
 
 
 def _move_manipulator(base: BaseManipulation, arguments: str) -> str:
     """Moves the arm of the active manipulator to one of several goals without collisions."""
     options = read_options(arguments, {**_SEARCH, **_goals(base.arm().GetArmDOF())})
     goals = [*options.get("goal", ()), *options.get("goals", ())]
-    return _reply(base, base.move_manipulator(goals, SearchOptions().changed(options)), options)
+    return _reply(base, base.move_manipulator(goals, chosen(JointMotion, options)), options)
 
 
 def _move_to_hand_position(base: BaseManipulation, arguments: str) -> str:
     """Moves the tool of the active manipulator to one of several poses without collisions."""
     readers: dict[str, Reader] = {**_SEARCH, **_TOOL_GOAL}
     readers |= {name: _several(_TOOL_GOAL[one]) for name, one in _TOOL_GOALS.items()}
-    readers |= dict.fromkeys(("goalsamples", "goalmaxsamples", "seedik"), Tokens.integer)
-    readers |= dict.fromkeys(("goalsampleprob", "goalmaxtries", "minimumgoalpaths"), Tokens.number)
+    readers |= {"goalmaxsamples": Tokens.integer, **readers_of(ToolMotion)}
+    readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Tokens.number)
     readers |= {"initialconfigs": _rows(base.arm().GetArmDOF())}
     options = read_options(arguments, {**readers, **_CONSTRAINT})
     goals = [options[name] for name in _TOOL_GOAL if name in options]
     goals += [goal for name in _TOOL_GOALS for goal in options.get(name, ())]
     if "goalmaxsamples" in options:
         options.setdefault("goalsamples", options["goalmaxsamples"])
-    given = _some(options, "seedik", "goalsamples", "goalsampleprob")
-    starts, search = options.get("initialconfigs", ()), HAND_SEARCH.changed(options)
-    traj = base.move_to_hand_position(goals, search, starts=starts, **given)
+    starts, constraint = options.get("initialconfigs", ()), tool_constraint(options)
+    traj = base.move_to_hand_position(goals, chosen(ToolMotion, options), constraint=constraint, starts=starts)
     return _reply(base, traj, options, "1 " if options.get("outputtraj") else "1")
 
 
 def _move_hand_straight(base: BaseManipulation, arguments: str) -> str:
     """Moves the tool of the active manipulator along a straight line."""
     readers: dict[str, Reader] = {**_OUTPUT, "direction": lambda tokens: tokens.numbers(3), "greedysearch": flag}
-    readers |= {"minsteps": Tokens.integer, "maxsteps": Tokens.integer, "starteematrix": Tokens.matrix}
-    readers |= dict.fromkeys(("stepsize", "ignorefirstcollision", "maxdeviationangle", "steplength"), Tokens.number)
+    readers |= {**readers_of(StraightMotion), "starteematrix": Tokens.matrix}
+    readers |= dict.fromkeys(("maxdeviationangle", "steplength"), Tokens.number)
     options = read_options(arguments, {**readers, "planner": text})
-    given = _some(options, "stepsize", "minsteps", "maxsteps", "starteematrix", "ignorefirstcollision")
-    return _reply(base, base.move_hand_straight(options.get("direction", np.zeros(3)), **given), options)
+    direction, start = options.get("direction", np.zeros(3)), options.get("starteematrix")
+    return _reply(base, base.move_hand_straight(direction, chosen(StraightMotion, options), start), options)
 
 
 def _move_unsync_joints(base: BaseManipulation, arguments: str) -> str:
     """Moves the active DOFs to where other joints can move to values without collisions."""
-    readers: dict[str, Reader] = {**_OUTPUT, "handjoints": _hand, "planner": text}
-    readers |= {"maxtries": Tokens.integer, "maxdivision": Tokens.integer}
+    readers: dict[str, Reader] = {**_OUTPUT, "handjoints": _hand, **readers_of(UnsyncMotion)}
     options = read_options(arguments, readers)
     hand, indices = options.get("handjoints", (np.zeros(0), []))
-    traj = base.move_unsync_joints(hand, indices, **_some(options, "maxtries", "maxdivision", "planner"))
-    return _reply(base, traj, options)
+    return _reply(base, base.move_unsync_joints(hand, indices, chosen(UnsyncMotion, options)), options)
 
 
 def _jitter_active(base: BaseManipulation, arguments: str) -> str:
     """Moves the active DOFs a little, out of collision."""
-    readers: dict[str, Reader] = {**_OUTPUT, "maxiter": Tokens.integer, "jitter": Tokens.number}
-    options = read_options(arguments, {**readers, "outputfinal": switch})
-    return _final_and_reply(base, base.jitter_active(**_some(options, "maxiter", "jitter")), options)
+    options = read_options(arguments, {**_OUTPUT, **readers_of(JitterMotion), "outputfinal": switch})
+    return _final_and_reply(base, base.jitter_active(chosen(JitterMotion, options)), options)
 
 
 BASE_COMMANDS: Mapping[str, Callable[[BaseManipulation, str], str | None]] = {
@@ -178,9 +314,8 @@ def _grasp_planning(task: TaskManipulation, arguments: str) -> str:
     if target is None:
         raise PlanningError(f"there is no body '{options.get('target', '')}'")
     indices, places = _some(options, *GRASP_COLUMNS), [*options.get("posedests", ()), *options.get("matdests", ())]
-    given = _some(options, *(one.name for one in fields(GraspQuery) if one.name not in {"target", "grasps"}))
-    query = GraspQuery(target, options.get("grasps", np.zeros((0, 0))), indices, places=places, **given)
-    plan = task.plan_grasp(query)
+    grasps = options.get("grasps", np.zeros((0, 0)))
+    plan = task.plan_grasp(GraspQuery(target, grasps, indices, places, chosen(GraspMotion, options)))
     goals = "".join(f"{goal} " for goal in plan.goals)
     return _reply(task, plan.traj, options, f"{len(plan.goals)} {goals}{plan.number} {plan.seconds!r} ")
 
@@ -267,8 +402,7 @@ GRASP_COLUMNS = (
 
 _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),
-    **dict.fromkeys(("seedgrasps", "seeddests", "seedik", "maxiter"), Tokens.integer),
-    **dict.fromkeys(("randomgrasps", "randomdests"), flag),
-    **dict.fromkeys(("approachoffset", "grasptranslationstepmult", "graspfinestep", "steplength"), Tokens.number),
+    **readers_of(GraspMotion),
+    **dict.fromkeys(("grasptranslationstepmult", "graspfinestep"), Tokens.number),
     **{"grasps": _table, "target": text, "posedests": _several(_pose), "matdests": _several(Tokens.matrix)},
 }

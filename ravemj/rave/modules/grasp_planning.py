@@ -10,13 +10,12 @@ import numpy as np
 from ravemj.core.blocks import block
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.options import GraspMotion, JointMotion
 from ravemj.rave.enums import IkFilterOptions, SaveParameters
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.base_manipulation import BaseManipulation
-from ravemj.rave.modules.motions import SearchOptions
-from ravemj.rave.planning.status import PlanningError
-from ravemj.rave.planning.values import STEP_LENGTH
+from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
@@ -42,29 +41,15 @@ class GraspQuery:
             12 numbers by columns) or ``grasptrans_nocol``, which has precedence; ``igraspdir`` (the approach direction
             of the hand in the target frame), ``imanipulatordirection`` (the same in the tool frame), ``igrasppreshape``
             (the values of the gripper).
-        approachoffset: The distance from the grasp at which the motion ends [m].
         places: ``T_world_target`` of places to put the target down; a grasp has to reach one of them.
-        seedgrasps: The number of reachable grasps that are goals of one plan.
-        seeddests: The number of places that are looked for with each grasp.
-        seedik: The number of IK solutions of each grasp that are goals; 0 for all.
-        maxiter: The maximum number of iterations of the planner.
-        steplength: The step of the planner's trees, a weighted distance of configurations.
-        randomgrasps: Whether to try the grasps in random order.
-        randomdests: Whether to try the places in random order.
+        options: How to choose.
     """
 
     target: KinBody
     grasps: Floats
     indices: Mapping[str, int]
-    approachoffset: float = 0.0
-    places: Sequence[Floats] = ()
-    seedgrasps: int = 20
-    seeddests: int = 5
-    seedik: int = 0
-    maxiter: int = 4000
-    steplength: float = STEP_LENGTH
-    randomgrasps: bool = True
-    randomdests: bool = True
+    places: Sequence[Floats]
+    options: GraspMotion
 
 
 class GraspPlan(NamedTuple):
@@ -107,12 +92,12 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
         raise PlanningError(f"manipulator '{manip.GetName()}' has no solver of inverse kinematics (IK)")
     seconds, reachable, refused = 0.0, 0, "no grasp can be reached without collisions"
     found = _Candidates(base, manip, query).all()
-    while batch := _first(found, max(1, query.seedgrasps)):
+    while batch := _first(found, max(1, query.options.seedgrasps)):
         reachable += len(batch)
         begin = time.perf_counter()
         try:
-            search = SearchOptions(1, query.maxiter, query.steplength, jitter=0.03)
-            traj, chosen = _planned(base, manip, batch, search)
+            effort = JointMotion(query.options.maxiter, 1, 0.03, query.options.steplength)
+            traj, chosen = _planned(base, manip, batch, effort)
         except PlanningError as error:
             refused = f"{reachable} grasps can be reached, and there is no way to them: {error}"
             continue
@@ -127,7 +112,7 @@ def _first(found: Iterator[_Candidate], count: int) -> list[_Candidate]:
 
 
 def _planned(
-    base: BaseManipulation, manip: Manipulator, batch: Sequence[_Candidate], search: SearchOptions
+    base: BaseManipulation, manip: Manipulator, batch: Sequence[_Candidate], options: JointMotion
 ) -> tuple[Trajectory, _Candidate]:
     """Return a motion to one of the candidates, and that candidate."""
     robot = base.robot
@@ -136,7 +121,7 @@ def _planned(
     dofs = [*manip.description.arm_dofs, *gripper[changed].tolist()]
     owners = [one for one in batch for _ in one.rows]
     goals = [np.append(row, one.preshape[changed]) for one in batch for row in one.rows]
-    traj = base.move_joints(goals, search, dofs=dofs)
+    traj = base.move_joints(goals, options, dofs=dofs)
     last = traj.GetWaypoint(-1, ConfigurationSpecification.of(base.groups(dofs)))
     return traj, owners[int(np.argmin([np.abs(goal - last).max() for goal in goals]))]
 
@@ -155,7 +140,7 @@ class _Candidates:
     def all(self) -> Iterator[_Candidate]:
         """Yield the reachable grasps. Between two of them, the robot and the target are in their original state."""
         count, query = len(self._query.grasps), self._query
-        for index in self._random.permutation(count).tolist() if query.randomgrasps else range(count):
+        for index in self._random.permutation(count).tolist() if query.options.randomgrasps else range(count):
             with _kept(self._base.robot, query.target):
                 candidate = self._candidate(index)
             if candidate is not None:
@@ -211,22 +196,22 @@ class _Candidates:
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
         """Return the values of the arm before a grasp from which the tool reaches it along a straight line."""
         start = T_world_tool.copy()
-        start[:3, 3] -= self._query.approachoffset * direction
+        start[:3, 3] -= self._query.options.approachoffset * direction
         rows: list[Floats] = []
         for row in self._manip.search(_goal(start), _CHECKED).every():
             if self._gets_there(row, start, direction):
                 rows.append(row)
-            if len(rows) == self._query.seedik > 0:
+            if len(rows) == self._query.options.seedik > 0:
                 break
         return rows
 
     def _gets_there(self, row: Floats, start: Floats, direction: Floats) -> bool:
-        count = int(np.ceil(self._query.approachoffset / _STEP))
+        count = int(np.ceil(self._query.options.approachoffset / _STEP))
         enabled = self._query.target.GetLinkEnableStates()
 
         def pose(number: int) -> tuple[Floats, bool]:
             T_world_goal = start.copy()
-            T_world_goal[:3, 3] += direction * (self._query.approachoffset * number / count)
+            T_world_goal[:3, 3] += direction * (self._query.options.approachoffset * number / count)
             return T_world_goal, True
 
         self._query.target.Enable(False)  # the hand may touch the body that it is about to grasp
@@ -239,12 +224,12 @@ class _Candidates:
         """Return the goals of the tool at the places where the target can be put down with a grasp."""
         query, found = self._query, list[IkParameterization]()
         count = len(query.places)
-        for place in self._random.permutation(count).tolist() if query.randomdests else range(count):
+        for place in self._random.permutation(count).tolist() if query.options.randomdests else range(count):
             T_world_target = query.places[place]
             goal = _goal(T_world_target @ T_target_tool)
             if self._is_free(T_world_target) and self._is_reached(goal):
                 found.append(goal)
-            if len(found) == query.seeddests > 0:
+            if len(found) == query.options.seeddests > 0:
                 break
         return found
 

@@ -3,7 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from operator import is_not
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,12 +11,13 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.bodies import Bodies
 from ravemj.manipulation.motions import jittered
+from ravemj.manipulation.options import JointMotion
 from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
-from ravemj.rave.planning.status import PlannerStatus, PlanningError
-from ravemj.rave.planning.values import STEP_LENGTH, Values, hand_of
+from ravemj.rave.planning.planner import PlannerStatus, PlanningError
+from ravemj.rave.planning.values import Values, hand_of
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
@@ -36,32 +37,7 @@ Options = Mapping[str, Any]
 """Options of a command, by their names."""
 
 
-class SearchOptions(NamedTuple):
-    """The effort of a search, and the constraint on its result.
-
-    Attributes:
-        maxtries: The number of calls of the planner, with other random numbers each time.
-        maxiter: The maximum number of iterations of each call.
-        steplength: The step of the planner's trees, a weighted distance of configurations.
-        jitter: The largest change of each value of a start or goal in collision, to make it free [rad or m]. The
-            motion between the two is not tested.
-        constraint: The constraint of the tool along the whole motion; None for none. With a constraint, starts and
-            goals are not changed, and the motion consists of short straight lines between configurations that keep it.
-    """
-
-    maxtries: int = 2
-    maxiter: int = 4000
-    steplength: float = STEP_LENGTH
-    jitter: float = 0.04
-    constraint: ToolConstraint | None = None
-
-    def changed(self, options: Options) -> "SearchOptions":
-        """Return the effort with some options of a command in place of those here."""
-        given = {name: options[name] for name in ("maxiter", "maxtries", "jitter", "steplength") if name in options}
-        return self._replace(**given, constraint=_tool_constraint(options))
-
-
-def _tool_constraint(options: Options) -> ToolConstraint | None:
+def tool_constraint(options: Options) -> ToolConstraint | None:
     """Return the constraint of the tool that options of a motion ask for; None where they leave it free."""
     given = [name for name in options if name.startswith("constraint")]
     if given and "constraintfreedoms" not in given:
@@ -132,36 +108,39 @@ class Manipulation:
     def move_joints(
         self,
         goals: Sequence[Floats],
-        search: SearchOptions,
+        options: JointMotion,
         *,
         dofs: Sequence[int] | None = None,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
         more: MoreGoals | None = None,
+        constraint: ToolConstraint | None = None,
     ) -> Trajectory:
         """Return a motion of some joints to one of several goals.
 
         Args:
             goals: The goals, each of shape (n,); values outside the limits are set to the limits.
-            search: The effort of the search.
+            options: The effort of the options.
             dofs: The DOF indices of the joints; None for what is active.
             starts: The possible starts; by default the current configuration.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
             more: A source of further goals while the planner works.
+            constraint: The constraint of the tool along the whole motion, which then consists of short straight lines
+                between configurations that keep it.
 
         Raises:
             PlanningError: no motion was found; the message says why.
             ArgumentError: a goal or start has another shape, or is not finite; or the step length is not positive.
         """
-        if not search.steplength > 0:
-            raise ArgumentError(f"steplength: is {search.steplength:g}, and should be more than 0")
-        values, jitter = self.stated(dofs), search.jitter
+        if not options.steplength > 0:
+            raise ArgumentError(f"steplength: is {options.steplength:g}, and should be more than 0")
+        values, jitter = self.stated(dofs), options.jitter
         _check(goals, starts, count(values.groups))
         values.goal_sampler = more
-        values.numbers["_nmaxiterations"] = search.maxiter
-        values.numbers["_fsteplength"] = search.steplength
-        if search.constraint is not None:
-            values.conditions.manifold = hand_of(self.env, values).tool.to_constraint(search.constraint)
+        values.numbers["_nmaxiterations"] = options.maxiter
+        values.numbers["_fsteplength"] = options.steplength
+        if constraint is not None:
+            values.conditions.manifold = hand_of(self.env, values).tool.to_constraint(constraint)
             values.postprocessing, jitter = ("LinearTrajectoryRetimer", ""), 0.0
         values.postprocessing = postprocessing or values.postprocessing
         space, conditions = values.space(), values.conditions
@@ -169,7 +148,7 @@ class Manipulation:
         moved = [jittered(conditions, space, some, jitter) for some in wanted]
         values.vectors |= {"_vinitialconfig": np.array(moved[0]).ravel(), "_vgoalconfig": np.array(moved[1]).ravel()}
         status = PlannerStatus("no attempt was allowed; give at least one try")
-        for attempt in range(search.maxtries):
+        for attempt in range(options.maxtries):
             values.numbers["_nrandomgeneratorseed"] = attempt
             traj = Trajectory(self.env, "")
             status = needed_planner(self.env, self.planner).run(values, traj)

@@ -8,7 +8,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
-from ravemj.manipulation.bodies import Bodies
+from ravemj.manipulation.motions import move_until_contact
 from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.projection import PROJECTION_STEPS, project
 from ravemj.rave.kinbody import KinBody
@@ -16,7 +16,7 @@ from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspPlan, GraspQuery, plan_grasp
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.planning.parameters import PlannerParameters
-from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.planning.values import hand_of
 from ravemj.rave.trajectory import Trajectory
 
@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 
 _STEP = 0.01
 """The step in which joints move between two collision tests [rad or m]."""
-
-_CLOSE = 1e-6
-"""The distance from a contact within which joints stop [rad or m]."""
 
 
 class TaskManipulation(Manipulation):
@@ -120,49 +117,17 @@ class TaskManipulation(Manipulation):
         return self.straight(np.stack([self.robot.GetDOFValues(dofs), final]), dofs)
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
-        """Return the values at which joints stop: each moves until its links touch something new, or to its limit.
-
-        Joints take turns, one step each, as fingers close at the same time.
-        """
+        """Return the values at which joints stop."""
         if not (np.isfinite(directions).all() and np.isfinite(step) and step > 0):
             wanted = "finite directions, and a step above 0"
             raise ArgumentError(f"movingdir is {directions.tolist()} with steps of {step:g}, and should be {wanted}")
-        robot, sides = self.robot, np.sign(directions)
-        bodies = self.bodies_of(dofs)
-        lower, upper = robot.GetDOFLimits(dofs)
-        with bodies.kept():
-            values = bodies.values()
-            touching = [self._touches(dof) for dof in dofs]
-            moving = [place for place in range(len(dofs)) if sides[place] != 0]
-            while moving:
-                for place in tuple(moving):
-                    before = values[place]
-                    target = float(np.clip(before + sides[place] * step, lower[place], upper[place]))
-                    values[place] = target
-                    bodies.move(values)
-                    touches = self._touches(dofs[place])
-                    if touches and not touching[place]:
-                        values[place] = self._contact(bodies, values, place, before, dofs[place])
-                        moving.remove(place)
-                    elif target in {lower[place], upper[place]}:
-                        moving.remove(place)
-                    touching[place] = touches
-            return values
-
-    def _contact(self, bodies: Bodies, values: Floats, place: int, free: float, dof: int) -> float:
-        """Return the last value without contact, by bisection between a free value and the current one in contact."""
-        taken = float(values[place])
-        while abs(taken - free) > _CLOSE:
-            middle = (taken + free) / 2
-            values[place] = middle
-            bodies.move(values)
-            if self._touches(dof):
-                taken = middle
-            else:
-                free = middle
-        values[place] = free
-        bodies.move(values)
-        return free
+        return move_until_contact(
+            self.bodies_of(dofs),
+            self.robot.GetDOFLimits(dofs),
+            np.sign(directions),
+            step,
+            lambda joint: self._touches(dofs[joint]),
+        )
 
     def _touches(self, dof: int) -> bool:
         """Return whether a link that a joint moves touches another body, or a link that does not move with it."""

@@ -7,7 +7,6 @@ planner from its name.
 
 from ravemj.rave.planning.names import RaveCreatePlanner
 from ravemj.rave.planning.parameters import PlannerParameters
-from ravemj.rave.planning.planner import Planner
-from ravemj.rave.planning.status import PlannerProgress, PlannerStatus, PlanningError
+from ravemj.rave.planning.planner import Planner, PlannerProgress, PlannerStatus, PlanningError
 
 __all__ = ["Planner", "PlannerParameters", "PlannerProgress", "PlannerStatus", "PlanningError", "RaveCreatePlanner"]

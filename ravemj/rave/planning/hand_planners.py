@@ -16,12 +16,10 @@ from ravemj.planning.projection import descend
 from ravemj.planning.rrt import Budget, End, Search
 from ravemj.planning.tracking import LARGEST_JUMP, track
 from ravemj.rave.enums import PlannerStatusCode
-from ravemj.rave.planning.parameter_text import CHAIN
 from ravemj.rave.planning.path_planners import PathPlanner
-from ravemj.rave.planning.planner import Planner
+from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.processing import post_process
-from ravemj.rave.planning.status import PlannerStatus
-from ravemj.rave.planning.values import Hand, Values, hand_of
+from ravemj.rave.planning.values import CHAIN, Hand, Values, hand_of
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories import extraction

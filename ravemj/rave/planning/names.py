@@ -13,9 +13,8 @@ from ravemj.rave.interface import asked_for
 from ravemj.rave.planning.hand_planners import GraspGradient, WorkspaceTrajectoryTracker
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
-from ravemj.rave.planning.planner import Planner
+from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.processing import TRAJECTORY_PLANNERS
-from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import is_position
@@ -82,7 +81,7 @@ def _maker(name: str) -> "Callable[[Environment, str], Planner] | None":
         return None
     if not name.lower().startswith("ompl_"):
         return PLANNERS.get(name.lower())
-    from ravemj.rave.planning.ompl_planners import OmplPlanner, is_ompl_planner  # noqa: PLC0415 - slow to import
+    from ravemj.rave.planning.path_planners import OmplPlanner, is_ompl_planner  # noqa: PLC0415 - slow to import
 
     return OmplPlanner if is_ompl_planner(name) else None
 

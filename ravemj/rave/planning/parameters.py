@@ -1,4 +1,4 @@
-"""The parameters of a planner."""
+"""Reads and writes planner parameters as OpenRAVE's XML."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -17,8 +17,7 @@ from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.manipulation.bodies import ALL, FREE, Bodies, Constraint
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import Interval
-from ravemj.rave.planning.parameter_text import parameters_text
-from ravemj.rave.planning.values import Values
+from ravemj.rave.planning.values import Values, parameters_text
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification

@@ -1,8 +1,9 @@
 """Planners that find a path without collisions."""
 
+import logging
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from itertools import pairwise
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -10,14 +11,14 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.motions import RefusedError, allowed_ends, find_path, refusal
-from ravemj.planning.edges import Allowed, Edges
+from ravemj.planning.edges import Allowed
+from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
 from ravemj.planning.problem import Problem
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
 from ravemj.rave.enums import PlannerAction, PlannerStatusCode
-from ravemj.rave.planning.planner import Planner
+from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.processing import post_process
-from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Values
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.waypoints import Waypoints
@@ -90,14 +91,12 @@ class PathPlanner(Planner):
             problem = self._stated(values)
             if isinstance(problem, PlannerStatus):
                 return problem
-            search = find_path(problem, lambda problem: self._search(problem, values))
+            spacing = 0.0 if values.postprocessing[0] else _SPACING * values.numbers["_fsteplength"]
+            search = find_path(problem, lambda problem: self._search(problem, values), spacing)
         self._search_made = search
         if search.path is None:
             return self._ended(search)
-        spaced = search.path
-        if not values.postprocessing[0]:
-            spaced = _spaced(problem.edges, spaced, values.numbers["_fsteplength"])
-        traj.set_waypoints(Waypoints(values.groups, spaced))
+        traj.set_waypoints(Waypoints(values.groups, search.path))
         return self._processed(values, traj, search)
 
     @abstractmethod
@@ -193,13 +192,47 @@ def _more_goals(values: Values, allowed: Allowed) -> MoreGoals | None:
     return MoreGoals(next_goal, sampler.probability)
 
 
-def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
-    """Return a path with additional waypoints on its lines, at most ``_SPACING`` step lengths apart."""
-    space = edges.space
-    rows = [path[:1]]
-    for start, end in pairwise(path):
-        far = space.distance(end, start)
-        count = max(1, int(np.ceil(far / (_SPACING * step_length)))) if step_length > 0 else 1
-        parts = np.arange(1, count)[:, None] / count
-        rows += [start + parts * space.difference(end, start), end[None]]
-    return np.concatenate(rows)
+_LOG = logging.getLogger("ravemj")
+
+PREFIX = "ompl_"
+"""The prefix of the names, in lower case."""
+
+
+def is_ompl_planner(name: str) -> bool:
+    """Return whether OMPL has a planner of a name. If OMPL is not installed, log how to install it."""
+    classes = planner_classes()
+    if classes is None:
+        _LOG.warning("planner '%s' needs OMPL; install it: pip install \"ravemj[planning]\"", name)
+        return False
+    return name.lower().removeprefix(PREFIX) in classes
+
+
+class OmplPlanner(PathPlanner):
+    """A path planner of OMPL.
+
+    Extra parameters of the planner are XML elements, such as ``<range>0.5</range>`` or ``<goal_bias>0.1</goal_bias>``.
+    ``<time_limit>`` is the time it may take [s], as with or_ompl. Planners that look for the best path use all of their
+    time or iterations.
+    """
+
+    def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
+        """Find a path, and process it."""
+        try:
+            return super().run(values, traj)
+        except OmplError as error:
+            return self._failed(str(error))
+
+    def _check(self, values: Values) -> None:
+        if values.conditions.manifold is not None:
+            raise ArgumentError(f"{self._xmlid} knows no constraints of the tool; birrt does")
+        super()._check(values)
+
+    def _search(self, problem: Problem, values: Values) -> Search:
+        classes = planner_classes()
+        assert classes is not None, "there would be no planner"
+        planner = classes[self._xmlid.lower().removeprefix(PREFIX)]
+        budget, tags = problem.budget, values.tags
+        if "time_limit" in tags:
+            budget = replace(budget, seconds=values.tag("time_limit", 0.0))
+        seed = int(problem.random.integers(2**31))
+        return search_with_ompl(planner, problem.edges, problem.starts, problem.goals, budget, seed, tags)

@@ -9,10 +9,8 @@ from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.manipulation.processing import RETIMERS, SMOOTHERS, Processor
 from ravemj.planning.edges import Edges
 from ravemj.planning.retiming.segments import OutsideLimitsError, RetimingError
-from ravemj.rave.planning.parameter_text import CHAIN
-from ravemj.rave.planning.planner import Planner
-from ravemj.rave.planning.status import PlannerStatus
-from ravemj.rave.planning.values import Values
+from ravemj.rave.planning.planner import Planner, PlannerStatus
+from ravemj.rave.planning.values import CHAIN, Values
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.waypoints import Waypoints
 

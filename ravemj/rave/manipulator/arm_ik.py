@@ -1,27 +1,33 @@
 """Inverse kinematics of an arm."""
 
+# ruff: noqa: PLC0415 - inverse kinematics is slow to import
+
 import logging
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, inverse, pose_of
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool, moved_goal
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
 from ravemj.manipulation.arm_search import ArmSearch
-from ravemj.model import hashes
-from ravemj.rave.arm_base import ArmPart
-from ravemj.rave.ik_search import task_of
+from ravemj.manipulation.tool import Tool
+from ravemj.model import hashes, scene
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
-from ravemj.rave.iksolver import IkSolver, split_options
+from ravemj.rave.iksolver import IkSolver, split_options, task_of
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 
 if TYPE_CHECKING:
     from ravemj.ik import IKSolver
+    from ravemj.rave.robot import Robot
+
 
 _LOG = logging.getLogger("ravemj")
 _Type = IkParameterizationType
@@ -32,6 +38,9 @@ WITH_DIRECTION = {
     _Type.TranslationDirection5D,
 }
 """Types of goals that depend on the direction of the tool."""
+
+_GONE = 1 << 30
+"""The place of a manipulator that was removed; no robot has so many."""
 
 
 class IkBatch(NamedTuple):
@@ -48,10 +57,69 @@ class IkBatch(NamedTuple):
     branches: list[str]
 
 
-class ArmIk(ArmPart):
-    """Inverse kinematics: joint values that take the tool to goals, and the goal where the tool is now."""
+class ArmIk(ApiObject):
+    """The name and the pose of an arm, and inverse kinematics: joint values for goals, and motions that keep them."""
 
-    _internal = ("search",)
+    _internal = (
+        "description",
+        "moved_up",
+        "search",
+    )
+
+    def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
+        self._robot = robot
+        self._state = state
+        self._index = index
+        self._known: Tool | None = None
+
+    @property
+    def _scene(self) -> scene.Manipulator:
+        try:
+            return self._state.scene.manipulators[self._index]
+        except IndexError:
+            message = f"'{self._robot.GetName()}' does not have this manipulator any more"
+            raise RavemjError(message, ErrorCode.InvalidState) from None
+
+    @property
+    def description(self) -> scene.Manipulator:
+        """What the model says of the manipulator."""
+        return self._scene
+
+    def moved_up(self, removed: int) -> None:
+        """Take note that the manipulator at a place was removed, which may be this one."""
+        if self._index >= removed:
+            self._index = _GONE if self._index == removed else self._index - 1
+
+    def GetName(self) -> str:
+        """Return the manipulator's name."""
+        return self._scene.name
+
+    def GetTransform(self) -> Floats:
+        """Return the pose of the tool in the world.
+
+        Returns:
+            ``T_world_tool``, shape (4, 4): that of the effector times the local tool transform.
+
+        Raises:
+            openrave_exception: the manipulator has no effector.
+        """
+        with self._state.simulation.lock:
+            return self._tool().pose(self._state)
+
+    GetEndEffectorTransform = GetGraspTransform = GetTransform
+
+    def _tool(self) -> Tool:
+        """Return the tool and the joints as arrays, which are made anew when the description is another one."""
+        arm = self._scene
+        if self._known is None or self._known.arm is not arm:
+            self._known = Tool.of(arm)
+        return self._known
+
+    def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
+        with self._state.simulation.lock:
+            arms = list(self._state.scene.manipulators)
+            arms[self._index] = replace(self._scene, **changes)
+            self._state.edit(manipulators=tuple(arms))
 
     # Solvers
 
@@ -246,7 +314,7 @@ class ArmIk(ArmPart):
         Example:
             >>> print(manip.ik_solver().describe())
         """
-        from ravemj.ik.arms import ArmSolver  # noqa: PLC0415 - slow to import
+        from ravemj.ik.arms import ArmSolver
 
         solver = self.GetIkSolver()
         try:
@@ -341,6 +409,70 @@ class ArmIk(ArmPart):
 
     def _T_world_base(self) -> Floats:
         return np.eye(4) if self._scene.base is None else self._state.link_transform(self._scene.base)
+
+    def null_space(self, iktype: IkParameterizationType = _Type.Transform6D) -> Floats:
+        """Return the joint velocities that leave the goal reached in which the tool is now.
+
+        Args:
+            iktype: What counts of where the tool is.
+
+        Returns:
+            An orthonormal basis of them, a velocity in each column, shape (arm dof, k). In singular configurations
+            there are more than elsewhere.
+
+        Example:
+            >>> velocity = 0.1 * manip.null_space()[:, 0]
+        """
+        from ravemj.ik import null_space
+
+        solver = self.ik_solver(iktype)
+        with self._state.simulation.lock:
+            return null_space(solver.chain, self._values(), solver.task, self._goal_now(iktype))
+
+    def null_space_path(
+        self, along: ArrayLike, iktype: IkParameterizationType = _Type.Transform6D, *, step: float = 0.05
+    ) -> Floats:
+        """Return configurations on a path that leaves the goal reached in which the tool is now; nothing moves.
+
+        The path ends where a joint meets its limit, where it comes back to its start, or after a length of 2 pi.
+        Nothing is tested for collision.
+
+        Args:
+            along: Joint velocities, shape (arm dof,); the path begins with what of them is in the null space.
+            iktype: What counts of where the tool is.
+            step: Distance of neighbouring configurations in joint space [rad or m].
+
+        Returns:
+            Joint values, the present ones first, shape (M, arm dof).
+
+        Raises:
+            openrave_exception: the arm cannot move that way while its goal stays reached.
+
+        Example:
+            >>> for values in manip.null_space_path([1, 0, 0, 0, 0, 0, 0]):
+            ...     robot.SetDOFValues(values, manip.GetArmIndices())
+        """
+        from ravemj.ik import null_space_path
+
+        solver = self.ik_solver(iktype)
+        wanted = checked_vector(along, len(self._scene.arm_dofs), "null_space_path: along")
+        if not (np.isfinite(step) and step > 0):
+            raise ArgumentError(f"null_space_path: step is {step}, and should be above 0")
+        with self._state.simulation.lock:
+            goal, start = self._goal_now(iktype), self._values()
+            try:
+                return null_space_path(solver, goal, start, wanted, step=step)
+            except ValueError as error:
+                raise ArgumentError(f"null_space_path: {error}") from error
+
+    def _values(self) -> Floats:
+        return self._robot.GetDOFValues(self._scene.arm_dofs)
+
+    def _goal_now(self, iktype: IkParameterizationType) -> Floats:
+        """Return where the tool is in the base of the arm, as solvers take goals."""
+        if iktype == _Type.Transform6D:
+            return inverse(self._T_world_base()) @ self.GetTransform()
+        return np.asarray(self.GetIkParameterization(iktype, inworld=False).GetValues())
 
 
 def _without_flag(arguments: tuple[object, ...], ikreturn: bool) -> tuple[tuple[object, ...], bool]:

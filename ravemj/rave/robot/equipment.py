@@ -1,28 +1,185 @@
-"""Bodies that can be connected to a robot."""
+"""Sensors that a robot carries, and bodies that can be connected to it."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Iterable
 from copy import deepcopy
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, pose_of
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.model import hashes
-from ravemj.rave.infos import ConnectedBodyInfo, GripperInfo, RobotBaseInfo
-from ravemj.rave.infos.connecting import only_parts_of, with_connected
+from ravemj.model import hashes, scene
+from ravemj.rave.enums import SensorType
+from ravemj.rave.infos import AttachedSensorInfo, ConnectedBodyInfo, GripperInfo, RobotBaseInfo
+from ravemj.rave.infos.body import only_parts_of, with_connected
+from ravemj.rave.instruments import SensorData
+from ravemj.rave.link import Link
+from ravemj.rave.sensors import Sensor
 
 if TYPE_CHECKING:
-    from ravemj.rave.attached_sensor import AttachedSensor
     from ravemj.rave.joint import Joint
-    from ravemj.rave.link import Link
     from ravemj.rave.manipulator import Manipulator
     from ravemj.rave.robot import Robot
+
+
+class AttachedSensor(ApiObject):
+    """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
+
+    _internal = ("description", "edit", "state")
+
+    def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
+        self._robot = robot
+        self._state = state
+        self._name = state.scene.sensors[index].name
+
+    @property
+    def state(self) -> BodyState:
+        """The body of the robot."""
+        return self._state
+
+    @property
+    def description(self) -> scene.AttachedSensor:
+        """The sensor in the description of the robot; an error where the robot no longer has it."""
+        found = next((one for one in self._state.scene.sensors if one.name == self._name), None)
+        if found is None:
+            raise RavemjError(f"'{self._robot.GetName()}' has no sensor '{self._name}' any more")
+        return found
+
+    def edit(self, **changes: Any) -> scene.AttachedSensor:  # noqa: ANN401 - the fields of a scene.AttachedSensor
+        """Change the description, and return it."""
+        with self._state.simulation.lock:
+            changed = replace(self.description, **changes)
+            sensors = (changed if one.name == changed.name else one for one in self._state.scene.sensors)
+            self._state.edit(sensors=tuple(sensors))
+        return changed
+
+    def GetId(self) -> str:
+        """Return the id of the sensor in OpenRAVE's JSON: empty."""
+        return ""
+
+    def GetStructureHash(self) -> str:
+        """Return a text that is the same for sensors of the same kind at the same place of a link: 32 digits."""
+        sensor = self.description
+        return hashes.of_text(repr((sensor.link, sensor.T_link_sensor.numbers().round(8).tolist(), sensor.type)))
+
+    def GetName(self) -> str:
+        """Return the attached sensor's name."""
+        return self._name
+
+    def GetRobot(self) -> "Robot":
+        """Return the robot that carries the sensor."""
+        return self._robot
+
+    def GetAttachingLink(self) -> Link | None:
+        """Return the link that carries the sensor, or None."""
+        return None if self.description.link is None else Link(self._robot, self._state, self.description.link)
+
+    def GetRelativeTransform(self) -> Floats:
+        """Return ``T_link_sensor``, the pose in the link, shape (4, 4)."""
+        return self.description.T_link_sensor.matrix()
+
+    def SetRelativeTransform(self, transform: ArrayLike) -> None:
+        """Move the sensor on its link to ``transform``, ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
+        self.edit(T_link_sensor=pose_of(checked_transform(transform, "SetRelativeTransform: transform")))
+
+    def GetTransformPose(self) -> Floats:
+        """Return the pose in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return pose_of(self.GetTransform()).numbers()
+
+    def GetData(self) -> SensorData:
+        """Return what the device measures; see ``Sensor.GetSensorData``.
+
+        Raises:
+            openrave_exception: there is no device, or it is off.
+        """
+        sensor = self.GetSensor()
+        if sensor is None:
+            raise RavemjError(f"GetData: '{self.GetName()}' is a mere frame")
+        return sensor.GetSensorData()
+
+    def GetTransform(self) -> Floats:
+        """Return ``T_world_sensor``, shape (4, 4); without a link, the relative pose.
+
+        A camera looks along z, with y down.
+        """
+        link = self.GetAttachingLink()
+        return self.GetRelativeTransform() if link is None else link.GetTransform() @ self.GetRelativeTransform()
+
+    def GetSensor(self) -> Sensor | None:
+        """Return the device, or None for a mere frame; always the same object."""
+        return self._robot.devices.of(self)
+
+    def GetInfo(self) -> AttachedSensorInfo:
+        """Return the description of the attached sensor, a copy."""
+        return AttachedSensorInfo.of(self._state.scene, self.description)
+
+    def UpdateAndGetInfo(self, type: SensorType | None = None) -> AttachedSensorInfo:  # OpenRAVE's name
+        """Return ``GetInfo()``. ``type`` is not used."""
+        del type
+        return self.GetInfo()
+
+    def UpdateInfo(self, type: SensorType | None = None) -> None:  # OpenRAVE's name
+        """Do nothing, since ``GetInfo`` always returns the current state. ``type`` is not used."""
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()
+
+    def __hash__(self) -> int:
+        return hash((id(self._state), "sensor", self.GetName()))
+
+    def __repr__(self) -> str:
+        return f"{self._robot!r}.GetAttachedSensor({self.GetName()!r})"
+
+
+class Devices:
+    """One sensor object for each attached sensor of a robot, made when it is first used."""
+
+    def __init__(self, robot: "Robot") -> None:
+        self._robot = robot
+        self._by_name: dict[str, Sensor] = {}
+
+    def of(self, attached: AttachedSensor) -> Sensor | None:
+        """Return the sensor of an attached sensor, always the same object; None for a frame without a sensor."""
+        name, description = attached.GetName(), attached.description
+        if description.type is None:
+            return None
+        env = self._robot.GetEnv()
+        with env.simulation.lock:
+            if name not in self._by_name:
+                self._by_name[name] = Sensor(env, description, attached)
+            return self._by_name[name]
+
+    def step(self, timestep: float, stamp: int) -> None:
+        """Advance the sensors by a time step [s] that ends at a stamp [microseconds]. Unused sensors are not made."""
+        for attached in self._robot.GetAttachedSensors():
+            if attached.GetName() in self._by_name or attached.description.is_on:
+                sensor = self.of(attached)
+                if sensor is not None:
+                    sensor.advance(timestep, stamp)
+
+    def take_over(self, other: "Devices") -> None:
+        """Copy the state of the sensors of another robot of the same description; see ``Sensor.take_state``."""
+        self.forget()
+        for name, device in other._by_name.items():
+            attached = self._robot.GetAttachedSensor(name)
+            sensor = None if attached is None else self.of(attached)
+            if sensor is not None:
+                sensor.take_state(device)
+
+    def forget(self, name: str | None = None) -> None:
+        """Switch off and discard one sensor and its drawings; without a name, all of them."""
+        for known in [*self._by_name] if name is None else [name]:
+            sensor = self._by_name.pop(known, None)
+            if sensor is not None:
+                sensor.hide()
 
 
 class ConnectedBody(ApiObject):
@@ -101,7 +258,7 @@ class ConnectedBody(ApiObject):
         """Return ``T_link_body`` as [w, x, y, z, tx, ty, tz], shape (7,)."""
         return pose_of(self.GetRelativeTransform()).numbers()
 
-    def GetResolvedLinks(self) -> "list[Link | None]":
+    def GetResolvedLinks(self) -> list[Link | None]:
         """Return its links on the robot; None for each while it is not connected."""
         return [self._robot.GetLink(self._resolved(one._name)) for one in self._info._linkInfos]
 
@@ -113,7 +270,7 @@ class ConnectedBody(ApiObject):
         """Return its manipulators on the robot; None for each while it is not connected."""
         return [self._robot.GetManipulator(self._resolved(one._name)) for one in self._info._manipulatorInfos]
 
-    def GetResolvedAttachedSensors(self) -> "list[AttachedSensor | None]":
+    def GetResolvedAttachedSensors(self) -> list[AttachedSensor | None]:
         """Return its sensors on the robot; None for each while it is not connected."""
         return [self._robot.GetAttachedSensor(self._resolved(one._name)) for one in self._info._attachedSensorInfos]
 

@@ -11,8 +11,8 @@ from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError
 from ravemj.model.limits import with_fields
-from ravemj.rave.body.limits import Limits
 from ravemj.rave.enums import SaveParameters
+from ravemj.rave.kinbody.structure import BodyPart
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -66,7 +66,7 @@ class StateSaver(ApiObject):
     """
 
     def __init__(self, body: "KinBody", options: int | None = None) -> None:
-        checked_kind(body, Limits, "StateSaver: body", "a KinBody")
+        checked_kind(body, BodyPart, "StateSaver: body", "a KinBody")
         self._body = body
         wanted = body.default_saved if options is None else int(SaveParameters(options))
         with body.GetEnv().simulation.lock:
@@ -84,7 +84,7 @@ class StateSaver(ApiObject):
             body: The body that gets the state, which has the same structure; by default the saved body.
         """
         target = self._body if body is None else body
-        checked_kind(target, Limits, "Restore: body", "a KinBody")
+        checked_kind(target, BodyPart, "Restore: body", "a KinBody")
         if self._restorers and _structure(target) != self._structure:
             saved = "{} links and {} DOFs".format(*self._structure)
             raise ArgumentError(f"Restore: {target!r} should have {saved}, as {self._body!r} had when it was saved")
@@ -119,7 +119,7 @@ def _structure(body: "KinBody") -> tuple[int, int]:
     return len(state.scene.links), state.dof
 
 
-def _set_axes(body: Limits, kept: Mapping[str, Sequence[float]]) -> None:
+def _set_axes(body: BodyPart, kept: Mapping[str, Sequence[float]]) -> None:
     state = body.simulation_state
     state.edit_axes(with_fields(state.scene.dof_axes, range(len(state.scene.dof_axes)), kept))
 

@@ -1,0 +1,122 @@
+"""Options of motions: a field is a row with OpenRAVE's name, the type, the default and the effect.
+
+Commands of modules read their texts by the types, helpers check their keywords by them, and planning gets the rows.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ravemj.core.arrays import checked_vector, checked_whole_numbers
+from ravemj.planning.edges import STEP
+
+STEP_LENGTH = float(np.float32(STEP))
+"""OpenRAVE's default step length, rounded to single precision as there."""
+
+
+@dataclass(frozen=True)
+class JointMotion:
+    """Options of a motion of joints to goals: ``MoveActiveJoints``, ``MoveManipulator``."""
+
+    maxiter: int = 4000
+    """Maximum number of iterations of each call of the planner."""
+    maxtries: int = 2
+    """Number of calls of the planner, with other random numbers each time."""
+    jitter: float = 0.04
+    """Largest change of each value of a start or goal in collision, to make it free [rad or m]. The motion between the
+    two is not tested. With a constraint, starts and goals are not changed."""
+    steplength: float = STEP_LENGTH
+    """Step of the planner's trees, a weighted distance of configurations."""
+
+
+@dataclass(frozen=True)
+class ToolMotion(JointMotion):
+    """Options of a motion of the tool to goals: ``MoveToHandPosition``."""
+
+    maxtries: int = 3
+    jitter: float = 0.03
+    seedik: int = 8
+    """Number of IK solutions that are goals from the start."""
+    goalsamples: int = 40
+    """Largest number of IK solutions that are goals."""
+    goalsampleprob: float = 0.1
+    """Fraction of the iterations that ask for a further IK solution."""
+
+
+@dataclass(frozen=True)
+class StraightMotion:
+    """Options of a motion of the tool along a straight line: ``MoveHandStraight``."""
+
+    minsteps: int = 0
+    """Smallest number of steps."""
+    maxsteps: int = 10000
+    """Largest number of steps."""
+    stepsize: float = 0.01
+    """Distance between consecutive poses of the tool [m]."""
+    ignorefirstcollision: float = 0.1
+    """Length of the line, from its start, in which collisions do not count [m]."""
+
+
+@dataclass(frozen=True)
+class UnsyncMotion:
+    """Options of a motion to where other joints can move: ``MoveUnsyncJoints``."""
+
+    maxtries: int = 1
+    """Number of attempts."""
+    maxdivision: int = 10
+    """Number of steps in which the motion of the other joints is tested."""
+    planner: str = "BasicRRT"
+    """Name of the planner."""
+
+
+@dataclass(frozen=True)
+class JitterMotion:
+    """Options of a motion out of collision: ``JitterActive``."""
+
+    maxiter: int = 5000
+    """Number of random configurations that are tested."""
+    jitter: float = 0.03
+    """Largest change of each value [rad or m]."""
+
+
+@dataclass(frozen=True)
+class GraspMotion:
+    """Options of a motion to one of several grasps: ``GraspPlanning``."""
+
+    seedgrasps: int = 20
+    """Number of reachable grasps that are goals of one plan."""
+    seeddests: int = 5
+    """Number of places that are looked for with each grasp."""
+    seedik: int = 0
+    """Number of IK solutions of each grasp that are goals; 0 for all."""
+    maxiter: int = 4000
+    """Maximum number of iterations of the planner."""
+    randomgrasps: bool = True
+    """Whether to try the grasps in random order."""
+    randomdests: bool = True
+    """Whether to try the places in random order."""
+    approachoffset: float = 0.0
+    """Distance from the grasp at which the motion ends [m]."""
+    steplength: float = STEP_LENGTH
+    """Step of the planner's trees, a weighted distance of configurations."""
+
+
+Kind = TypeVar("Kind", JointMotion, ToolMotion, StraightMotion, UnsyncMotion, JitterMotion, GraspMotion)
+
+
+def chosen(kind: type[Kind], given: Mapping[str, Any]) -> Kind:
+    """Return the options of a motion: those given that are not None, and the defaults. Other names are left out.
+
+    Raises:
+        ArgumentError: an option is no finite number, or no whole one where it should be.
+    """
+    rows = [row for row in fields(kind) if given.get(row.name) is not None]
+    return kind(**{row.name: _checked(row.name, row.type, given[row.name]) for row in rows})
+
+
+def _checked(name: str, kind: object, value: Any) -> Any:  # noqa: ANN401 - of the type of its row
+    if kind is int:
+        return checked_whole_numbers([value], name).item()
+    return checked_vector([value], 1, name).item() if kind is float else value
