@@ -89,6 +89,49 @@ def test_inertia_that_mujoco_refuses(load, total, inertia):
     mujoco.MjModel.from_xml_string(env.mjcf)  # the text has legal values
 
 
+@pytest.mark.parametrize(
+    ("given", "nearest"),
+    [
+        ((1, 1, 10), (11 / 3, 11 / 3, 22 / 3)),
+        ((2.5e-5, 6.9e-5, 4.59e-4), (1.4666667e-4, 1.9066667e-4, 3.3733333e-4)),
+        ((1, 2, 2.9), (1, 2, 2.9)),
+        ((-5, 1, 1), (0, 1, 1)),
+        ((-1, -1, -1), (0, 0, 0)),
+        ((0, 0, 3), (1, 1, 2)),
+    ],
+)
+def test_illegal_inertia_becomes_the_nearest_legal_one(given, nearest):
+    """That is, the one with the least sum of squared differences."""
+    x, y, z = given
+    moments = np.diag(mjcf.legal_inertial(Inertial(2.0, (0, 0, 0), ((y, 0, 0), (0, z, 0), (0, 0, x)))).inertia)
+    np.testing.assert_allclose(np.sort(moments), nearest, rtol=1e-6, atol=2e-10)
+    mesh = np.stack(np.meshgrid(*[np.linspace(0, 8, 33)] * 3), axis=-1).reshape(-1, 3)
+    allowed = mesh[2 * mesh.max(axis=1) <= mesh.sum(axis=1)]
+    distance = np.linalg.norm(allowed - given, axis=1).min()
+    assert np.linalg.norm(np.subtract(nearest, given)) <= distance + 1e-9
+
+
+@pytest.mark.parametrize("offset", [5e-7, 9e-7, 1.1e-6, 1e-5])
+def test_a_centre_of_mass_near_its_frame_counts(load, offset):
+    mass = f'<Mass type="custom"><total>1000</total><com>{offset} 0 0</com><inertia>1 0 0 0 1 0 0 0 1</inertia></Mass>'
+    env = load(
+        f'<Robot name="r"><KinBody><Body name="a"/><Body name="b">{mass}</Body>'
+        '<Joint name="j" type="hinge"><Body>a</Body><Body>b</Body><axis>0 1 0</axis></Joint></KinBody></Robot>'
+    )
+    gravity = env.GetPhysicsEngine().GetGravity()[2]
+    torque = env.GetRobots()[0].ComputeInverseDynamics([0.0])
+    np.testing.assert_allclose(torque, [1000 * gravity * offset], rtol=1e-9)
+
+
+def test_the_text_of_many_bodies_asks_for_the_memory_that_they_need(load):
+    box = '<Geom type="box"><Extents>0.1 0.1 0.1</Extents></Geom>'
+    body = f'<KinBody name="k{{0}}"><Translation>{{0}} 0 0</Translation><Body name="b">{box}</Body></KinBody>'
+    env = load("<Environment>" + "".join(body.format(number) for number in range(2000)) + "</Environment>")
+    model = mujoco.MjModel.from_xml_string(env.mjcf)
+    mujoco.mj_forward(model, mujoco.MjData(model))
+    assert "<size" not in load(body.format(0)).mjcf
+
+
 def test_legal_inertia_is_left_alone():
     legal = Inertial(2.0, (0, 0, 0), ((1, 0.1, 0), (0.1, 1.2, 0), (0, 0, 2.0)))
     assert mjcf.legal_inertial(legal) is legal
