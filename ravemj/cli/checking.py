@@ -56,6 +56,8 @@ def _fatal(error: SourceError) -> Diagnostic:
 def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) -> Iterator[Diagnostic]:
     """Yield a note for each file outside of the folder of a model, which would be missing elsewhere."""
     folder = os.path.dirname(os.path.abspath(path))
+    if os.fspath(path).lower().endswith(".urdf"):
+        folder = os.path.dirname(folder)  # packages have a folder for URDF, and others beside it for meshes
     for file, source in named.items():
         if not is_inside(os.path.abspath(file), folder):
             message = f"the model reads '{os.path.normpath(file)}', outside of its folder"
