@@ -13,8 +13,7 @@ from ravemj.engine.simulation import Simulation, both_locks
 from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.json_files import is_json
-from ravemj.rave.env.load_arguments import checked_attributes
-from ravemj.rave.env.loading import Loading
+from ravemj.rave.env.loading import Loading, checked_attributes
 from ravemj.rave.env.saving import Saving
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment

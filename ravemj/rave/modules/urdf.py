@@ -8,8 +8,8 @@ from ravemj.errors import ArgumentError, Source, SourceError
 from ravemj.formats.file_access import FileAccess
 from ravemj.formats.urdf import OR_URDF
 from ravemj.formats.urdf.packages import Packages
+from ravemj.rave.interface import Module
 from ravemj.rave.kinbody import KinBody
-from ravemj.rave.module import Module
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
