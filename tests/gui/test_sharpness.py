@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from ravemj.gui.viewers.sharpness import BUDGET, CRISP, LEVELS, REST, Sharpness, period
 from ravemj.graphics.rendering import Look
+from ravemj.gui.viewers.sharpness import BUDGET, CRISP, LEVELS, REST, Sharpness, period
 from ravemj.gui.viewers.web.client import Client, PageStyle
 from ravemj.gui.viewers.web.scenes import Scenes
 

@@ -261,7 +261,7 @@ def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):
         button(desk, "PNG").click()
     assert re.fullmatch(r"ravemj-\d{8}-\d{6}\.png", download.value.suggested_filename)
     saved = imageio.v3.imread(io.BytesIO(download.value.path().read_bytes()))
-    assert np.array_equal(saved, desk.expected())
+    assert np.array_equal(saved, desk.expected(shadows=True))
     await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
 
 
