@@ -181,10 +181,7 @@ def explain_rays(env: Environment, form: Format) -> None:
 def explain_shadows(env: Environment, form: Format) -> None:
     """Say why a video has no shadows, if nobody has chosen that."""
     if form.shadows is None and env.renderer.backend(form) != RAY and not env.renderer.has_shadows(form):
-        print(
-            "ravemj: OpenGL draws with the processor here, so the video has no shadows; --shadows draws them",
-            file=sys.stderr,
-        )
+        print("no shadows, as OpenGL draws with the processor here; --shadows draws them")
 
 
 def doctor(options: argparse.Namespace) -> int:

@@ -98,10 +98,23 @@ def test_buttons_pause_step_and_change_the_speed(desk):
     await_that(lambda: playback.playing, "it does not play")
 
 
+def settled_box(desk, element) -> dict[str, float]:
+    """Return where an element is, once the layout of the controls has settled."""
+    boxes = [element.bounding_box()]
+
+    def is_settled() -> bool:
+        desk.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 100)))")
+        boxes.append(element.bounding_box())
+        return boxes[-1] is not None and boxes[-1] == boxes[-2]
+
+    await_that(is_settled, "the controls do not come to rest")
+    return boxes[-1]
+
+
 def test_the_time_is_dragged_and_the_robot_follows(desk):
     playback = desk.viewer.play(LONG)
     time = slider(desk, "Time")
-    box = time.bounding_box()
+    box = settled_box(desk, time)
     y = box["y"] + box["height"] / 2
     desk.page.mouse.move(box["x"] + 10, y)
     desk.page.mouse.down()
