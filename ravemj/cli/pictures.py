@@ -149,9 +149,9 @@ def write_video(path: str, env: Environment, motion: BodyMotion, shot: Shot) -> 
     with progress(f"drawing {path}", count) as advance:
         write_frames(path, draw_frames(env, motion, shot), shot.fps, on_frame=advance)
     explain_rays(env, shot.form)
-    explain_shadows(env, shot.form)
     frames = f"{count} frames of {shot.form.width}x{shot.form.height} by {env.renderer.backend(shot.form)}"
     print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s, {frames})")
+    explain_shadows(env, shot.form)
 
 
 def render(options: argparse.Namespace) -> int:
