@@ -197,10 +197,10 @@ class Desk:
         else:
             await_that(lambda: len(unlike(*look())) < 20, "the page does not show what the camera sees")
 
-    def expected(self, page=None) -> np.ndarray:
+    def expected(self, page=None, *, shadows=None) -> np.ndarray:
         over = self.viewer._views[(page or self.page).evaluate("tab")].overlay()
         look = {"gizmos": over.primitives, "style": over.style}
-        return self.viewer._renderer.render(self.core.view.camera, self.viewer.look, Format(*SIZE), **look)
+        return self.viewer._renderer.render(self.core.view.camera, self.viewer.look, Format(*SIZE, shadows), **look)
 
     def await_camera(self) -> None:
         """Wait until the page's camera is the core's, in numbers and in pixels."""

@@ -149,9 +149,9 @@ def write_video(path: str, env: Environment, motion: BodyMotion, shot: Shot) -> 
     with progress(f"drawing {path}", count) as advance:
         write_frames(path, draw_frames(env, motion, shot), shot.fps, on_frame=advance)
     explain_rays(env, shot.form)
-    explain_shadows(env, shot.form)
     frames = f"{count} frames of {shot.form.width}x{shot.form.height} by {env.renderer.backend(shot.form)}"
     print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s, {frames})")
+    explain_shadows(env, shot.form)
 
 
 def render(options: argparse.Namespace) -> int:
@@ -181,10 +181,7 @@ def explain_rays(env: Environment, form: Format) -> None:
 def explain_shadows(env: Environment, form: Format) -> None:
     """Say why a video has no shadows, if nobody has chosen that."""
     if form.shadows is None and env.renderer.backend(form) != RAY and not env.renderer.has_shadows(form):
-        print(
-            "ravemj: OpenGL draws with the processor here, so the video has no shadows; --shadows draws them",
-            file=sys.stderr,
-        )
+        print("no shadows, as OpenGL draws with the processor here; --shadows draws them")
 
 
 def doctor(options: argparse.Namespace) -> int:

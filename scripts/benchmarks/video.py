@@ -48,7 +48,7 @@ class _Play:
         self.env = ravemj.load(MODEL)
         self.robot = self.env.GetRobots()[0]
         self.motion = ravemj.Motion.line([0.0, 0.0], [np.pi, 0.0], (_FRAMES - 1) / _FPS)
-        self.shot = Shot(read_camera(CAMERA), self.env.background, Format(), _FPS)
+        self.shot = Shot(read_camera(CAMERA), self.env.look(), Format(shadows=False), _FPS)
         self.pictures: list[Frame] = []
 
     def rows(self) -> list[Row]:
@@ -62,7 +62,27 @@ class _Play:
                     [self.play, drawing, self.encode, self.command, bare_drawing], _ROUNDS, warm_up=False
                 )
             backend = renderer.backend
-        return [self.main_row(whole, draw, encode, backend), *_other_rows(whole, draw, command, bare)]
+        rows = [self.main_row(whole, draw, encode, backend), *_other_rows(whole, draw, command, bare)]
+        return rows if backend == RAY else [*rows, self.shadow_row()]
+
+    def shadow_row(self) -> Row:
+        """Return the row of shadows, which has a limit where a graphics card draws."""
+        form = self.shot.form
+        size = form.width, form.height
+        is_hardware = self.env.renderer.has_shadows(form._replace(shadows=None))
+        with (
+            open_renderer(self.env.model, *size, shadows=True) as shaded,
+            open_renderer(self.env.model, *size, shadows=False) as plain,
+        ):
+            rates = take_turns(
+                [functools.partial(_rate, functools.partial(self.drawn, one)) for one in (shaded, plain)],
+                _ROUNDS,
+                warm_up=False,
+            )
+        with_shadows, without = (1000 / rate for rate in rates)
+        note = "" if is_hardware else "the processor draws, so videos have none"
+        limit = 1.5 if is_hardware else None
+        return Row("drawing a frame with shadows : without", "ms", with_shadows, without, limit, note=note)
 
     def main_row(self, whole: float, draw: float, encode: float, backend: str) -> Row:
         """Return the row with the limit; ours and the bare encoder must have written the same file."""
@@ -123,18 +143,20 @@ class _Play:
         for values in self.motion.frames(_FPS):
             data.qpos[:] = values
             mujoco.mj_kinematics(model, data)
-            yield renderer.render(data, self.shot.camera, self.shot.background)
+            yield renderer.render(data, self.shot.camera, self.shot.look)
 
     def drawn_bare(self, context: OffscreenContext, stage: GlScene) -> Iterator[Frame]:
         """Draw the frames with one call after the other into MuJoCo."""
         model, data, form = self.env.model, self.env.data, self.shot.form
-        stage.fill(data, self.shot.camera, (form.width, form.height))  # leaves the camera in the scene
+        stage.fill(
+            data, self.shot.camera, (form.width, form.height), look=self.shot.look
+        )  # leaves the camera in the scene
         option, user, every = mujoco.MjvOption(), mujoco.MjvCamera(), mujoco.mjtCatBit.mjCAT_ALL.value
         user.type = mujoco.mjtCamera.mjCAMERA_USER
         viewport = mujoco.MjrRect(0, 0, form.width, form.height)
         picture = np.empty((form.height, form.width, 3), dtype=np.uint8)
         with context.current():
-            stage.draw(viewport, np.full(3, 255, dtype=np.uint8))  # sets the background
+            stage.draw(viewport)  # sets the background
             for values in self.motion.frames(_FPS):
                 data.qpos[:] = values
                 mujoco.mj_kinematics(model, data)

@@ -98,10 +98,23 @@ def test_buttons_pause_step_and_change_the_speed(desk):
     await_that(lambda: playback.playing, "it does not play")
 
 
+def settled_box(desk, element) -> dict[str, float]:
+    """Return where an element is, once the layout of the controls has settled."""
+    boxes = [element.bounding_box()]
+
+    def is_settled() -> bool:
+        desk.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 100)))")
+        boxes.append(element.bounding_box())
+        return boxes[-1] is not None and boxes[-1] == boxes[-2]
+
+    await_that(is_settled, "the controls do not come to rest")
+    return boxes[-1]
+
+
 def test_the_time_is_dragged_and_the_robot_follows(desk):
     playback = desk.viewer.play(LONG)
     time = slider(desk, "Time")
-    box = time.bounding_box()
+    box = settled_box(desk, time)
     y = box["y"] + box["height"] / 2
     desk.page.mouse.move(box["x"] + 10, y)
     desk.page.mouse.down()
@@ -261,7 +274,7 @@ def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):
         button(desk, "PNG").click()
     assert re.fullmatch(r"ravemj-\d{8}-\d{6}\.png", download.value.suggested_filename)
     saved = imageio.v3.imread(io.BytesIO(download.value.path().read_bytes()))
-    assert np.array_equal(saved, desk.expected())
+    assert np.array_equal(saved, desk.expected(shadows=True))
     await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
 
 
