@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import os
+import signal
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,6 +18,9 @@ TESTS = Path(__file__).resolve().parent
 DATA = TESTS / "data"
 REPOSITORY = TESTS.parent
 MODELS = REPOSITORY / "models"
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background jobs ignore Ctrl-C
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # Examples may take as long as a busy machine needs, and are the same each time but with HYPOTHESIS_PROFILE=dev.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=not DEV)

@@ -200,10 +200,16 @@ class CollisionChecker(Interface):
             report, arguments = report or arguments[-1], arguments[:-1]
         if report is not None:
             checked_kind(report, CollisionReport, "CheckCollision: report")
-        with self._simulation.lock, self.groups.world() as world:
-            if arguments and isinstance(ray := arguments[0], Ray):
-                return self._check_ray(world, ray, arguments[1:], report)
-            return self.answer(world, self._pairs(world, arguments), report)
+        with self._simulation.lock:
+            if not self.groups.is_used:  # without a context manager, since planners ask this most
+                return self._check(self._simulation.collisions(), arguments, report)
+            with self.groups.world() as world:
+                return self._check(world, arguments, report)
+
+    def _check(self, world: CollisionWorld, arguments: tuple[object, ...], report: CollisionReport | None) -> bool:
+        if arguments and isinstance(ray := arguments[0], Ray):
+            return self._check_ray(world, ray, arguments[1:], report)
+        return self.answer(world, self._pairs(world, arguments), report)
 
     def CheckSelfCollision(self, linkbody: KinBody | Link, report: CollisionReport | None = None) -> bool:
         """Return whether a body collides with itself; see ``body.CheckSelfCollision``.

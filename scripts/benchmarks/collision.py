@@ -1,5 +1,6 @@
 """Collision checking."""
 
+import copy
 import os
 import tempfile
 import time
@@ -58,6 +59,7 @@ def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
     both, floor = free.measure(lambda: env.CheckCollision(panda) or panda.CheckSelfCollision())
     label = f"{what}: SetDOFValues + CheckCollision + CheckSelfCollision : mj_kinematics + mj_collision"
     yield Row(label, "µs", both, floor)
+    yield _world_row(what, panda, free, 3.5)
     with env, panda:
         collides = moving_test(panda.simulation_state, range(panda.GetDOF()))
         tested, floor = free.measure(collides=collides)
@@ -104,6 +106,19 @@ def _pr2_rows() -> Iterator[Row]:
         check, floor = chosen.measure(pr2.CheckSelfCollision)
         label = f"PR2, {what}: SetDOFValues + CheckSelfCollision : mj_kinematics + mj_collision"
         yield Row(label, "µs", check, floor, limit)
+    with warnings.catch_warnings(action="ignore"):
+        add_boxes(pr2.GetEnv(), 1.5)
+        among_boxes = _Configurations(pr2, 3.0)
+    yield _world_row("PR2 among 10 boxes", pr2, among_boxes, 1.8)
+
+
+def _world_row(what: str, robot: ravemj.Robot, free: "_Configurations", limit: float) -> Row:
+    """Compare a question about the world with MuJoCo's time if it looks only at pairs of the robot and the world."""
+    env = robot.GetEnv()
+    with free.only_pairs_with_others():
+        check, floor = free.measure(lambda: env.CheckCollision(robot))
+    label = f"{what}: SetDOFValues + CheckCollision : mj_kinematics + mj_collision of the wanted pairs"
+    return Row(label, "µs", check, floor, limit)
 
 
 class _Configurations:
@@ -138,6 +153,16 @@ class _Configurations:
             is_free = not (env.CheckCollision(robot) or robot.CheckSelfCollision())
             if is_free and hulls_overlap == bool(self._data.ncon):
                 return values, qpos
+
+    @contextmanager
+    def only_pairs_with_others(self) -> Generator[None]:
+        """Let MuJoCo alone look only at pairs of the robot and other bodies."""
+        everything, self._model = self._model, copy.copy(self._model)
+        ours = self._robot.GetEnv().simulation.compiled().part(self._robot.simulation_state).body_ids
+        self._model.body_contype[:], self._model.body_conaffinity[:] = 0, 1
+        self._model.body_contype[ours], self._model.body_conaffinity[ours] = 1, 0
+        yield
+        self._model = everything
 
     def bare(self, qpos: Floats) -> None:
         """Let MuJoCo look for contacts."""

@@ -705,9 +705,17 @@ class TestManyPairs:
             ours = [solid for one in group for solid in self.solids(one)]
             others = [solid for one in env.GetBodies() if one not in group for solid in self.solids(one)]
             assert env.CheckCollision(body) == self.overlap(ours, others)
+            report = CollisionReport()
+            assert env.CheckCollision(body, report) == bool(report.collisionInfos) == self.overlap(ours, others)
+            if len(group) == 1 and body != snake:
+                with_held = [solid for one in (snake, *held) for solid in self.solids(one)]
+                assert env.CheckCollision(snake, body) == self.overlap(with_held, ours)
+        for link in range(0, len(snake.GetLinks()), 3):
+            others = [solid for one in env.GetBodies() if one not in (snake, *held) for solid in self.solids(one)]
+            assert env.CheckCollision(snake.GetLinks()[link]) == self.overlap(self.solids(snake, [link]), others)
         if not held:
             tested = snake.GetNonAdjacentLinks()
-            assert len(tested) > pairs.FEW
+            assert len(tested) > 16
             assert snake.CheckSelfCollision() == any(
                 self.overlap(self.solids(snake, [one]), self.solids(snake, [other])) for one, other in tested
             )
@@ -740,6 +748,14 @@ class TestManyPairs:
             snake.SetDOFValues(one)
             assert answer == (env.CheckCollision(snake) or snake.CheckSelfCollision())
         assert 0 < sum(found) < len(found)
+
+    def test_the_masks_of_the_model_are_back(self, env, snake):
+        """A user may step the model, in which everything collides."""
+        before = env.model.body_contype.copy(), env.model.body_conaffinity.copy()
+        self.check(env, snake)
+        snake.batch_collides(np.zeros((60, snake.GetDOF())))
+        np.testing.assert_array_equal([env.model.body_contype, env.model.body_conaffinity], before)
+        assert (env.model.body_contype[1:] > 0).all()
 
     def test_more_contacts_than_fit_into_memory(self, env, snake, monkeypatch):
         monkeypatch.setattr(pairs, "_MOST_CONTACTS", 0.0)

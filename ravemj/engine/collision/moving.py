@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.collision.pairs import Pairs
+from ravemj.engine.collision.pairs import Masks, Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, held_with, itself
 from ravemj.engine.collision.world import MOST_AT_ONCE, CollisionWorld
 from ravemj.engine.kinematics import fixed_view
@@ -133,6 +133,8 @@ class _Chosen(NamedTuple):
     """The pairs of geoms that a test of a body is about."""
 
     meant: frozenset[int]  # ``_keys`` of those that MuJoCo looks at, in both orders
+    masks: Masks  # for MuJoCo to look at these
+    is_all: bool  # whether it looks at no others, and all geoms are convex
     left_out: Pairs | None  # those that it leaves out
     resting: tuple[Pairs, ...]  # those that joints do not move against each other, of each kind
 
@@ -149,9 +151,12 @@ class _Chosen(NamedTuple):
         pairs = np.concatenate([_as_array(one) for one in sets])
         with HeldRoots(world, body).on_carriers():  # last, since it does not put the poses back
             tested = world.detection.finds(pairs[:, 0], pairs[:, 1])
-        meant, rest = pairs[tested], pairs[~tested]
+            meant, rest = pairs[tested], pairs[~tested]
+            masks, is_all = world.best_masks(*meant.T)
         return cls(
             frozenset([*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()]),
+            masks,
+            is_all,
             world.make_pairs(rest[:, 0], rest[:, 1]) if len(rest) else None,
             resting,
         )
@@ -223,7 +228,8 @@ class _MovingTest:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
         self._held = HeldRoots(world, body) if body.grabs else None
-        self._meant, self._rest, _ = chosen
+        self._meant, self._masks, self._is_all, self._rest, _ = chosen
+        self._detect = world.detection.overlaps(self._masks)
 
     def __call__(self, values: Floats) -> bool:
         """Return whether the body collides."""
@@ -231,7 +237,7 @@ class _MovingTest:
         self._place(values)
         if self._held is None:
             mujoco.mj_kinematics(model, data)
-            mujoco.mj_collision(model, data)
+            self._detect()
         else:
             self._detect_with(self._held)
         if data.ncon:
@@ -250,8 +256,9 @@ class _MovingTest:
         if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
             return np.array([self(one) for one in values], dtype=bool)
         parts = (values[first : first + MOST_AT_ONCE] for first in range(0, len(values), MOST_AT_ONCE))
-        touching = np.concatenate([self._world.have_contacts(self._place.qpos_of_many(part)) for part in parts])
-        if not self._world.finds_only(len(self._meant) // 2):  # which has each pair in both orders
+        contacts = [self._world.have_contacts(self._masks, self._place.qpos_of_many(part)) for part in parts]
+        touching = np.concatenate(contacts)
+        if not self._is_all:
             for index in np.flatnonzero(touching).tolist():
                 touching[index] = self(values[index])
         return touching
@@ -262,5 +269,5 @@ class _MovingTest:
             mujoco.mj_kinematics(self._model, self._data)
             if held.are_late:
                 mujoco.mj_kinematics(self._model, self._data)
-            mujoco.mj_collision(self._model, self._data)
+            self._detect()
         self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again

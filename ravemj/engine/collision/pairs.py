@@ -1,100 +1,143 @@
-"""Pairs of geoms, and which of them are near each other."""
+"""Pairs of geoms, which of them are near each other, and MuJoCo's collision detection of them."""
+
+from collections.abc import Callable, Generator
+from functools import partial
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.blocks import block, restoring
 from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
 from ravemj.engine.simulation.world_model import WorldModel
 
-FEW = 16
-"""So few pairs are looked at one by one, since MuJoCo's collision detection looks at all geoms."""
+_BODIES_PER_PAIR = 64
+"""So many bodies take MuJoCo's collision detection as long as one pair takes here: it looks at the masks of all."""
+
+_ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
+_NO_NUMBERS: list[int] = []
 
 _MARGIN = 1e-6  # m; MuJoCo's collision detection finds what is this near: more than exact tests call touching
 _OVERRIDE = int(mujoco.mjtEnableBit.mjENBL_OVERRIDE)
 _MOST_CONTACTS = 1 / 4096  # for each byte of MuJoCo's working memory, where a contact takes 600
 
-_ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
-_NO_NUMBERS: list[int] = []
-_NO_KEYS: list[int] = []
-
 Bools = NDArray[np.bool_]
+_Bits = NDArray[np.int32]
+_NO_GEOMS = np.zeros((0, 2), dtype=np.int32)
 
 
-def key(first: int, second: int, count: int) -> int:
-    """Return a number for a pair of geoms, whichever of them comes first; ``count`` is the number of geoms."""
-    return first * count + second if first < second else second * count + first
+class Masks(NamedTuple):
+    """Values of MuJoCo's ``body_contype`` and ``body_conaffinity`` with which it looks only at some pairs of bodies."""
+
+    types: _Bits
+    affinities: _Bits
 
 
 class Detection:
-    """MuJoCo's collision detection, which runs once for each configuration of a world and finds hulls that touch.
+    """MuJoCo's collision detection, which finds hulls that touch.
 
     It leaves out the geoms of one weld group, between which the model has no joint, those of a group and the one that
     it hangs on, unless that is the world's, and what the model excludes.
 
-    ``positions`` and ``radii`` are those of spheres around all geoms. ``is_overruled`` says that geoms are where their
-    links are not, so that only spheres find what is near.
+    Attributes:
+        positions: Centres of spheres around all geoms [m], shape (n, 3).
+        radii: Their radii [m], shape (n,).
+        all: The masks with which MuJoCo looks at all bodies.
+        is_overruled: Whether geoms are where their links are not, so that only spheres find what is near.
     """
 
     def __init__(self, model: WorldModel, shapes: ShapeTests) -> None:
         self.model, self.shapes = model, shapes
         self._model, self._data = model.model, model.data
         self.positions, self.radii = model.data.geom_xpos, model.model.geom_rbound
+        self.body_count = model.model.nbody
         self.is_overruled = False
-        self._stamp = -1
-        self._keys: list[int] = _NO_KEYS
-        self._found: bytes = b""
+        self._most = int(self._data.narena * _MOST_CONTACTS)
         self._option = self._model.opt
         self._option.o_margin = _MARGIN  # only ``_OVERRIDE`` lets it count
-        self._most = int(self._data.narena * _MOST_CONTACTS)
         self._bodies = self._model.geom_bodyid
         self._welds = self._model.body_weldid[self._bodies]
-        self._masks = self._model.geom_contype, self._model.geom_conaffinity
+        self._geom_masks = self._model.geom_contype, self._model.geom_conaffinity
+        self._types, self._affinities = self._model.body_contype, self._model.body_conaffinity
+        self.all = Masks(self._types.copy(), self._affinities.copy())
+        self._stamp, self._questions, self._is_shared = -1, 0, False
+        self._found: NDArray[np.int32] | None = None
 
     def are_welded(self, first: Ints, second: Ints) -> Bools:
         """Return for each pair of geoms whether no joint is between them."""
         return self._welds[first] == self._welds[second]
 
-    def finds(self, first: Ints, second: Ints) -> Bools:
-        """Return for each pair of geoms whether MuJoCo's collision detection would look at it."""
+    def finds(self, first: Ints, second: Ints, masks: Masks | None = None) -> Bools:
+        """Return for each pair of geoms whether MuJoCo's collision detection looks at it; ``masks`` restrict it."""
         weld_ids = self._model.body_weldid
         welds, others = weld_ids[self._bodies[first]], weld_ids[self._bodies[second]]
         carriers = weld_ids[self._model.body_parentid]
         hanging = (carriers[welds] == others) | (carriers[others] == welds)
         hanging &= (welds != 0) & (others != 0)
-        types, affinities = self._masks
-        masked = ((types[first] & affinities[second]) | (types[second] & affinities[first])) == 0
         bodies, other_bodies = self._bodies[first], self._bodies[second]
+        seen = _match(*self._geom_masks, first, second)
+        if masks is not None:
+            seen &= _match(*masks, bodies, other_bodies)
         signatures = (np.minimum(bodies, other_bodies) << 16) + np.maximum(bodies, other_bodies)
         excluded = np.isin(signatures, self._model.exclude_signature)
-        return ~((welds == others) | hanging | masked | excluded)
+        return ~((welds == others) | hanging | excluded) & seen
 
-    def keys(self) -> list[int] | None:
-        """Return ``key`` of the pairs whose hulls touch now; None if they are too many for MuJoCo.
+    def masks(self, first: Ints, second: Ints) -> Masks:
+        """Return masks for pairs of geoms, with which MuJoCo may look at more pairs of the same bodies than these."""
+        types, affinities = np.zeros((2, self.body_count), dtype=np.int32)
+        types[self._bodies[first]] = affinities[self._bodies[second]] = 1
+        return Masks(types, affinities)
 
-        The list is the same one as long as the pairs are the same.
+    def detect(self, masks: Masks) -> NDArray[np.int32] | None:
+        """Look for hulls that touch or nearly touch now.
+
+        If there was more than one question about the last configuration, all bodies are looked at, once for all
+        questions about this one.
+
+        Returns:
+            Both geoms of each contact, shape (n, 2); None if they may be too many for MuJoCo's memory.
         """
         if self._stamp != self.model.stamp:
-            self._stamp = self.model.stamp
-            self._detect()
-        return self._keys if len(self._keys) < self._most else None
-
-    def _detect(self) -> None:
+            self._stamp, self._is_shared, self._questions = self.model.stamp, self._questions > 1, 0
+        self._questions += 1
+        if self._is_shared:
+            if self._questions > 1:
+                return self._found
+            masks = self.all
         option, flags = self._option, self._option.enableflags
-        option.enableflags = flags | _OVERRIDE
-        mujoco.mj_collision(self._model, self._data)
-        option.enableflags = flags
-        if not self._data.ncon:
-            self._keys, self._found = _NO_KEYS, b""
-            return
-        geoms = self._data.contact.geom
-        found = geoms.tobytes()
-        if found != self._found:
-            touching: list[list[int]] = geoms.tolist()
-            self._keys = [key(one, other, self._model.ngeom) for one, other in touching]
-            self._found = found
+        try:
+            option.enableflags = flags | _OVERRIDE
+            self._detect_masked(masks)
+        finally:  # no signal is handled in it
+            option.enableflags = flags
+        count = self._data.ncon
+        self._found = _NO_GEOMS if not count else self._data.contact.geom.copy() if count < self._most else None
+        return self._found
+
+    def overlaps(self, masks: Masks) -> Callable[[], None]:
+        """Return a function that looks for hulls that overlap now."""
+        everything = partial(mujoco.mj_collision, self._model, self._data)
+        return everything if masks is self.all else partial(self._detect_masked, masks)
+
+    def _detect_masked(self, masks: Masks) -> None:
+        try:
+            self._types[...], self._affinities[...] = masks
+            mujoco.mj_collision(self._model, self._data)
+        finally:  # no signal is handled in it
+            self._types[...], self._affinities[...] = self.all
+
+    @block
+    def masked(self, masks: Masks) -> Generator[None]:
+        """Have MuJoCo look only at the pairs of masks inside the ``with``."""
+        with restoring(self._unmask):
+            self._types[...], self._affinities[...] = masks
+            yield
+
+    def _unmask(self) -> None:
+        self._types[...], self._affinities[...] = self.all
 
 
 class Pairs:
@@ -104,26 +147,29 @@ class Pairs:
         """Take pairs; with ``once`` they are looked at only once, so that preparing them is not worth its time."""
         self.first, self.second = first, second
         self._detection = detection
-        found = np.zeros(len(first), dtype=bool) if once or len(first) <= FEW else detection.finds(first, second)
+        one_by_one = once or len(first) * _BODIES_PER_PAIR <= detection.body_count
+        found = np.zeros(len(first), dtype=bool) if one_by_one else detection.finds(first, second)
         self._rest = np.flatnonzero(~found)
         numbers = np.flatnonzero(found).tolist()
-        count, both = len(detection.radii), zip(first[found].tolist(), second[found].tolist(), strict=True)
-        self._numbers = {key(*pair, count): number for pair, number in zip(both, numbers, strict=True)}
+        both = zip(first[found].tolist(), second[found].tolist(), strict=True)
+        self._numbers = {_ordered(*pair): number for pair, number in zip(both, numbers, strict=True)}
+        self._masks = detection.masks(first[found], second[found])
         self._spheres = _Spheres(first[self._rest], second[self._rest], detection)
         self._rest_is_welded = bool(detection.are_welded(first[self._rest], second[self._rest]).all())
         self._rest_stamp, self._rest_is_exact = -1, False
         self._rest_near = self._touching = _NO_NUMBERS
-        self._touching_keys = _NO_KEYS
+        self._stamp, self._are_too_many = -1, False
+        self._found = b""  # the contacts, as MuJoCo has them
 
     def near(self) -> list[int]:
         """Return the numbers of the pairs that may touch, in order. The caller holds the lock."""
         detection = self._detection
-        keys = None if detection.is_overruled else detection.keys() if self._numbers else _NO_KEYS
-        if keys is None:
+        if detection.is_overruled:
             return self._all_spheres.near().tolist()
-        if keys is not self._touching_keys:
-            self._touching = sorted({self._numbers[key] for key in keys if key in self._numbers})
-            self._touching_keys = keys
+        if self._stamp != detection.model.stamp and self._numbers:
+            self._detect()
+        if self._are_too_many:
+            return self._all_spheres.near().tolist()
         if not self._rest_is_welded or self._rest_stamp != detection.model.pose_stamp:
             self._rest_near, self._rest_is_exact = self._rest[self._spheres.near()].tolist(), False
             self._rest_stamp = detection.model.pose_stamp
@@ -132,6 +178,19 @@ class Pairs:
             self._rest_near = [number for number in self._rest_near if touch(*self.geoms(number))]
             self._rest_is_exact = True
         return sorted(self._touching + self._rest_near) if self._rest_near else self._touching
+
+    def _detect(self) -> None:
+        """Find which of the pairs that MuJoCo looks at have hulls that touch."""
+        geoms = self._detection.detect(self._masks)
+        self._stamp, self._are_too_many = self._detection.model.stamp, geoms is None
+        if geoms is None or not len(geoms):
+            self._touching, self._found = _NO_NUMBERS, b""
+            return
+        found = geoms.tobytes()
+        if found != self._found:
+            numbers, touching = self._numbers, {_ordered(*pair) for pair in geoms.tolist()}
+            self._found = found
+            self._touching = sorted(numbers[pair] for pair in touching if pair in numbers)
 
     def geoms(self, number: int) -> tuple[int, int]:
         """Return both geoms of a pair."""
@@ -169,3 +228,12 @@ class _Spheres:
         apart -= self._from
         apart *= apart
         return (apart.dot(_ONES, self._distance) < self._square).nonzero()[0]
+
+
+def _ordered(first: int, second: int) -> tuple[int, int]:
+    return (first, second) if first < second else (second, first)
+
+
+def _match(types: _Bits, affinities: _Bits, first: NDArray[np.integer], second: NDArray[np.integer]) -> Bools:
+    """Return for each pair whether the masks let MuJoCo look at it."""
+    return ((types[first] & affinities[second]) | (types[second] & affinities[first])) != 0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ravemj.core.blocks import block, restoring
 from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.collision.pairs import Detection, Pairs
+from ravemj.engine.collision.pairs import Detection, Masks, Pairs
 from ravemj.engine.collision.rays import RayCaster
 from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
@@ -23,10 +23,13 @@ if TYPE_CHECKING:
 _Made = TypeVar("_Made")
 
 MOST_PAIRS = 300_000
-"""Pairs of geoms that are kept for all queries together."""
+"""Pairs of geoms, and masks of bodies, that are kept for all queries together."""
 
 MOST_AT_ONCE = 1000
 """Configurations that threads work on together, so that memory does not grow with their number."""
+
+_WORTH_MASKS = 1.5
+"""Setting masks pays where MuJoCo would look at so many times as many pairs without."""
 
 _POSITIONS = 1  # mjSTAGE_POS: what follows from joint positions, contacts among it
 
@@ -114,10 +117,11 @@ class CollisionWorld:
         pairs = self._pairs.get(query)
         if pairs is None:
             first, second = find()
-            self._pair_count += len(first)
+            size = len(first) + self._model.nbody  # which masks have
+            self._pair_count += size
             if self._pair_count > MOST_PAIRS:
                 self._pairs.clear()
-                self._pair_count = len(first)
+                self._pair_count = size
             pairs = self._pairs[query] = Pairs(first, second, self.detection)
         return pairs
 
@@ -125,42 +129,47 @@ class CollisionWorld:
         """Return pairs of geoms for a query that is made once."""
         return Pairs(first, second, self.detection, once=True)
 
-    def finds_only(self, count: int) -> bool:
-        """Return whether so many pairs of geoms are all that MuJoCo looks at, and all geoms are convex.
+    def best_masks(self, first: Ints, second: Ints) -> tuple[Masks, bool]:
+        """Return the masks with which MuJoCo finds pairs of geoms fastest.
 
-        It is False as well where there are too many geoms to count their pairs.
+        Returns:
+            The masks, and whether MuJoCo looks at no other pairs with them and all geoms are convex. That is False as
+            well if there are too many geoms to count their pairs.
         """
-        can_count = self._model.ngeom**2 < 2 * MOST_PAIRS
-        return can_count and count == self._found_count and not self._has_concave
-
-    @cached_property
-    def _found_count(self) -> int:
-        first, second = np.triu_indices(self._model.ngeom, 1)
-        return int(np.count_nonzero(self.detection.finds(first, second)))
+        masks = self.detection.masks(first, second)
+        if self._model.ngeom**2 >= 2 * MOST_PAIRS:
+            return masks, False
+        pairs = np.triu_indices(self._model.ngeom, 1)
+        everything, some = (int(self.detection.finds(*pairs, one).sum()) for one in (self.detection.all, masks))
+        if everything < _WORTH_MASKS * some:
+            masks, some = self.detection.all, everything
+        return masks, some == len(first) and not self._has_concave
 
     @cached_property
     def _has_concave(self) -> bool:
         return any(map(self.shapes.is_concave, self._colliding.tolist()))
 
-    def have_contacts(self, qpos: Floats) -> NDArray[np.bool_]:
+    def have_contacts(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
         """Return for each of ``MOST_AT_ONCE`` configurations at most, shape (n, nq), whether MuJoCo finds contacts."""
         if _processors() == 1:
-            return self._have_contacts_one_by_one(qpos)
+            return self._have_contacts_one_by_one(masks, qpos)
         batch, count = self._batch, len(qpos)
         batch.bind("qpos")[:count] = qpos
-        batch.forward(np.arange(count), stage=_POSITIONS)
+        with self.detection.masked(masks):
+            batch.forward(np.arange(count), stage=_POSITIONS)
         return batch.bind("ncon")[:count] > 0
 
-    def _have_contacts_one_by_one(self, qpos: Floats) -> NDArray[np.bool_]:
+    def _have_contacts_one_by_one(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
         """Do the same where there is one processor, on which a ``Batch`` takes longer, since it computes more."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
         counts: list[int] = []
-        for row in qpos:
-            target[...] = row
-            place(model, data)
-            detect(model, data)
-            counts.append(data.ncon)
+        with self.detection.masked(masks):
+            for row in qpos:
+                target[...] = row
+                place(model, data)
+                detect(model, data)
+                counts.append(data.ncon)
         return np.array(counts) > 0
 
     @cached_property
