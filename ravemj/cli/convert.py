@@ -14,13 +14,7 @@ from ravemj.engine.export import is_folder, marked, translate, write_file, write
 from ravemj.errors import Diagnostic, Diagnostics, OutputError, RavemjWarning
 from ravemj.formats.mjcf import Options
 from ravemj.rave import Environment
-
-_FORMATS = {
-    (".dae", ".zae"): "collada",
-    (".json",): "json",
-    (".robot.xml", ".kinbody.xml", ".env.xml"): "openrave",
-}
-"""Formats by the ends of names; names with other ends are for MJCF."""
+from ravemj.rave.env.saving import SUFFIXES
 
 _MJCF_ENDS = (".xml", ".mjcf")
 
@@ -56,7 +50,7 @@ def _format_of(output: str) -> str:
         OutputError: the name has another suffix.
     """
     if output != TO_STANDARD_OUTPUT and not is_folder(output):
-        known = {end: form for ends, form in _FORMATS.items() for end in ends} | dict.fromkeys(_MJCF_ENDS, "mjcf")
+        known = {end: form for form, ends in {**SUFFIXES, "mjcf": _MJCF_ENDS}.items() for end in ends}
         form = next((form for end, form in known.items() if output.lower().endswith(end)), None)
         if form is None:
             ends = ", ".join(end for end in known if end.count(".") == 1)

@@ -44,14 +44,19 @@ if TYPE_CHECKING:
     from ravemj.formats.writers import ModelFormat
 
 
-SUFFIX = ".json"
+SUFFIXES = {
+    "collada": (".dae", ".zae"),
+    "openrave": (".robot.xml", ".kinbody.xml", ".env.xml"),
+    "json": (".json",),
+}
+"""Suffixes of the formats that ``Save`` writes, the usual one first."""
 
 _Given = Callable[[KinBodyInfo], None]
 
 
 def is_json(path: str) -> bool:
     """Return whether a file is JSON, by the suffix of its name."""
-    return path.lower().endswith(SUFFIX)
+    return path.lower().endswith(SUFFIXES["json"])
 
 
 def save_json(
@@ -200,11 +205,10 @@ _NO_EFFECT = {
 }
 """Options of OpenRAVE that do not change what ``Load`` reads back, with the reason that a warning gives."""
 
-_FILE_TYPES = {"collada": ".dae", "json": ".json"}
-
+_IN_MEMORY = ("collada", "json")
 _VALUES = {
     "skipwrite": tuple(_PARTS),
-    "format": ("collada", "openrave", "json"),
+    "format": tuple(SUFFIXES),
     "meshes": ("stl", "obj"),
     "openravescheme": ("openrave",),
 }
@@ -316,11 +320,11 @@ class Saving(Description):
         Raises:
             openrave_exception: there is no such type, or an argument is wrong; see ``Save``.
         """
-        if filetype not in _FILE_TYPES:
-            known = ", ".join(_FILE_TYPES)
+        if filetype not in _IN_MEMORY:
+            known = ", ".join(_IN_MEMORY)
             raise ArgumentError(f"WriteToMemory: filetype is {filetype!r}; there are {known}")
         with temporary_folder() as folder:
-            path = Path(folder, f"scene{_FILE_TYPES[filetype]}")
+            path = Path(folder, f"scene{SUFFIXES[filetype][0]}")
             self.Save(path, options, atts)
             return path.read_bytes()
 
