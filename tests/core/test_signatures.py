@@ -28,7 +28,11 @@ def shown(thing) -> str:
             ravemj.Robot.GetDOFLimits,
             "(self, indices: ArrayLike | EllipsisType | None = Ellipsis) -> tuple[Floats, Floats]",
         ),
-        (ravemj.load, "(path: str | os.PathLike[str]) -> Environment"),
+        (
+            ravemj.load,
+            "(path: str | os.PathLike[str], atts: Mapping[str, str] | None = None, *, "
+            "into: Environment | None = None) -> Environment",
+        ),
         (ravemj.matrixFromQuat, "(quat: ArrayLike) -> Floats"),
         (ravemj.Motion, "(times: ArrayLike, values: ArrayLike) -> None"),
         (ravemj.Motion.line, "(start: ArrayLike, goal: ArrayLike, duration: float = 1.0) -> Motion"),

@@ -118,6 +118,10 @@ EQUAL = {
     ("Geometry", "render_file"): "the triangles are compared, wherever they come from",
     ("Geometry", "collision_file"): "the triangles are compared, wherever they come from",
     ("Mesh", "known_digest"): "it follows from the numbers",
+    **dict.fromkeys(
+        (("KinBody", "configurations"), ("NamedConfiguration", "name"), ("NamedConfiguration", "values")),
+        "states of an SRDF are names of joint values, and no part of the robot; other formats do not have them",
+    ),
 }
 """Fields in which scenes may differ, and why."""
 

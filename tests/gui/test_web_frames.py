@@ -333,5 +333,6 @@ class TestInABrowser:
             "ü.stl",
         ]
         box = '<KinBody name="box"><Body><Geom type="box"><extents>1 1 1</extents></Geom></Body></KinBody>'
-        page.evaluate("content => upload([new File([content], '机器人'.repeat(80) + '.xml')])", box)
+        upload = "content => upload([[fileName('机器人'.repeat(80) + '.xml'), new File([content], 'box.xml')]])"
+        page.evaluate(upload, box)
         await_that(lambda: env.GetKinBody("box") is not None, "it is not added")

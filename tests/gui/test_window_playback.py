@@ -97,7 +97,7 @@ def desk(display, folder):
 
 def test_mouse_and_keys_play_pause_step_and_go_through_the_time(desk):
     row = slice(450, 472), slice(220, 300)
-    assert np.ptp(desk.picture()[row]) == 0, "there is nothing to play"
+    assert np.ptp(desk.picture()[row]) < 50, "there is nothing to play"
     desk.ask("play()")
     desk.await_value("viewer.playback.time", lambda time: time > 0.2, "it does not play")
     assert np.ptp(desk.picture()[row]) > 100

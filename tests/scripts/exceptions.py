@@ -14,5 +14,5 @@ for call in (lambda: robot.SetDOFValues([1, 2]), lambda: robot.SetActiveManipula
     except openrave_exception as e:
         print('openrave_exception', e.GetCode(), len(e.message) > 10)
 print('lookups', robot.GetLink('x'), robot.GetJoint('x'), robot.GetJointIndex('x'), robot.GetManipulator('x'))
-print('plugins', RaveLoadPlugin('libplugin.so'), RaveCreateModule(env, 'urdf'), RaveCreateController(env, 'x'))
+print('plugins', RaveLoadPlugin('libplugin.so'), RaveCreateModule(env, 'nothing'), RaveCreateController(env, 'x'))
 sys.exit(3)
