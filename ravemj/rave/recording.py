@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera, three_quarter_view
-from ravemj.graphics.rendering.style import AS_USUAL, LightNames, Look, LookChoices
+from ravemj.graphics.rendering.style import AS_USUAL, Look, LookChoices
 from ravemj.graphics.shown_path import ShownPath
 from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
@@ -51,7 +51,7 @@ def record(  # noqa: PLR0913 - keyword arguments
     background: ArrayLike | None = None,
     shadows: bool | None = None,
     floor: str = "auto",
-    lights: LightNames = "both",
+    lights: Literal["studio", "model", "both"] = "both",
     on_frame: Callable[[int], None] | None = None,
 ) -> Path:
     """Write a video of a robot that follows a motion. Afterwards the robot is at the end of the motion.

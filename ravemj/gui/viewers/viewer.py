@@ -3,6 +3,7 @@
 import contextlib
 import math
 import weakref
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +17,7 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
 from ravemj.graphics.rendering.checks import checked_colour
-from ravemj.graphics.rendering.style import LightNames, Look, LookChoices
+from ravemj.graphics.rendering.style import Look, LookChoices
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Resize
 from ravemj.gui.viewers.interactive import Callback, Callbacks, Interactive
@@ -382,7 +383,7 @@ class Viewer(Interactive):
         *,
         shadows: bool | None = None,
         floor: str = "auto",
-        lights: LightNames = "both",
+        lights: Literal["studio", "model", "both"] = "both",
     ) -> Frame:
         """Draw what the viewer sees, the cube or cylinder of what is selected included.
 

@@ -3,7 +3,7 @@
 import os
 import weakref
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,7 @@ from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import AABB, OrientedBox
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.rendering.checks import checked_colour
-from ravemj.graphics.rendering.style import AS_USUAL, LightNames, Look, LookChoices
+from ravemj.graphics.rendering.style import AS_USUAL, Look, LookChoices
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.model import drawing
 from ravemj.model.drawing import Drawings, Primitives
@@ -270,7 +270,7 @@ class Viewing(EnvironmentPart):
         background: ArrayLike | None = None,
         shadows: bool | None = None,
         floor: str = "auto",
-        lights: LightNames = "both",
+        lights: Literal["studio", "model", "both"] = "both",
     ) -> Frame:
         """Draw a picture, with or without a display.
 
@@ -325,7 +325,7 @@ class Viewing(EnvironmentPart):
         background: ArrayLike | None = None,
         shadows: bool | None = None,
         floor: str = "auto",
-        lights: LightNames = "both",
+        lights: Literal["studio", "model", "both"] = "both",
     ) -> "Animation":
         """Return an HTML page that plays a motion and can be turned and zoomed without a server.
 
@@ -373,7 +373,7 @@ class Viewing(EnvironmentPart):
         background: ArrayLike | None = None,
         shadows: bool | None = None,
         floor: str = "auto",
-        lights: LightNames = "both",
+        lights: Literal["studio", "model", "both"] = "both",
     ) -> "Path":
         """Write a motion, or the scene as it is, as one HTML file that needs neither a server nor a network.
 
