@@ -235,9 +235,9 @@ class ShapeReader:
         else:
             package = uri.partition("://")[2].lstrip("/").partition("/")[0]
             is_packaged = uri.partition("://")[0].lower() in SCHEMES
-            places = ", ".join(f"'{place}'" for place in found.searched) or "no folder of that name"
+            places = ", ".join(found.searched) or "no folder of that name"
             hint = f"--package {package}=FOLDER says where it is, and so does ROS_PACKAGE_PATH" if is_packaged else ""
-            message = f"there is no file '{uri}'; looked in {places}"
+            message = f"there is no file '{uri}'; looked in {places}"  # not quoted, as long quotations are cut
             diagnostics.warn("missing-file", message, source, hint)
         return None
 
