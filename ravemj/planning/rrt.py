@@ -1,4 +1,4 @@
-"""Trees of configurations that are connected by allowed lines."""
+"""Planners that grow trees of configurations (RRT), and the problem that they solve."""
 
 import time
 from collections.abc import Callable, Iterable, Sequence

@@ -1,4 +1,4 @@
-"""Shorter paths: straight lines in place of detours."""
+"""Shorter paths: straight lines, or faster ramps, in place of detours."""
 
 from collections.abc import Callable
 from itertools import pairwise

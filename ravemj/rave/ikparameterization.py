@@ -1,4 +1,4 @@
-"""One pair of setter and getter for each type of goal of inverse kinematics."""
+"""Goals of inverse kinematics: their values, with a pair of setter and getter for each type."""
 
 # ruff: noqa: D102 - the docstrings of the last methods come from a table
 # Functions of a table stand for methods.

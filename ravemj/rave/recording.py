@@ -1,4 +1,4 @@
-"""Videos of a robot that follows a motion."""
+"""Videos and pages of a robot that follows a motion."""
 
 import math
 import os

@@ -1,4 +1,4 @@
-"""Reports of collision checks."""
+"""Reports of collision checks: pairs, contacts, distances."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field

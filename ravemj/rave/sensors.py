@@ -1,4 +1,4 @@
-"""The constant properties of sensors: name, pose, geometry."""
+"""Sensors of an environment, and their constant properties."""
 
 import logging
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The numbers of configurations: read, written, and converted."""
+"""Specifications of configurations: the groups of numbers, how they are read, written and converted."""
 
 from collections.abc import MutableSequence, Sequence
 from typing import TYPE_CHECKING, Any, Self

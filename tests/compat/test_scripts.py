@@ -100,7 +100,7 @@ EXPECTED = {
     "trajectory_file": f"""{"at 0.5 0.125 0.5" + chr(10)}{"at 0.5 0.125 0.5" + chr(10)}at 0.5 0.125 0.5
         at 0.5 0.875 -0.5""",
     "uncaught": "before",
-    "urdf_module": "no urdf plugin\nInvalidArguments\nInvalidArguments\n\nbasemanipulation",
+    "missing_plugin": "no plugin\nInvalidArguments\nInvalidArguments\n\nbasemanipulation",
     "velocity_play": "values 0.5 -0.25",
 }
 STATUS = {"exceptions": 3, "uncaught": 1}

@@ -159,8 +159,9 @@ def test_a_picture_and_a_video_are_saved_and_the_window_says_where(desk, folder)
     (file,) = folder.glob("ravemj-*.png")
     saved = imageio.v3.imread(file)
     clear = slice(100, 300), slice(60, 530)
-    away = np.abs(saved[clear].astype(int) - desk.picture()[clear]).max(axis=2)
-    assert (away > 0).mean() < 0.05, "there are shadows in it, and other edges, no more"
+    brighter = (saved[clear].astype(int) - desk.picture()[clear]).max(axis=2)
+    assert (brighter > 0).mean() < 0.005, "another renderer may draw other edges, no more"
+    assert (brighter < 0).mean() < 0.05, "there are shadows in it, no more"
     assert np.ptp(saved[clear]) > 100
     assert (saved[10, 10] == saved[470, 100]).all(), "there are no buttons in it"
     await_that(lambda: f"Saved {file.name} in" in desk.ask("viewer.interaction.overlay().lines"), "nothing is said")

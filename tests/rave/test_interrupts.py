@@ -70,6 +70,28 @@ def test_a_stack_of_contexts_ends_as_blocks_do(env, robot):
     assert robot.GetDOFValues().tolist() == HERE
 
 
+def test_no_answer_on_collisions_is_that_of_an_earlier_configuration(env, robot):
+    wall = ravemj.RaveCreateKinBody(env, "")
+    wall.InitFromBoxes(np.array([[*robot.GetLinks()[2].GetTransform()[:3, 3], 0.02, 0.02, 0.02]]), True)
+    wall.SetName("wall")
+    env.Add(wall)
+    answers = {}
+    for values in (HERE, [2.5, 1.0]):
+        robot.SetDOFValues(values)
+        answers[tuple(values)] = env.CheckCollision(robot), robot.CheckSelfCollision()
+
+    def ask():
+        for values in answers:
+            robot.SetDOFValues(values)
+            env.CheckCollision(robot)
+            robot.CheckSelfCollision()
+
+    assert len(set(answers.values())) == 2
+    for place in interrupts(ask, 300):
+        found = env.CheckCollision(robot), robot.CheckSelfCollision()
+        assert found == answers[tuple(robot.GetDOFValues().tolist())], place
+
+
 def with_env(env, robot):
     with env, env:
         robot.GetDOFValues()

@@ -1,4 +1,4 @@
-"""What a body holds follows it in the model of the world while only joint values change there."""
+"""Collision tests of a body at many joint values, which planners ask most; what the body holds follows its joints."""
 
 from collections.abc import Callable, Generator, Sequence
 from typing import NamedTuple

@@ -63,7 +63,7 @@ class Detection:
         self._geom_masks = self._model.geom_contype, self._model.geom_conaffinity
         self._types, self._affinities = self._model.body_contype, self._model.body_conaffinity
         self.all = Masks(self._types.copy(), self._affinities.copy())
-        self._stamp, self._questions, self._is_shared = -1, 0, False
+        self._stamp, self._found_stamp, self._questions, self._is_shared = -1, -1, 0, False
         self._found: NDArray[np.int32] | None = None
 
     def are_welded(self, first: Ints, second: Ints) -> Bools:
@@ -104,7 +104,7 @@ class Detection:
             self._stamp, self._is_shared, self._questions = self.model.stamp, self._questions > 1, 0
         self._questions += 1
         if self._is_shared:
-            if self._questions > 1:
+            if self._found_stamp == self._stamp:
                 return self._found
             masks = self.all
         option, flags = self._option, self._option.enableflags
@@ -115,6 +115,7 @@ class Detection:
             option.enableflags = flags
         count = self._data.ncon
         self._found = _NO_GEOMS if not count else self._data.contact.geom.copy() if count < self._most else None
+        self._found_stamp = self._stamp if self._is_shared else -1  # last, as an interrupt may have come before
         return self._found
 
     def overlaps(self, masks: Masks) -> Callable[[], None]:
@@ -182,15 +183,13 @@ class Pairs:
     def _detect(self) -> None:
         """Find which of the pairs that MuJoCo looks at have hulls that touch."""
         geoms = self._detection.detect(self._masks)
-        self._stamp, self._are_too_many = self._detection.model.stamp, geoms is None
-        if geoms is None or not len(geoms):
-            self._touching, self._found = _NO_NUMBERS, b""
-            return
-        found = geoms.tobytes()
-        if found != self._found:
+        found = b"" if geoms is None else geoms.tobytes()
+        if geoms is not None and found != self._found:
             numbers, touching = self._numbers, {_ordered(*pair) for pair in geoms.tolist()}
-            self._found = found
             self._touching = sorted(numbers[pair] for pair in touching if pair in numbers)
+            self._found = found
+        self._are_too_many = geoms is None
+        self._stamp = self._detection.model.stamp  # last, as an interrupt may have come before
 
     def geoms(self, number: int) -> tuple[int, int]:
         """Return both geoms of a pair."""

@@ -1,4 +1,4 @@
-"""What MuJoCo writes for each of its velocities, and what is read off it for each DOF."""
+"""Inverse dynamics of one body: torques, external forces and motors, from MuJoCo's velocities to DOFs."""
 
 import math
 from collections.abc import Mapping, Sequence

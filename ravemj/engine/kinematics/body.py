@@ -1,4 +1,4 @@
-"""The poses of links as matrices."""
+"""Kinematics of one body by MuJoCo: joint values, link poses, spherical and mimic joints."""
 
 import itertools
 from collections.abc import Sequence
@@ -220,13 +220,13 @@ class BodyKinematics:
         """
         if self.displaced:
             self._undo_displacement()
+        self.stamp += 1  # first, so that an interrupt leaves no poses out of date
         self._written[self._places] = values if self._all_move else values[self._moving]
         if not self._is_plain:
             for ball in self.spherical:
                 self.qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
             if self.mimic.joints:
                 self._set_mimic(values, clamp=clamp_mimic)
-        self.stamp += 1
 
     def _set_mimic(self, values: Floats, *, clamp: bool) -> None:
         """Write the values of the mimic joints."""

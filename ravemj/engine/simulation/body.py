@@ -189,8 +189,9 @@ class BodyState:
 
     def set_values(self, values: Floats, *, clamp_mimic: bool = True) -> None:
         """Set the joint values [rad or m], shape (dof,), and place all links by them."""
+        self.will_move()
         self.kinematics.set_values(values, clamp_mimic=clamp_mimic)
-        self.moved()
+        self.carry()
 
     def enter_limits(self) -> None:
         """Let joints that are outside their limits go to them."""
@@ -199,8 +200,9 @@ class BodyState:
 
     def set_transform(self, T_world_link0: Floats) -> None:
         """Move the body rigidly, with the joint values as they are, by the pose of its first link, shape (4, 4)."""
+        self.will_move()
         self.own_kinematics.set_transform(T_world_link0)
-        self.moved()
+        self.carry()
 
     def pose(self) -> Pose:
         """Return the pose of the first link."""
@@ -220,14 +222,23 @@ class BodyState:
                 the body is in the world. None: the present values.
         """
         kinematics = self.own_kinematics if last_values is None else self.kinematics
+        self.will_move()
         place_links(kinematics, T_world_links, kinematics.values() if last_values is None else last_values)
-        self.moved()
+        self.carry()
 
     def moved(self) -> None:
-        """Take note that links were moved: what they hold follows."""
+        """Take note that links were moved, and move the grabbed bodies along."""
+        self.will_move()
+        self.carry()
+
+    def will_move(self) -> None:
+        """Take note that links are about to move: in advance, so that an interrupt leaves no model out of date."""
         self.stamp += 1
         if self.index:
             self.simulation.changed.add(self)
+
+    def carry(self) -> None:
+        """Move the grabbed bodies to where they are held."""
         for grab in self._grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
@@ -286,12 +297,13 @@ class BodyState:
 
     def restore(self, saved: SavedConfiguration) -> None:
         """Bring joints and links back to a state that ``configuration`` returned, of this body or one like it."""
+        self.will_move()
         kinematics = self.own_kinematics
         if not kinematics.restore(saved.configuration):
             before = BodyKinematics(saved.scene)
             before.restore(saved.configuration)
             place_links(kinematics, before.link_transforms(), kinematics.values())
-        self.moved()
+        self.carry()
 
     def copy(self, other: "BodyState", name: str | None = None) -> None:
         """Become like another body, its configuration and flags included; what it holds is left out.

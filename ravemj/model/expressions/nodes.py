@@ -1,4 +1,4 @@
-"""The one exception of this package."""
+"""Nodes of expressions, the graph in which they are evaluated, and the error of a wrong one."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""The content of a file."""
+"""A scene: bodies, loose sensors, gravity, and the view."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""One polynomial for each segment: cubic or quintic."""
+"""Retimers with polynomials for each segment: linear, parabolic, cubic, quintic, and limited jerk."""
 
 import math
 from typing import Any

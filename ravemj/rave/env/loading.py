@@ -1,4 +1,4 @@
-"""Arguments of the methods that load models."""
+"""Methods of an environment that load models, and their arguments."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false

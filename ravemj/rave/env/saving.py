@@ -1,4 +1,4 @@
-"""Saves the bodies of an environment to files; OpenRAVE's JSON, which infos write and read."""
+"""Methods of an environment that save models, and OpenRAVE's JSON files."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false

@@ -1,4 +1,4 @@
-"""Descriptions of manipulators and attached sensors."""
+"""Descriptions of bodies, robots, environments, and of what is attached to them."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false

@@ -1,4 +1,4 @@
-"""Getters and setters for the sizes of a ``GeometryInfo``, and its JSON format."""
+"""Descriptions of shapes, and their JSON format."""
 
 # JSON and users put anything into the fields that the functions of forms take.
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false

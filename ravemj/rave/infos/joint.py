@@ -1,4 +1,4 @@
-"""Descriptions of what drives a joint: its electric motor, and the hardware that commands it."""
+"""Descriptions of joints, their motors and the hardware that commands them."""
 
 # JSON and users put anything into the fields that the functions of forms take.
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false

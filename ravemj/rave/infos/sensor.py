@@ -1,4 +1,4 @@
-"""The constant properties of sensors: resolution, range, calibration."""
+"""Descriptions of sensors: resolution, range, calibration."""
 
 # Users put anything into fields.
 # pyright: reportUnknownArgumentType=false, reportUnknownLambdaType=false

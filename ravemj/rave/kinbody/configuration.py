@@ -131,8 +131,9 @@ class BodyConfiguration(BodyPart):
             if target is not None:
                 if not kinematics.limits.contain(target):
                     target = settled_values(state.scene, kinematics, target, checklimits)
+                state.will_move()
                 kinematics.set_values(target, clamp_mimic=checklimits != _UNLIMITED)
-                state.moved()
+                state.carry()
         except BaseException:
             lock.release_if_held()
             raise

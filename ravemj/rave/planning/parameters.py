@@ -1,4 +1,4 @@
-"""Reads and writes planner parameters as OpenRAVE's XML."""
+"""Parameters of planners, and their form as OpenRAVE's XML."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 

@@ -1,4 +1,4 @@
-"""The result of planning, and the progress that callbacks are told."""
+"""The base class of planners, their status, and the progress that callbacks get."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar

@@ -1,10 +1,10 @@
 # As scripts with plugins do: without the plugin they stop by themselves.
 from openravepy import *
 env = Environment()
-RaveLoadPlugin('or_urdf')
-module = RaveCreateModule(env, 'nosuchurdf')
+RaveLoadPlugin('or_missing')
+module = RaveCreateModule(env, 'missing')
 if module is None:
-    print('no urdf plugin')
+    print('no plugin')
     try:
         env.AddModule(module, '')
     except openrave_exception as e:
