@@ -1,4 +1,4 @@
-"""Links of a robot that touch wherever it stands: what ``check --self`` lists and ``--write-srdf`` writes."""
+"""Pairs of links that touch in nearly all configurations: ``check --self`` lists them, ``--write-srdf`` writes them."""
 
 import argparse
 import copy

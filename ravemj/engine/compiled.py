@@ -103,7 +103,7 @@ class Compiled:
 
 
 def _keep_centers(model: mujoco.MjModel) -> None:
-    """Let MuJoCo compute with all frames of inertias: it takes one within 1e-6 of its body's for that of the body."""
+    """Make MuJoCo use every inertial frame; it replaces one within 1e-6 of its body's frame by that frame."""
     moved = (model.body_ipos != 0).any(axis=1) | (model.body_iquat[:, 0] != 1)
     model.body_sameframe[moved] = 0
 

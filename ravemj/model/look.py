@@ -105,10 +105,10 @@ LINE_WIDTH = 1 / 64
 """Width of the lines, as a part of the distance between them."""
 
 FADE_START, FADE_END = 1.0, 10.0
-"""Where the floor begins to fade and where it has faded, beyond the bodies [radii of the scene]."""
+"""Distances beyond the bodies at which the floor begins to fade and has faded [radii of the scene]."""
 
 FLOOR_REACH = 3.0
-"""Where the floor ends, in depths at which it has faded."""
+"""Far end of the floor, as a multiple of the depth at which it has faded."""
 
 CELLS = 2.0
 """Least number of cells of the floor's grid along the radius of the scene."""

@@ -227,12 +227,12 @@ class BodyState:
         self.carry()
 
     def moved(self) -> None:
-        """Take note that links were moved, and move the grabbed bodies along."""
+        """Mark the model as out of date, and move the grabbed bodies along."""
         self.will_move()
         self.carry()
 
     def will_move(self) -> None:
-        """Take note that links are about to move: in advance, so that an interrupt leaves no model out of date."""
+        """Mark the model as out of date. Called before links move, so that no interrupt leaves it unmarked."""
         self.stamp += 1
         if self.index:
             self.simulation.changed.add(self)

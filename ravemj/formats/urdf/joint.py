@@ -167,7 +167,7 @@ def _rates(joint: UrdfJoint, element: Element, context: Context) -> dict[str, fl
 
 
 def follow(joints: Mapping[str, UrdfJoint], built: Mapping[str, JointBuilder], context: Context) -> None:
-    """Let joints with ``<mimic>`` follow their leaders."""
+    """Connect joints with ``<mimic>`` to their leaders."""
     for name, joint in joints.items():
         element = only(joint.element, "mimic", context)
         if element is None or joint.type in {"fixed", "floating"}:

@@ -49,7 +49,7 @@ class Material(NamedTuple):
 
 
 class Form(NamedTuple):
-    """What a ``<geometry>`` describes.
+    """Shape that a ``<geometry>`` describes.
 
     Attributes:
         shape: The shape.

@@ -1,4 +1,4 @@
-"""What is behind the bodies: a background of one colour or a gradient, and a floor with a grid that fades away.
+"""Background of pictures: one colour or a gradient, and a floor with a grid that fades with distance.
 
 Neither is a body. The floor stands at the lowest point of what is drawn, so that it hides nothing.
 """
@@ -156,7 +156,7 @@ def skybox(look: Look, width: int) -> NDArray[np.uint8]:
 
 
 class Backdrop(NamedTuple):
-    """What rays of one picture see that hit nothing.
+    """Background and floor as the rays of one picture see them.
 
     Attributes:
         look: The look.

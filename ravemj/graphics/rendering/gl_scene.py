@@ -59,7 +59,7 @@ FLOOR_MATERIAL = "floor"
 """The material of MJCF files that has the grid of the floor."""
 
 _FLOOR_BELOW = 1e-4
-"""How far below the bodies the floor is drawn, in radii of the scene: a body's own floor hides it."""
+"""Gap between the bodies and the floor below them [radii of the scene]; a floor of the model hides ours."""
 
 _painting = threading.Lock()
 """Held while the texture of a model has a background's colour."""
@@ -127,7 +127,7 @@ class GlScene:
         style: Style = AS_IT_IS,
         look: Look = _PLAIN,
     ) -> None:
-        """Take over the poses of the geoms, the drawings, the point of view and the look.
+        """Copy geom poses, drawings, camera and look into the GL scene.
 
         With points or lines there are no shadows: MuJoCo would draw these once more for each light that casts some, and
         add the colours up. ``size`` is columns and rows of the viewport.

@@ -1,4 +1,4 @@
-"""The lights of pictures: which there are, and for the renderer without OpenGL, what surfaces reflect of them."""
+"""Lights of pictures, and their reflection by surfaces in the renderer without OpenGL."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -105,7 +105,7 @@ class Lights:
         self._shines = True
 
     def update(self, data: mujoco.MjData, camera: Camera, depths: tuple[float, float], look: Look) -> None:
-        """Take over where the lights are now; some shine from the camera, which sees these depths [m]."""
+        """Copy the poses of the lights; some move with the camera, whose depth range [m] is given."""
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         aim(self._scene, camera, (1, 1), depths)

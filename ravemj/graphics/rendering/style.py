@@ -1,4 +1,4 @@
-"""Which geoms of a model are drawn, and how: the rules of MuJoCo's visualiser, the styles of viewers, the look."""
+"""Styles and looks of pictures: visible geoms by the rules of MuJoCo's visualiser, lights, background."""
 
 import math
 from dataclasses import dataclass
@@ -128,7 +128,7 @@ class Look:
 
 @dataclass(frozen=True)
 class LookChoices:
-    """What users choose of a look.
+    """Choices of users about a look.
 
     Attributes:
         shadows: Whether lights cast shadows; None: as is usual for such pictures.

@@ -22,7 +22,7 @@ _OFFSCREEN = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
 
 
 class Surface(NamedTuple):
-    """What is drawn on: the look, whether lights cast shadows (None: with a graphics card), size, pixels of a point."""
+    """Target of a drawing: look, shadows (None: with a graphics card), size, pixels per point."""
 
     look: Look
     shadows: bool | None

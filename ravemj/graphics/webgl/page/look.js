@@ -75,7 +75,7 @@ function isSoftware(gl) {
   return SOFTWARE.test(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }
 
-/** What is drawn behind the bodies. */
+/** Background and floor behind the bodies. */
 class Backdrop {
   constructor(gl) {
     Object.assign(this, { gl, program: compile(gl, BACKDROP_VERTEX, BACKDROP_FRAGMENT), nothing: gl.createVertexArray() });
@@ -110,7 +110,7 @@ class Backdrop {
     gl.depthMask(true);
   }
 
-  /** Which part of the light on the floor, which is at least so much, comes from lights that cast shadows. */
+  /** Fraction of the light on the floor that lights with shadows give, with a lower bound on that light. */
   shade(view, lights, steepness, least) {
     const mean = (parts) => parts.reduce((sum, part) => sum + part, 0) / 3;
     let all = 0, kept = 0;

@@ -52,7 +52,7 @@ class Connection(Protocol):
 
 
 class PageStyle(NamedTuple):
-    """How all pages of a viewer look: background, floor and lights, whether these cast shadows, and the title."""
+    """Appearance of all pages of a viewer: background, floor, lights, shadows, title."""
 
     look: Look
     shadows: bool | None
