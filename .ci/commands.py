@@ -2,6 +2,7 @@
 
 import json
 import re
+import signal
 import subprocess
 import sys
 import urllib.request
@@ -22,6 +23,8 @@ SCRIPT = "import openravepy\nenv = openravepy.Environment()\nenv.Load('env.xml')
 
 def main() -> None:
     """Try every command that the parser knows."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background jobs ignore Ctrl-C
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     assert Path(ravemj.__file__).is_relative_to(sys.prefix), f"{ravemj.__file__} is not in {sys.prefix}"
     for trial in trials():
         trial()
@@ -54,6 +57,18 @@ def view() -> None:
                 assert b"<canvas" in page.read()
         finally:
             viewing.terminate()
+
+
+def mirror() -> None:
+    """Save the state that lines of text have."""
+    words = [PROGRAM, "mirror", "--web", "env.xml", "--csv", "state.txt", "--save-state", "state.json"]
+    Path("state.txt").write_text("Joint0=0.5 Joint1=-1\n")
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as mirroring:
+        assert mirroring.stdout
+        assert mirroring.stdout.readline().startswith("http")
+        mirroring.send_signal(signal.SIGINT)
+        assert mirroring.stdout.read() == "wrote state.json\n"
+    assert json.loads(Path("state.json").read_text()) == {"Joint0": 0.5, "Joint1": -1}
 
 
 def play() -> None:
@@ -110,6 +125,30 @@ def plan() -> None:
     """Find a motion from hanging to upright."""
     do("plan", "pendulum", "--to", "3,0", "-o", "plan.csv")
     assert Path("plan.csv").read_text().startswith("time,")
+
+
+def grasp() -> None:
+    """Find grasps of a box of the wheel, by its parallel jaws."""
+    assert "grasps of" in do("grasp", "panda.xml", "box", "--method", "antipodal", "-o", "grasps.html")
+    assert Path("grasps.html").read_text().startswith("<!doctype html>")
+
+
+def learn() -> None:
+    """Solve an exercise."""
+    do("learn", "start", "robotics")
+    file = Path("robotics", "fk_1.py")
+    file.write_text(file.read_text().replace("    ...\n", "    return [l1 * np.cos(q1), 0]\n"))
+    words = [PROGRAM, "learn", "check", "fk-1", "--folder", "robotics"]
+    wrong = subprocess.run(words, text=True, capture_output=True, check=False)
+    assert wrong.returncode == 1
+    assert "0 of 20 answers are right" in wrong.stdout
+
+
+def sweep() -> None:
+    """Label configurations in two processes."""
+    do("sweep", "panda.xml", "collides", "--count", "2000", "--jobs", "2", "-o", "labels")
+    labels = ravemj.Sweep.open("labels").arrays("collides")
+    assert 0 < labels.sum() < len(labels) == 2000
 
 
 def run() -> None:

@@ -29,6 +29,7 @@ from ravemj import geometry_functions, rave
 from ravemj.compat import names
 from ravemj.compat.names import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
 from ravemj.core.signatures import show_as_written
+from ravemj.core.version import __version__
 from ravemj.errors import (
     ArgumentError,
     CompileError,
@@ -46,19 +47,29 @@ from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists the
 
 if TYPE_CHECKING:
     from ravemj.compat import databases, interfaces, misc, planningutils
+    from ravemj.core.threads import set_batch_threads
     from ravemj.gui.viewers import Viewer
+    from ravemj.manipulation.grasping.search import Grasp, Grasps
+    from ravemj.planning.certificates import Certificate, CertifiedSpan
     from ravemj.rave import *  # noqa: F403 - as its __all__ lists them
+    from ravemj.rave.grasping import draw_grasp, grasps
     from ravemj.rave.recording import record
+    from ravemj.sweeps import Sweep, SweepError, sweep
+    from ravemj.trajectories.joint_trajectory import JointTrajectory
+    from ravemj.trajectories.joint_trajectory_files import read_joint_trajectory, write_joint_trajectory
     from ravemj.trajectories.motion import Motion
     from ravemj.trajectories.motion_reading import read_motion
     from ravemj.trajectories.motion_writing import write_motion
 
-__version__ = "0.1.0"
-
 __all__ = [
     "ArgumentError",
+    "Certificate",
+    "CertifiedSpan",
     "CompileError",
     "Diagnostic",
+    "Grasp",
+    "Grasps",
+    "JointTrajectory",
     "Motion",
     "OutputError",
     "RavemjError",
@@ -66,26 +77,47 @@ __all__ = [
     "RenderingError",
     "Source",
     "SourceError",
+    "Sweep",
+    "SweepError",
     "UnsupportedError",
     "Viewer",
     "__version__",
     "databases",
+    "draw_grasp",
+    "grasps",
     "interfaces",
     "misc",
     "model_path",
     "planningutils",
+    "read_joint_trajectory",
     "read_motion",
     "record",
+    "set_batch_threads",
+    "sweep",
+    "write_joint_trajectory",
     "write_motion",
 ]
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__  # pyright: ignore[reportUnsupportedDunderAll] - it takes all that is imported above
 
 _LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
+    "Certificate": "ravemj.planning.certificates",
+    "CertifiedSpan": "ravemj.planning.certificates",
+    "Grasp": "ravemj.manipulation.grasping.search",
+    "Grasps": "ravemj.manipulation.grasping.search",
+    "JointTrajectory": "ravemj.trajectories.joint_trajectory",
     "Motion": "ravemj.trajectories.motion",
+    "Sweep": "ravemj.sweeps",
+    "SweepError": "ravemj.sweeps",
     "Viewer": "ravemj.gui.viewers",
+    "draw_grasp": "ravemj.rave.grasping",
+    "grasps": "ravemj.rave.grasping",
+    "read_joint_trajectory": "ravemj.trajectories.joint_trajectory_files",
     "read_motion": "ravemj.trajectories.motion_reading",
     "record": "ravemj.rave.recording",
+    "set_batch_threads": "ravemj.core.threads",
+    "sweep": "ravemj.sweeps",
+    "write_joint_trajectory": "ravemj.trajectories.joint_trajectory_files",
     "write_motion": "ravemj.trajectories.motion_writing",
 }
 

@@ -68,6 +68,10 @@ class Source(NamedTuple):
         return f"{self} (included from {self.included_from.chain()})"
 
 
+class Origin(Source):
+    """A place in a file that a model was converted from; the converted file counts as the one that includes it."""
+
+
 class RavemjError(Exception):
     """The root of ravemj's exceptions; OpenRAVE scripts know it as ``openrave_exception``."""
 
@@ -141,7 +145,11 @@ class LimitError(SourceError):
 
 
 class UnnamedError(SourceError):
-    """A body of a file has no name; OpenRAVE's ``Load`` raises there, where other mistakes make it False (gap-18)."""
+    """A body has no name; OpenRAVE's ``LoadData`` raises there, where other mistakes make it False (gap-18)."""
+
+
+class ManipulatorError(SourceError):
+    """A joint of a manipulator does not move its effector; the robot is there all the same (gap-10, gap-39)."""
 
 
 class CompileError(SourceError):

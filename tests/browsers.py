@@ -134,7 +134,7 @@ class Desk:
 
     def fresh_core(self) -> Interaction:
         """Return the core as the page's was at first."""
-        core = Interaction(self.other_env.simulation, Camera(ASLANT), SIZE)
+        core = Interaction.first_view(self.other_env.simulation, Camera(ASLANT), SIZE)
         core.look_from(Camera(ASLANT), 0.8)
         return core
 

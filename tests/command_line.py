@@ -64,11 +64,11 @@ def ravemj_command(folder: Path, *arguments: str | Path, **variables: str) -> su
     Where there is no OpenGL, a line says so once a picture is drawn: it is checked here, and taken away.
     """
     done = run(folder, "-m", "ravemj", *arguments, variables=variables)
-    is_drawn = done.stdout.startswith("wrote ") and ".html (" not in done.stdout
+    is_drawn = done.stdout.startswith("wrote ") and not re.search(r"\.html \(|points in", done.stdout)
     if is_drawn and arguments[0] in {"play", "render"}:
         note = note_on_rays()
-        assert done.stderr.endswith(note)
-        done.stderr = done.stderr.removesuffix(note)
+        assert note in done.stderr
+        done.stderr = done.stderr.replace(note, "", 1)
     if arguments[:1] == ("plan",):  # which draws only where it should
         done.stderr = done.stderr.replace(RAYS_DREW, "")
     return done
@@ -83,7 +83,8 @@ class Served:
 
     def __init__(self, folder: Path, *words: str):
         heed_interrupts()
-        command, variables = [sys.executable, "-m", "ravemj", *words], environment(folder)
+        command = [sys.executable, "-m", "ravemj", *words]
+        variables = environment(folder, PYTHONFAULTHANDLER="1")  # so that one that crashes says where
         self._process = subprocess.Popen(command, cwd=folder, env=variables, stdout=-1, stderr=-1, text=True)
 
     def __enter__(self) -> "Served":
@@ -93,6 +94,10 @@ class Served:
     def __exit__(self, *reason: object) -> None:
         self._process.kill()
         self._process.communicate()
+
+    def next_message(self) -> str:
+        """Return the next line of standard error."""
+        return self._process.stderr.readline()
 
     def end(self, number: int) -> tuple[int, str, str]:
         """Send a signal; return the exit code and what else was printed."""
@@ -127,9 +132,11 @@ def on_terminal(folder: Path, *arguments: str, simple: bool = True, **variables:
 
 
 def heed_interrupts() -> None:
-    """Let the processes that we start hear Ctrl-C, also where these tests run in the background of a shell."""
+    """Let the processes that we start hear Ctrl-C and SIGHUP, also if a shell or nohup has these ignored."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:  # as nohup leaves it
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def finish(terminal: pexpect.spawn) -> tuple[str, int | None]:

@@ -1,6 +1,7 @@
 """A window that is driven by real events, and beside it the core on its own that is driven by the same ones."""
 
 import ast
+import signal
 import time
 from pathlib import Path
 
@@ -58,13 +59,15 @@ class Desk:
         await_that(lambda: self.picture().shape == (size[1], size[0], 3), "the window has another size")
         self.env = ravemj.load(self.folder / model)
         self.robot = self.env.GetRobots()[0]
-        self.core = Interaction(self.env.simulation, Camera(np.asarray(camera)), size)
+        self.core = Interaction.first_view(self.env.simulation, Camera(np.asarray(camera)), size)
         self.core.look_from(Camera(np.asarray(camera)), DISTANCE)
         self.move(5, size[1] // 2)
         return self
 
     def close(self) -> None:
-        self.terminal.close(force=True)
+        self.terminal.kill(signal.SIGKILL)
+        self.terminal.wait()
+        self.terminal.close()
 
     # --- the process
 

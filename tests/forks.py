@@ -25,6 +25,7 @@ IMPORTED = [
     "ravemj.cli.diff",
     "ravemj.cli.ik",
     "ravemj.cli.info",
+    "ravemj.cli.mirror",
     "ravemj.cli.pictures",
     "ravemj.cli.sessions",
     "ravemj.cli.view",
@@ -45,10 +46,11 @@ class Forks:
     Args:
         variables: Its environment: what modules read when they are imported, forks cannot change.
         patience: How long a fork may take [s].
+        imported: Names of the modules that it imports.
     """
 
-    def __init__(self, variables: Mapping[str, str], patience: float) -> None:
-        self._variables, self._patience = variables, patience
+    def __init__(self, variables: Mapping[str, str], patience: float, imported: Sequence[str] = IMPORTED) -> None:
+        self._variables, self._patience, self._imported = variables, patience, imported
         self._process: subprocess.Popen[bytes] | None = None
         atexit.register(self._end)
 
@@ -74,7 +76,7 @@ class Forks:
         self._socket.settimeout(self._patience)
         with other:
             self._process = subprocess.Popen(
-                [sys.executable, __file__, str(other.fileno())],
+                [sys.executable, __file__, str(other.fileno()), *self._imported],
                 env=self._variables,
                 pass_fds=[other.fileno()],
                 stdin=subprocess.DEVNULL,
@@ -120,7 +122,7 @@ def _serve(requests: socket.socket) -> None:
 
 
 if __name__ == "__main__":
-    for name in IMPORTED:
+    for name in sys.argv[2:]:
         import_module(name)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # shells let what runs in the background ignore it
     gc.freeze()  # else the end of each fork goes through all of it

@@ -1,5 +1,7 @@
 """Arms for the tests of inverse kinematics: known ones, and random ones of each family."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ravemj.ik.chain import Chain
@@ -29,6 +31,22 @@ def from_craig(rows, tool=0.2):
     T = T.copy()
     T[:3, 3] += T[:3, 2] * tool
     return Chain.of(axes, points, T_base_tool=T)
+
+
+def from_steps(axes, steps, *, rise, tool):
+    """A stretched arm along x, whose axes are named; the second one and those behind it stand higher than the first."""
+    points = np.cumsum([steps, np.zeros(len(steps)), [0, rise, *[0] * (len(steps) - 2)]], axis=1).T
+    T = np.eye(4)
+    T[:3, 3] = points[-1] + [tool, 0, 0]
+    directions = [np.eye(3)["xyz".index(axis)] for axis in axes]
+    return Chain.of(
+        directions,
+        points,
+        T_base_tool=T,
+        lower=[-1.6056, -1.221, -np.pi, -2.251, -np.pi, -2.16, -np.pi],
+        upper=[1.6056, 1.518, np.pi, 2.251, np.pi, 2.16, np.pi],
+        circular=[False, False, True, False, True, False, True],
+    )
 
 
 PUMA = from_dh(
@@ -66,6 +84,32 @@ WAM = from_dh(
         (0.06, 0, 0),
     ]
 )
+PANDA_LIMITED = replace(
+    PANDA,
+    lower=np.array([-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973]),
+    upper=np.array([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]),
+)
+WAM_LIMITED = replace(
+    WAM,
+    lower=np.array([-2.6, -2.0, -2.8, -0.9, -4.76, -1.6, -3.0]),
+    upper=np.array([2.6, 2.0, 2.8, 3.1, 1.24, 1.6, 3.0]),
+)
+_IIWA_LIMITS = np.radians([170, 120, 170, 120, 170, 120, 175])
+IIWA = from_dh(
+    [
+        (0.36, 0, -RIGHT),
+        (0, 0, RIGHT),
+        (0.42, 0, RIGHT),
+        (0, 0, -RIGHT),
+        (0.4, 0, -RIGHT),
+        (0, 0, RIGHT),
+        (0.126, 0, 0),
+    ],
+    lower=-_IIWA_LIMITS,
+    upper=_IIWA_LIMITS,
+)
+OFFSET_SHOULDER = from_steps("zyxyxyx", [0, 0.117, 0.219, 0.133, 0.197, 0.1245, 0.1385], rise=0.06, tool=0.1)
+"""Seven joints, the first of which stands before the others."""
 
 
 def unit(rng, across=None):

@@ -781,7 +781,9 @@ def split(root: Node, choices: Choices, percent: int = 50) -> dict[str, str]:
     def moved(node: Node, folder: str, depth: int) -> Node:
         if node.tag not in {"Robot", "KinBody", "Environment"}:
             return node
-        into_file = depth > 0 and chance(choices, percent)
+        # An including tag counts after all of its file, also after KinBodies that are nested there.
+        stays = "makejoinedlinksadjacent" in node.attributes
+        into_file = depth > 0 and chance(choices, percent) and not stays
         inner_folder = os.path.join(folder, one_of(choices, ("", "sub", "models x"))) if into_file else folder
         children = [moved(child, inner_folder, depth + 1) for child in node.children]
         if not into_file:

@@ -30,3 +30,15 @@ def calls_with_one_argument(thing):
         required = [one.name for one in arguments if one.default is one.empty and one.kind is one.POSITIONAL_OR_KEYWORD]
         named = [one.name for one in arguments if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
         yield from ((method, argument) for argument in named if set(required) <= {argument})
+
+
+def calls_with_several_arguments(thing):
+    """Return the name and the required arguments of each function with more than one of them."""
+    for name in dir(thing):
+        function = getattr(thing, name, None)
+        if name[0] == "_" or not (inspect.isfunction(function) or inspect.ismethod(function)):
+            continue
+        arguments = inspect.signature(function).parameters.values()
+        required = [one.name for one in arguments if one.default is one.empty and one.kind is one.POSITIONAL_OR_KEYWORD]
+        if len(required) > 1:
+            yield name, required

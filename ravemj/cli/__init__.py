@@ -1,7 +1,7 @@
 """The command line: ``ravemj COMMAND …``.
 
-Results go to standard output, everything else to standard error. Exit codes: 0 done, 1 the input is bad or the output
-cannot be written, 2 the command was not understood, 128 + n ended by signal n: 130 by Ctrl-C.
+Results go to standard output, everything else to standard error. Exit codes: 0 success, 1 invalid input or unwritable
+output, 2 invalid command line, 128 + n termination by signal n, for instance 130 by Ctrl-C.
 """
 
 import errno
@@ -27,8 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command.
 
     Args:
-        arguments: Words of the command line behind ``ravemj``; None: those of this process, whose standard streams are
-            made ready for it.
+        arguments: Arguments after ``ravemj``; None: those of this process, whose standard streams are configured then.
 
     Returns:
         The exit code.
@@ -55,7 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(arguments: Sequence[str]) -> int:
     parser = make_parser()
-    if "_ARGCOMPLETE" in os.environ:  # a shell asks how the words go on, and takes no further output
+    if "_ARGCOMPLETE" in os.environ:  # a request of shell completion, which accepts no other output
         from argcomplete import autocomplete  # noqa: PLC0415 - only then
 
         autocomplete(parser)
@@ -66,25 +65,25 @@ def _run(arguments: Sequence[str]) -> int:
         options = parser.parse_args(_joined(arguments))
         return options.run(options)
     finally:
-        signals.heed_signals()  # again, where the command has left them to a script
-        sys.stdout.flush()  # here, where its failure can be told
+        signals.heed_signals()  # again, since a script may have replaced the handlers
+        sys.stdout.flush()  # here, where its failure can be reported
 
 
 def _explain(error: OSError) -> None:
-    """Print an error of the operating system; one without a file is that of standard output."""
+    """Print an operating system error; without a file name it is one of standard output."""
     reason = (error.strerror or str(error)).lower()
     if error.filename is not None:
         print_error(RavemjError(f"{error.filename}: {reason}"))
         return
     # Send the rest nowhere, so that Python does not complain at its end.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    if not isinstance(error, BrokenPipeError):  # else the reader of our output is gone, for instance ``head``
+    if not isinstance(error, BrokenPipeError):  # else the reader of our output has exited, for instance ``head``
         reason = "it is closed" if error.errno == errno.EBADF else reason
         print_error(OutputError(f"cannot write standard output: {reason}"))
 
 
 def _joined(words: Sequence[str]) -> list[str]:
-    """Write ``--to -1,0`` as ``--to=-1,0``, since argparse takes what starts with a dash for an option."""
+    """Join ``--to -1,0`` to ``--to=-1,0``, since argparse takes values with a leading dash for options."""
     joined: list[str] = []
     for word in words:
         if joined and joined[-1] in _VECTOR_OPTIONS and re.match(r"-([\d.]|inf|nan)", word, re.IGNORECASE):

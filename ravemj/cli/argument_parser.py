@@ -1,4 +1,4 @@
-"""The parser of all commands. It reports a wrong argument in one line, with a guess of what was meant."""
+"""The argument parser of all commands. It reports an invalid argument in one line, with a suggestion."""
 
 import argparse
 import difflib
@@ -6,23 +6,23 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NoReturn
 
-_LIKENESS = 0.7  # from here on two words are taken for the same one with a typing mistake: not "help" for "shell"
+_LIKENESS = 0.7  # minimum similarity of a misspelt word: excludes "help" for "shell"
 
 
 class Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
+    """Reports an invalid argument in one line."""
 
     def error(self, message: str) -> NoReturn:
-        """End with a wrong argument in one line."""
+        """Exit with a one-line message about an invalid argument."""
         self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
 
     def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride] - its overloads
         self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Refuse what a command does not know, so that the message names the command.
+        """Reject unknown arguments, with the name of the command in the message.
 
-        Unknown options come first: argparse takes the beginning of an option for all of it, and says what is missing
-        before it says what is unknown.
+        Unknown options are checked first: argparse accepts abbreviated options, and reports missing arguments before
+        unknown ones.
         """
         self._refuse(self._unknown_options(args or ()))
         parsed, unknown = super().parse_known_args(args, namespace or argparse.Namespace())
@@ -34,8 +34,8 @@ class Parser(argparse.ArgumentParser):
             self.error(f"unknown: {' '.join(unknown)}{did_you_mean(unknown[0], self._option_string_actions)}")
 
     def _unknown_options(self, words: Sequence[str]) -> list[str]:
-        """Return the words that look like options and are none of this command."""
-        # The words behind the first plain one are for another parser, or for a script.
+        """Return the words that look like options but are not options of this command."""
+        # The words after the first positional one are for a subparser or a script.
         passes_on = any(action.nargs in {argparse.PARSER, argparse.REMAINDER} for action in self._actions)
         unknown: list[str] = []
         for word in words:
@@ -47,7 +47,7 @@ class Parser(argparse.ArgumentParser):
         return unknown
 
     def _check_value(self, action: argparse.Action, value: object) -> None:
-        """Refuse a value that is not one of the choices, with the nearest one."""
+        """Reject a value outside the choices, suggesting the closest one."""
         if action.choices is not None and value not in action.choices:
             choices = [str(choice) for choice in action.choices]
             guess = did_you_mean(str(value), choices)
@@ -55,6 +55,6 @@ class Parser(argparse.ArgumentParser):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return the words that propose the nearest of the known words, where one is near."""
+    """Return a suggestion of the closest known word, or an empty text."""
     close = difflib.get_close_matches(word, known, 1, _LIKENESS)
     return f"; did you mean {close[0]}?" if close else ""

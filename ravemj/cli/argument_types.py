@@ -5,9 +5,9 @@ import math
 import os
 
 TO_STANDARD_OUTPUT = "-"
-"""The name that stands for standard output in place of a file."""
+"""File name that means standard output."""
 
-_LONGEST_SIDE = 16384  # what OpenGL's frame buffers can have on most machines
+_LONGEST_SIDE = 16384  # limit of OpenGL's framebuffers on most machines
 _MOST_DIGITS = 9  # so that a seed fits into 32 bits
 
 
@@ -19,7 +19,7 @@ def file_name(text: str) -> str:
 
 
 def package(text: str) -> str:
-    """Return the name and the folder of a package."""
+    """Check ``NAME=FOLDER`` of a package."""
     name, _, folder = text.partition("=")
     if not name or not os.path.isdir(folder):
         reason = f"'{folder}' is no folder" if folder else "should be NAME=FOLDER"
@@ -28,7 +28,7 @@ def package(text: str) -> str:
 
 
 def argument(text: str) -> str:
-    """Return the name and the value of an argument of a xacro."""
+    """Check ``NAME:=VALUE`` of a xacro argument."""
     name, separator, _ = text.partition(":=")
     if not name or not separator or len(text.split()) != 1:
         raise argparse.ArgumentTypeError(f"'{text}' should be NAME:=VALUE, without blanks")
@@ -36,8 +36,21 @@ def argument(text: str) -> str:
 
 
 def vector(text: str) -> list[float]:
-    """Return numbers that commas or blanks separate."""
+    """Parse numbers separated by commas or blanks."""
     return [_number(part) for part in text.replace(",", " ").split()]
+
+
+def limb_goal(text: str) -> tuple[str, list[float]]:
+    """Parse a name, an equals sign and numbers."""
+    name, equals, numbers = text.rpartition("=")
+    if not (equals and name.strip() and numbers.strip()):
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=x,y,z or NAME=x,y,z,qw,qx,qy,qz")
+    return name.strip(), vector(numbers)
+
+
+def names(text: str) -> list[str]:
+    """Parse names separated by commas."""
+    return [part.strip() for part in text.split(",") if part.strip()]
 
 
 def _number(text: str) -> float:
@@ -56,6 +69,14 @@ def positive(text: str) -> float:
     if number <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not above 0")
     return number
+
+
+def rate(text: str) -> float | None:
+    """Return a number of points per second, or None for the word ``waypoints``."""
+    try:
+        return None if text == "waypoints" else positive(text)
+    except argparse.ArgumentTypeError as error:
+        raise argparse.ArgumentTypeError(f"{error}, and not the word waypoints") from None
 
 
 def seed(text: str) -> int:

@@ -1,8 +1,8 @@
-"""Arms of a model as commands name them, and the joint values that take their tools to a goal."""
+"""Selection of manipulators by commands, and their IK solutions."""
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -14,14 +14,13 @@ from ravemj.errors import ArgumentError, Source, SourceError
 from ravemj.formats.limits import json_bytes
 from ravemj.geometry_functions import matrixFromPose
 from ravemj.geometry_functions.ik_types import IkParameterizationType
-from ravemj.rave import (
-    CollisionOptions,
-    CollisionOptionsStateSaver,
-    CollisionReport,
-    RaveCreateRobot,
-    Robot,
-)
+from ravemj.manipulation.bodies import Bodies
+from ravemj.manipulation.joint_trajectories import Joints, largest_excess
+from ravemj.manipulation.refusals import troubles
+from ravemj.rave import RaveCreateRobot, Robot
 from ravemj.rave.manipulator import Manipulator
+from ravemj.trajectories.bodies import body_groups
+from ravemj.trajectories.joint_trajectory_files import LARGEST_NUMBER
 
 _POSE_DOFS = 6
 _GHOST = 0.75  # transparency
@@ -32,8 +31,8 @@ class Solution(NamedTuple):
 
     Attributes:
         values: Joint values of the arm [rad or m], shape (n,).
-        branch: The name of its branch of solutions.
-        trouble: The limits that it exceeds and the collisions that it has.
+        branch: Name of its IK branch.
+        trouble: Description of violated limits and collisions; empty if there are none.
     """
 
     values: Floats
@@ -41,17 +40,30 @@ class Solution(NamedTuple):
     trouble: tuple[str, ...]
 
 
-def out_of_reach(arm: Manipulator, kind: IkParameterizationType) -> str:
-    """Say that no joint values take an arm to a goal, and what an arm of fewer than six joints can be asked instead."""
+def out_of_reach(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> str:
+    """Describe how far a goal is out of reach and, for arms with fewer than six joints, suggest other goal types."""
     text = f"no joint values take '{arm.GetName()}' of '{arm.GetRobot().GetName()}' there: it is out of reach"
+    text += f"; {_shortfall(arm, goal, kind)}"
     if kind != IkParameterizationType.Transform6D or arm.GetArmDOF() >= _POSE_DOFS:
         return text
     hint = "ravemj ik --type TranslationDirection5D asks for the direction of the tool and its point, dx,dy,dz,x,y,z"
     return f"{text}; a pose has six parts, and the arm {arm.GetArmDOF()} joints: {hint}"
 
 
+def beyond_all_limits(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> str:
+    """Describe how far a goal is out of reach; return an empty text if values within the limits reach it."""
+    if len(arm.ik_solver(kind).solve_one(arm.goals_in_base(goal, kind)[0])):
+        return ""
+    return f"no joint values within the limits reach it; {_shortfall(arm, goal, kind)}"
+
+
+def _shortfall(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> str:
+    local = arm.goals_in_base(goal, kind)[0]
+    return str(arm.ik_solver(kind).nearest_reachable(local, arm.GetArmDOFValues()))
+
+
 def arm_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
-    """Return the manipulator of a name, or the active one of the first robot that has one.
+    """Return the manipulator with a name, by default the active one of the first robot that has a manipulator.
 
     Raises:
         ArgumentError: there is no such manipulator.
@@ -85,10 +97,10 @@ def pose_goal(numbers: Sequence[float], option: str) -> Floats:
 
 
 def start_values(path: str, robot: Robot) -> list[float]:
-    """Return the joint values of a file: a list, or an object with some of the joints' names.
+    """Read joint values from a JSON file: a list, or an object of values by joint name.
 
     Raises:
-        SourceError: the file cannot be read as such.
+        SourceError: the file cannot be read, or a value is outside the limits of its joint.
     """
     hint = "a list with a value for each DOF, or an object with names of joints and their values"
     try:
@@ -99,80 +111,52 @@ def start_values(path: str, robot: Robot) -> list[float]:
         raise SourceError(f"not JSON: {error}", Source(path), hint) from None
     values = robot.GetDOFValues().tolist()
     if isinstance(content, dict):
-        names = [joint.GetName() for joint in robot.GetJoints()]
+        names = robot.simulation_state.scene.dof_names
         items = cast("dict[str, Any]", content)
         unknown = items.keys() - set(names)
         if unknown:
             raise SourceError(f"there is no joint '{min(unknown)}'", Source(path), f"the joints are {', '.join(names)}")
         content = [items.get(name, value) for name, value in zip(names, values, strict=True)]
     numbers = cast("list[object]", content) if isinstance(content, list) else []
-    if len(numbers) != len(values) or not all(isinstance(number, int | float) for number in numbers):
+    checked = [float(number) for number in numbers if isinstance(number, int | float) and abs(number) < LARGEST_NUMBER]
+    if len(numbers) != len(values) or len(checked) < len(values):
         found = f"{len(numbers)} values" if isinstance(content, list) else "something other than a list"
         raise SourceError(f"found {found}, expected {len(values)} joint values", Source(path), hint)
-    return [float(cast("float", number)) for number in numbers]
+    state = robot.simulation_state
+    beyond = largest_excess(Joints(state, range(state.dof)), np.array([checked]))
+    if beyond is not None:
+        raise SourceError(beyond.text, Source(path))
+    return checked
 
 
 def reached(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> list[tuple[Floats, str]]:
-    """Return the joint values that reach a goal and their branches, those nearest to the present values first.
+    """Return the IK solutions of a goal and their branches, nearest to the present values first."""
+    from ravemj.ik.candidates import ranked  # noqa: PLC0415 - slow to import
 
-    Full turns are added to angles until they are within the limits, where that is possible.
-    """
-    from ravemj.ik.limits import nearest_turns  # noqa: PLC0415 - slow to import
-
-    found = arm.ik(goal, kind, limits=False)
-    valid = found.valid[0]
-    rows: Floats = found.solutions[0][valid]
-    here = arm.GetArmDOFValues()
-    chain = arm.ik_solver(kind).chain
-    moved, _ = nearest_turns(chain, rows, here)  # which also puts what is beyond a limit onto it
-    turns: Floats = np.where(chain.turning, np.round((moved - rows) / (2 * np.pi)), 0.0)
-    rows += 2 * np.pi * turns
-    order = np.argsort(np.linalg.norm(rows - here, axis=1), kind="stable")
-    names = np.array(found.branches)[valid]
-    return [(rows[index], str(names[index])) for index in order]
+    return ranked(arm.ik_solver(kind), arm.goals_in_base(goal, kind)[0], arm.GetArmDOFValues())
 
 
 def validated(arm: Manipulator, ways: Sequence[tuple[Floats, str]]) -> list[Solution]:
-    """Return solutions with the limits and collisions that rule them out; contacts of other parts do not count."""
-    robot, dofs = arm.GetRobot(), arm.GetArmIndices().tolist()
-    checker, solutions = robot.GetEnv().GetCollisionChecker(), list[Solution]()
-    with robot, CollisionOptionsStateSaver(checker, CollisionOptions.ActiveDOFs):
-        robot.SetActiveDOFs(dofs)
-        for values, branch in ways:
-            robot.SetDOFValues(values, dofs, checklimits=0)
-            solutions.append(Solution(values, branch, (*_beyond_limits(robot, dofs, values), *_collisions(robot))))
-    return solutions
+    """Check solutions for joint limits and collisions; contacts between other parts are ignored."""
+    env, groups = arm.GetRobot().GetEnv(), body_groups(arm.GetRobot().GetName(), arm.description.arm_dofs, 0, "")
+    bodies = Bodies(env.simulation, groups, env.GetCollisionChecker)
+    with bodies.kept():
+        return [Solution(values, branch, tuple(troubles(bodies, values))) for values, branch in ways]
 
 
-def _beyond_limits(robot: Robot, dofs: Sequence[int], values: Floats) -> Iterator[str]:
-    lower, upper = robot.GetDOFLimits(dofs)
-    joints = [robot.GetJointFromDOFIndex(dof) for dof in dofs]
-    ranges = zip(joints, values, lower, upper, strict=True)
-    beyond = [one.GetName() for one, value, low, high in ranges if not (one.IsCircular(0) or low <= value <= high)]
-    if beyond:
-        yield f"beyond limits: {', '.join(beyond)}"
-
-
-def _collisions(robot: Robot) -> Iterator[str]:
-    report, env = CollisionReport(), robot.GetEnv()
-    for hits in (lambda: robot.CheckSelfCollision(report), lambda: env.CheckCollision(robot, report)):
-        if hits() and report.plink1 is not None and report.plink2 is not None:
-            yield f"{report.plink1.GetName()} hits {report.plink2.GetName()}"
-
-
-def add_ghost(robot: Robot, number: int, values: Floats, dofs: Sequence[int]) -> None:
+def add_ghost(robot: Robot, label: int | str, values: Floats, dofs: Sequence[int]) -> None:
     """Add a transparent copy of a robot.
 
     Args:
         robot: The robot.
-        number: A number for the name of the copy.
+        label: Suffix of the copy's name.
         values: Joint values of the copy, of some joints [rad or m].
-        dofs: Their DOF indices; the other joints are where those of the robot are.
+        dofs: Their DOF indices; the other joints have the robot's values.
     """
     env = robot.GetEnv()
     ghost = cast("Robot", RaveCreateRobot(env, ""))
     ghost.Clone(robot, 0)
-    ghost.SetName(f"{robot.GetName()} {number}")
+    ghost.SetName(f"{robot.GetName()} {label}")
     env.Add(ghost, True)
     ghost.SetTransform(robot.GetTransform())
     ghost.SetDOFValues(values, dofs, checklimits=0)

@@ -13,12 +13,16 @@ from ravemj.errors import Diagnostic, Source
 
 
 def check(options: argparse.Namespace) -> int:
-    """Report what is wrong or odd in models."""
+    """Report errors and warnings about models."""
     if options.self or options.write_srdf is not None:
         from ravemj.cli.self_collisions import check as check_self  # noqa: PLC0415 - rarely wanted
 
         touching = sum(check_self(options, model) for model in options.models)
         return 1 if touching and options.strict else 0
+    if options.sim:
+        from ravemj.cli.sim_checks import check as check_sim  # noqa: PLC0415 - rarely wanted
+
+        return check_sim(options)
     found: dict[tuple[object, ...], Diagnostic] = {}  # a file that several models include is reported once
     for model in options.models:
         findings = checking.check(model_file(model), given(options))
@@ -36,7 +40,7 @@ def check(options: argparse.Namespace) -> int:
 
 
 def _key(finding: Diagnostic) -> tuple[object, ...]:
-    """Return what two reports of the same thing have in common, however the file was reached."""
+    """Return a key that is equal for reports of the same problem, however the file was reached."""
     return os.path.realpath(finding.source.file), finding.source.line, finding.code, finding.message
 
 
@@ -45,7 +49,7 @@ def _number(count: int, noun: str) -> str:
 
 
 def _entry(finding: Diagnostic) -> dict[str, object]:
-    """Return a finding as JSON has it; these keys stay."""
+    """Return a finding as JSON data; the keys are stable."""
     return {
         "file": finding.source.file,
         "line": finding.source.line or None,

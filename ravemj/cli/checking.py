@@ -1,4 +1,4 @@
-"""Findings about a model file: those of the reader and of the translation, and more."""
+"""All findings about a model file: of the reader, of the translation, and further checks."""
 
 import os
 import warnings
@@ -13,11 +13,11 @@ from ravemj.model.scene import KinBody
 from ravemj.rave import load
 
 FATAL_CODES = {"bad-number"}
-"""Codes of findings that OpenRAVE overlooks and commands refuse: nobody means the number that OpenRAVE reads there."""
+"""Codes of findings that OpenRAVE tolerates and commands reject: the number that OpenRAVE reads is never intended."""
 
 
 def check(path: str | os.PathLike[str], given: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return all findings about a model file, in the order in which they are met.
+    """Return all findings about a model file, in order of occurrence.
 
     Args:
         path: A model file. Its mistakes become findings, never exceptions.
@@ -67,7 +67,7 @@ def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) ->
 
 
 def _default_masses(body: KinBody) -> Iterator[Diagnostic]:
-    """Yield a note for each moving link that has OpenRAVE's mass, since the file gives none."""
+    """Yield a note for each moving link with OpenRAVE's default mass because the file gives none."""
     for link in body.links:
         if link.inertial is DEFAULT_INERTIAL and not link.static:
             message = "a Body without a <Mass> weighs 1 kg, with the inertia of a sphere of 1 m"

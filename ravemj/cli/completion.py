@@ -9,6 +9,7 @@ from argcomplete.completers import FilesCompleter
 from argcomplete.shell_integration import shellcode
 
 from ravemj.errors import RavemjError
+from ravemj.formats.robot_packages import robot_names
 from ravemj.formats.shipped import SHIPPED_MODELS
 
 if TYPE_CHECKING:
@@ -16,15 +17,15 @@ if TYPE_CHECKING:
 
 
 def completion(options: argparse.Namespace) -> int:
-    """Print what a shell has to run."""
+    """Print the setup code of a shell."""
     print(shellcode(["ravemj"], shell=options.shell))
     return 0
 
 
 def models(prefix: str, **_: object) -> list[str]:
-    """Return the completions of the name of a model: models that come with ravemj, and files."""
-    shipped = [name for name in SHIPPED_MODELS if name.startswith(prefix)]
-    return [*shipped, *FilesCompleter(("xml", "dae", "zae"))(prefix)]
+    """Return the completions of the name of a model: models that come with ravemj, robots of packages, and files."""
+    known = [name for name in (*SHIPPED_MODELS, *robot_names()) if name.startswith(prefix)]
+    return [*known, *FilesCompleter(("xml", "dae", "zae", "urdf", "mjcf"))(prefix)]
 
 
 def robots(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:

@@ -1,4 +1,4 @@
-"""What the commands print: errors, warnings, tables and progress."""
+"""Console output of the commands: errors, warnings, tables and progress."""
 
 import contextlib
 import os
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _LEAST_WIDTH = 100
 _PLACES = 4
-_WITHOUT_BAR = b"\r\x1b[2K\x1b[?25h"  # what erases a line of a terminal, and shows the cursor again
+_WITHOUT_BAR = b"\r\x1b[2K\x1b[?25h"  # erases a line of a terminal, and shows the cursor again
 
 
 def print_error(error: RavemjError) -> None:
@@ -27,11 +27,11 @@ def print_error(error: RavemjError) -> None:
 
 
 def print_findings(findings: Iterable[Diagnostic], file: TextIO | None = None) -> None:
-    """Print findings; those that differ only in places or names share a line.
+    """Print findings; those that differ only in sources or names share a line.
 
     Args:
-        findings: What to print.
-        file: Where; None: standard error.
+        findings: The findings.
+        file: Output stream; None: standard error.
     """
     groups: dict[tuple[str, str], list[Diagnostic]] = {}
     for finding in findings:
@@ -44,7 +44,7 @@ def print_findings(findings: Iterable[Diagnostic], file: TextIO | None = None) -
 
 
 def _more(count: int, places: Sequence[str]) -> str:
-    """Return the words for further findings: how many there are, and the places of the first ones."""
+    """Return the text about further findings: their number, and the sources of the first ones."""
     if not count:
         return ""
     rest = ["…"] if len(places) > _PLACES else []
@@ -84,7 +84,7 @@ def table(title: str, *columns: str) -> "Table":
 
 
 def console() -> "Console":
-    """Return rich's console for standard output; it is wide enough for tables where that is a file or a pipe."""
+    """Return rich's console for standard output; files and pipes count as wide enough for tables."""
     from rich.console import Console  # noqa: PLC0415 - slow to import
 
     made = Console(highlight=False, markup=False)  # names may have brackets
@@ -95,15 +95,15 @@ def console() -> "Console":
 
 @contextlib.contextmanager
 def progress(task: str, total: float, unit: str = "frames") -> Generator[Callable[[float], None]]:
-    """Show a bar with what is done and the time left, if standard error is a terminal.
+    """Show a progress bar with the remaining time, if standard error is a terminal.
 
     Args:
-        task: What is done.
-        total: How much there is to do.
+        task: Description of the task.
+        total: Total amount of work.
         unit: The unit of ``total``.
 
     Yields:
-        A function that takes how much is done so far.
+        A function that sets the amount of finished work.
     """
     if not sys.stderr.isatty():
         yield lambda done: None

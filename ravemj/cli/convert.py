@@ -3,20 +3,18 @@
 import argparse
 import os
 import sys
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
 from ravemj.cli.argument_types import TO_STANDARD_OUTPUT
 from ravemj.cli.console import print_findings
 from ravemj.cli.models import failure_of, load_model
-from ravemj.engine.export import is_folder, marked, translate, write_file, write_folder
-from ravemj.errors import Diagnostic, Diagnostics, OutputError, RavemjWarning
-from ravemj.formats.mjcf import Options
+from ravemj.engine import sim_check
+from ravemj.engine.export import is_folder, marked, write
+from ravemj.engine.translation import Choices, translated
+from ravemj.errors import Diagnostic, Diagnostics, OutputError
+from ravemj.formats.suffixes import SUFFIXES, format_of
 from ravemj.rave import Environment
-from ravemj.rave.env.saving import SUFFIXES
-
-_MJCF_ENDS = (".xml", ".mjcf")
 
 
 def convert(options: argparse.Namespace) -> int:
@@ -25,52 +23,69 @@ def convert(options: argparse.Namespace) -> int:
     env = load_model(options)
     if kind != "mjcf":
         return _save(env, options, kind)
-    found = Diagnostics()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RavemjWarning)
-        mjcf = translate(
-            env.simulation, found, Options(options.base == "openrave", options.actuators, options.decompose)
-        )
-    _report([finding for finding in found if finding not in env.diagnostics], options)
+    findings = Diagnostics()
+    loose = tuple(sensor.description for sensor in env.GetSensors() if sensor.attached is None)
+    translation = translated(env.simulation, findings, choices_of(options), env.files[0], loose)
+    _report([finding for finding in findings if finding not in env.diagnostics], options)
+    mjcf = translation.mjcf
     if options.output == TO_STANDARD_OUTPUT:
         if mjcf.assets:
             raise OutputError("the model has meshes, which standard output cannot take; write -o FOLDER")
         sys.stdout.buffer.write(marked(mjcf.text, options.model).encode())  # UTF-8, as in a file, on any terminal
         return 0
-    write = write_folder if is_folder(options.output) else write_file
-    written = write(options.output, options.model, mjcf, env.files)
+    written = write(options.output, options.model, translation, env.files)
     print(f"wrote {os.fspath(written)}{_meshes(len(mjcf.assets))}")
+    summary = sim_check.summary(translation)
+    if summary:
+        print(summary)
     return 0
 
 
+def choices_of(options: argparse.Namespace) -> Choices:
+    """Return the options of a translation to MJCF from those of a command."""
+    return Choices(
+        base=options.base,
+        actuators=options.actuators,
+        gains=options.gains,
+        state=options.state,
+        self_collision=options.self_collision == "on",
+        exclude=options.exclude,
+        decompose=options.decompose,
+        hull_vertices=options.hull_vertices,
+        merge_fixed=options.merge_fixed,
+        sensors=options.sensors,
+        append=options.append,
+        timestep=options.timestep,
+    )
+
+
 def _format_of(output: str) -> str:
-    """Return the format that the name of a target stands for.
+    """Return the format of a target by its suffix.
 
     Raises:
-        OutputError: the name has another suffix.
+        OutputError: the suffix is unknown.
     """
-    if output != TO_STANDARD_OUTPUT and not is_folder(output):
-        known = {end: form for form, ends in {**SUFFIXES, "mjcf": _MJCF_ENDS}.items() for end in ends}
-        form = next((form for end, form in known.items() if output.lower().endswith(end)), None)
-        if form is None:
-            ends = ", ".join(end for end in known if end.count(".") == 1)
-            reason = f"'{Path(output).suffix}' is none of {ends}, a folder (no suffix or a final /)"
-            raise OutputError(f"cannot write {output}: {reason}; --format chooses a format for any name")
-        return form
-    return "mjcf"
+    if output == TO_STANDARD_OUTPUT or is_folder(output):
+        return "mjcf"
+    form = format_of(output)
+    if form is None:
+        ends = ", ".join(end for ends in SUFFIXES.values() for end in ends if end.count(".") == 1)
+        reason = f"'{Path(output).suffix}' is none of {ends}, a folder (no suffix or a final /)"
+        raise OutputError(f"cannot write {output}: {reason}; --format chooses a format for any name")
+    return form
 
 
 def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
     """Write a model in one of OpenRAVE's formats."""
     if options.output == TO_STANDARD_OUTPUT:
         raise OutputError(f"a model in the format {kind} needs a file; write -o FILE")
-    if options.base != "fixed" or options.actuators or options.decompose:
-        raise OutputError("--base, --actuators and --decompose are for MJCF; leave them out")
+    if choices_of(options)._replace(state=None) != Choices():
+        raise OutputError("--base, --actuators, --decompose and the like are for MJCF; leave them out")
     if any(Path(file).exists() and Path(options.output).resolve() == Path(file).resolve() for file in env.files):
         raise OutputError(f"cannot write {options.output}: the model was read from it")
-    found = Diagnostics()
-    env.write(options.output, env.SelectionOptions.Everything, {"format": kind, "meshes": options.meshes}, found)
-    _report([*found], options)
+    findings = Diagnostics()
+    env.write(options.output, env.SelectionOptions.Everything, {"format": kind, "meshes": options.meshes}, findings)
+    _report([*findings], options)
     print(f"wrote {options.output}")
     return 0
 

@@ -21,19 +21,19 @@ def diff(options: argparse.Namespace) -> int:
     except RavemjError as error:
         print_error(error)
         return 2
-    found = compare(first, second, options.tolerance)
+    differences = compare(first, second, options.tolerance)
     if options.json:
-        print(json.dumps([_entry(difference) for difference in found], indent=1, default=str))
-    elif found:
+        print(json.dumps([_entry(difference) for difference in differences], indent=1, default=str))
+    elif differences:
         rows = table(f"{options.first} and {options.second}", "part", "quantity", "first", "second", "difference>")
-        for difference in found:
+        for difference in differences:
             error = "" if difference.error is None else f"{difference.error:.3g}"
             values = (_short(difference.first), _short(difference.second))
             rows.add_row(difference.part, difference.quantity, *values, error)
         console().print(rows)
     else:
         print(f"no differences in {len(first.bodies)} {'body' if len(first.bodies) == 1 else 'bodies'}")
-    return 1 if found else 0
+    return 1 if differences else 0
 
 
 def _scene(model: str) -> Scene:
@@ -44,7 +44,7 @@ def _scene(model: str) -> Scene:
 
 
 def _entry(difference: Difference) -> dict[str, object]:
-    """Return a difference as JSON has it; these keys stay."""
+    """Return a difference as JSON data; the keys are stable."""
     return {
         "part": difference.part,
         "quantity": difference.quantity,
@@ -55,7 +55,7 @@ def _entry(difference: Difference) -> dict[str, object]:
 
 
 def _short(value: object) -> str:
-    """Return a value as a cell of the table has it, numbers with a few digits."""
+    """Return a value as table text, with few digits."""
     text = _digits(value)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 

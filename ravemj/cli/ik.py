@@ -7,7 +7,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ravemj.cli.arms import Solution, add_ghost, arm_of, out_of_reach, pose_goal, reached, start_values, validated
+from ravemj.cli.arms import (
+    Solution,
+    add_ghost,
+    arm_of,
+    beyond_all_limits,
+    out_of_reach,
+    pose_goal,
+    reached,
+    start_values,
+    validated,
+)
 from ravemj.cli.console import console, table
 from ravemj.cli.models import chosen_robots, load_model
 from ravemj.cli.pictures import picture_of
@@ -27,6 +37,8 @@ def ik(options: argparse.Namespace) -> int:
     """Show the joint values that take the tool of an arm to a goal; return 1 where none are good."""
     if options.output is not None:
         check_picture(options.output)
+    if options.reach or options.keep:
+        return _reach(options)
     env = load_model(options)
     arm = arm_of(chosen_robots(env, options.robot), options.manip)
     robot = arm.GetRobot()
@@ -35,22 +47,42 @@ def ik(options: argparse.Namespace) -> int:
     if options.describe:
         print(arm.ik_solver(_kind(options)).describe())
         return 0
-    ways = reached(arm, _goal(options), _kind(options))
-    found = validated(arm, ways if options.json else ways[:_MOST_ROWS])
-    if options.json:
-        print(json.dumps([_entry(solution) for solution in found], indent=1))
-    elif found:
-        _print_table(arm, found, len(ways))
-    else:
-        print(out_of_reach(arm, _kind(options)))
+    goal, kind = _goal(options), _kind(options)
+    ways = reached(arm, goal, kind)
+    solutions = validated(arm, ways if options.json else ways[:_MOST_ROWS])
+    _print(arm, goal, solutions, len(ways), options)
     if options.output is not None:
-        _draw(env, arm, found, options)
+        _draw(env, arm, solutions, options)
         print(f"wrote {options.output}")
-    return 0 if any(not solution.trouble for solution in found) else 1
+    return 0 if any(not solution.trouble for solution in solutions) else 1
+
+
+def _print(
+    arm: Manipulator, goal: Floats, solutions: Sequence[Solution], count: int, options: argparse.Namespace
+) -> None:
+    kind = _kind(options)
+    if options.json:
+        print(json.dumps([_entry(solution) for solution in solutions], indent=1))
+    elif solutions:
+        _print_table(arm, solutions, count)
+        if all(solution.trouble for solution in solutions) and (told := beyond_all_limits(arm, goal, kind)):
+            print(told)
+    else:
+        print(out_of_reach(arm, goal, kind))
+
+
+def _reach(options: argparse.Namespace) -> int:
+    from ravemj.cli.whole_body import reach  # noqa: PLC0415 - slow to import
+
+    if not options.reach:
+        raise ArgumentError("--keep: goes with --reach, and there is none")
+    if options.type is not None or options.manip is not None:
+        raise ArgumentError("--type and --manip go with --to; --reach NAME=GOAL names the manipulator and takes poses")
+    return reach(options)
 
 
 def _kind(options: argparse.Namespace) -> IkParameterizationType:
-    """Return the type of the goal: the one that is named, else a point for three numbers and a pose for seven."""
+    """Return the goal type: the named one, else a point for three numbers and a pose for seven."""
     if options.type is not None:
         return IkParameterizationType[options.type]
     is_point = options.to is not None and len(options.to) == _POINT
@@ -58,7 +90,7 @@ def _kind(options: argparse.Namespace) -> IkParameterizationType:
 
 
 def _goal(options: argparse.Namespace) -> Floats:
-    """Return the goal as ``Manipulator.ik`` takes it.
+    """Return the goal as an argument of ``Manipulator.ik``.
 
     Raises:
         ArgumentError: its type has another number of values.
@@ -72,7 +104,7 @@ def _goal(options: argparse.Namespace) -> Floats:
 
 
 def _entry(solution: Solution) -> dict[str, object]:
-    """Return a solution as JSON has it; these keys stay."""
+    """Return a solution as JSON data; the keys are stable."""
     return {
         "values": solution.values.tolist(),
         "branch": solution.branch,
@@ -81,29 +113,29 @@ def _entry(solution: Solution) -> dict[str, object]:
     }
 
 
-def _print_table(arm: Manipulator, found: Sequence[Solution], count: int) -> None:
+def _print_table(arm: Manipulator, solutions: Sequence[Solution], count: int) -> None:
     robot = arm.GetRobot()
     joints = [robot.GetJointFromDOFIndex(dof) for dof in arm.GetArmIndices()]
     turns = [joint.IsRevolute(0) for joint in joints]
     title = f"Joint values of '{arm.GetName()}' of '{robot.GetName()}', the nearest to the current ones first"
     rows = table(title, "branch", *(f"{joint.GetName()}>" for joint in joints), "")
-    for solution in found:
+    for solution in solutions:
         cells = [_value(value, turn) for value, turn in zip(solution.values, turns, strict=True)]
         rows.add_row(solution.branch, *cells, "; ".join(solution.trouble) or "ok")
     console().print(rows)
-    print("in rad and degrees, slides in m" + (f"; --json has all {count}" if count > len(found) else ""))
+    print("in rad and degrees, slides in m" + (f"; --json has all {count}" if count > len(solutions) else ""))
 
 
 def _value(value: float, turns: bool) -> str:
     return f"{value:.4f}\n{math.degrees(value):.1f}°" if turns else f"{value:.4f}"
 
 
-def _draw(env: Environment, arm: Manipulator, found: Sequence[Solution], options: argparse.Namespace) -> None:
-    """Draw the robot at the first solution, and a transparent copy of it at each other one."""
+def _draw(env: Environment, arm: Manipulator, solutions: Sequence[Solution], options: argparse.Namespace) -> None:
+    """Draw the robot at the first solution, and transparent copies at the others."""
     robot, dofs = arm.GetRobot(), arm.GetArmIndices().tolist()
-    if found:
-        robot.SetDOFValues(found[0].values, dofs, checklimits=0)
-    for number, solution in enumerate(found[1:], 2):
+    if solutions:
+        robot.SetDOFValues(solutions[0].values, dofs, checklimits=0)
+    for number, solution in enumerate(solutions[1:], 2):
         add_ghost(robot, number, solution.values, dofs)
     camera = None if options.camera is None else read_camera(options.camera).T_world_camera
     write_picture(options.output, picture_of(options, env, camera))

@@ -12,7 +12,7 @@ from ravemj.model.scene import AttachedSensor, Intrinsics, Joint, KinBody, Link,
 
 
 def info(options: argparse.Namespace) -> int:
-    """Show what the bodies of a model consist of."""
+    """Show the parts of the bodies of a model."""
     env = load_model(options)
     robot = named_robot(env, options.robot)
     bodies = [body.simulation_state.scene for body in (env.GetBodies() if robot is None else [robot])]
@@ -45,7 +45,7 @@ def _headline(body: KinBody) -> str:
 
 
 class _Tree:
-    """The links of a body, each below the one that carries it, with the joint between them."""
+    """Prints the kinematic tree of a body: each link below its parent, with the joint between them."""
 
     def __init__(self, body: KinBody, width: int) -> None:
         self._body = body
@@ -74,7 +74,7 @@ class _Tree:
                 yield f"{joint.name} closes a loop between {' and '.join(_ends(self._body, joint))}"
 
     def _entry(self, index: int, first: str, rest: str) -> Iterator[str]:
-        """Yield a link and its joint in one line, or in two where that gets too long."""
+        """Yield a link and its joint in one line, or in two if it would be too long."""
         link = self._body.links[index]
         name = f"{first}{link.name}  {_number(link.inertial.mass)} kg{', static' if link.static else ''}"
         number = self._placing.get(index)

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import sys
 import warnings
 from collections.abc import Sequence
 from typing import cast
@@ -13,6 +14,7 @@ from ravemj.cli.checking import FATAL_CODES
 from ravemj.cli.console import print_findings
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning, SourceError
+from ravemj.formats.robot_packages import is_robot_name, robot_file
 from ravemj.formats.shipped import SHIPPED_MODELS, model_path
 from ravemj.formats.urdf import GUESSES
 from ravemj.rave import Environment, Robot, load
@@ -20,24 +22,24 @@ from ravemj.trajectories.motion_arguments import first_robot
 
 
 def load_model(options: argparse.Namespace) -> Environment:
-    """Load the model of a command and print what was found in it.
+    """Load the model of a command and print the findings.
 
     Raises:
         SourceError: the file is missing or broken, or has warnings and ``--strict`` was given.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RavemjWarning)  # they are printed below, all at once
+        warnings.simplefilter("ignore", RavemjWarning)  # they are printed together below
         env = loaded(options)
-    found = [finding for finding in env.diagnostics if finding.severity != "note"]
-    fatal = [finding for finding in found if options.strict or finding.code in FATAL_CODES]
+    findings = [finding for finding in env.diagnostics if finding.severity != "note"]
+    fatal = [finding for finding in findings if options.strict or finding.code in FATAL_CODES]
     if fatal:
         raise failure_of(fatal)
-    print_findings([*found, *(finding for finding in env.diagnostics if finding.code == GUESSES)])
+    print_findings([*findings, *(finding for finding in env.diagnostics if finding.code == GUESSES)])
     return env
 
 
 def loaded(options: argparse.Namespace) -> Environment:
-    """Load the model of a command, and the others that it names.
+    """Load the model of a command, and its further models.
 
     Raises:
         SourceError: one is missing or broken; the message names the cause.
@@ -45,14 +47,15 @@ def loaded(options: argparse.Namespace) -> Environment:
     env = None
     try:
         for model in (options.model, *getattr(options, "others", [])):
-            env = load(model_file(model), given(options), into=env)
+            file, words = model_file(model, download=getattr(options, "download", False)), given(options)
+            env = load(file, words | xacro_arguments(model, words.get("args", "")), into=env)
     except SourceError as error:
         raise error if error.cause is None else failure_of([error.cause]) from None
     return cast("Environment", env)
 
 
 def given(options: argparse.Namespace) -> dict[str, str]:
-    """Return what the options of a command say about a URDF, as attributes of ``Environment.Load``."""
+    """Return the options for a URDF as attributes of ``Environment.Load``."""
     packages: list[str] = getattr(options, "package", None) or []
     arguments: list[str] = getattr(options, "arg", None) or []
     words = {
@@ -107,19 +110,39 @@ def shown_sphere(env: Environment, robot: Robot | None) -> tuple[Floats, float]:
 
 
 def hold_bases(env: Environment) -> None:
-    """Keep the bases of robots fixed where nothing is static. Otherwise everything would fall for ever with physics."""
+    """Fix the bases of robots if nothing is static; otherwise everything would fall for ever under physics."""
     if not any(link.IsStatic() for body in env.GetBodies() for link in body.GetLinks()):
         for robot in env.GetRobots():
             robot.GetLinks()[0].SetStatic(True)
 
 
-def model_file(name: str) -> str:
-    """Return the file that a word of the command line names: a path, or the name of a model that comes with ravemj."""
-    return model_path(name) if name in SHIPPED_MODELS and not os.path.exists(name) else name
+def model_file(name: str, *, download: bool = False) -> str:
+    """Return the model file that an argument names.
+
+    The argument is a path, the name of a shipped model, or the name of a robot of a package, which ``download``
+    permits to fetch.
+
+    Raises:
+        ArgumentError: the robot is not on this machine and may not be fetched.
+        RavemjError: it cannot be fetched.
+    """
+    if os.path.exists(name):
+        return name
+    if is_robot_name(name):
+        return str(robot_file(name, download=download, say=lambda text: print(text, file=sys.stderr)).path)
+    return model_path(name) if name in SHIPPED_MODELS else name
+
+
+def xacro_arguments(name: str, own: str) -> dict[str, str]:
+    """Return the xacro arguments of a packaged robot, followed by those of the user, as an attribute."""
+    if os.path.exists(name) or not is_robot_name(name):
+        return {}
+    words = [f"{key}:={value}" for key, value in robot_file(name).arguments.items()]
+    return {"args": " ".join([*words, own]).strip()} if words else {}
 
 
 def failure_of(findings: Sequence[Diagnostic]) -> SourceError:
-    """Return the one-line error with which findings end a command; the code of the first one stands at its end."""
+    """Return the one-line error for fatal findings; it ends with the code of the first one."""
     first = findings[0]
     more = f" (and {len(findings) - 1} more: see ravemj check)" if len(findings) > 1 else ""
     code = f" [{first.code}]"

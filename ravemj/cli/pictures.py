@@ -5,6 +5,7 @@ import math
 import os
 import platform
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,25 +13,39 @@ from numpy.typing import ArrayLike
 
 from ravemj.cli.console import console, progress, table
 from ravemj.cli.models import load_model, moving_robot, named_robot, shown_sphere
+from ravemj.cli.robot_motions import export, motion_file
 from ravemj.core.output import check_file
 from ravemj.core.signals import signals_raised
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.camera import Camera, three_quarter_view
 from ravemj.graphics.rendering.camera_file import read_camera
-from ravemj.graphics.rendering.contexts import INSTALL, RAY, requested_backend
+from ravemj.graphics.rendering.contexts import RAY, remedy, requested_backend
 from ravemj.graphics.rendering.doctor import probe_backends
 from ravemj.graphics.rendering.style import Look, LookChoices
 from ravemj.graphics.simulation_renderer import Format, Frame
-from ravemj.graphics.video import VIDEO_FORMATS, check_picture, check_target, known_suffix, write_frames, write_picture
+from ravemj.graphics.video import (
+    STILL_FORMATS,
+    VIDEO_FORMATS,
+    check_picture,
+    check_target,
+    known_suffix,
+    write_frames,
+    write_picture,
+)
 from ravemj.gui.viewers import has_display
 from ravemj.gui.viewers.window import WindowViewer
-from ravemj.rave import Environment, KinBody
+from ravemj.rave import Environment, KinBody, Robot
 from ravemj.rave.recording import Shot, camera_for_motion, draw_frames, followed_motion
 from ravemj.trajectories.body_motion import BodyMotion
+from ravemj.trajectories.joint_trajectory_files import (
+    JOINT_TRAJECTORY_SUFFIXES,
+    check_joint_trajectory_file,
+    is_joint_trajectory,
+)
 from ravemj.trajectories.motion import Motion, number_of_frames
-from ravemj.trajectories.motion_arguments import body_motion
+from ravemj.trajectories.motion_arguments import MotionFile, followed_file
 
-_MOST_FRAMES = 1_000_000  # nine hours at 30 frames a second: more is a slip of the finger
+_MOST_FRAMES = 1_000_000  # nine hours at 30 frames per second: more is a typing mistake
 PAGE = ".html"
 """The suffix of a page that plays a motion."""
 
@@ -38,7 +53,9 @@ PAGE = ".html"
 def play(options: argparse.Namespace) -> int:
     """Play a motion: in a window, or into a video."""
     output: str | None = options.output
-    is_page = output is not None and known_suffix(output, [PAGE, *VIDEO_FORMATS]) == PAGE
+    if output is not None and is_joint_trajectory(output):
+        return _play_to_robot(options)
+    is_page = output is not None and known_suffix(output, [PAGE, *JOINT_TRAJECTORY_SUFFIXES, *VIDEO_FORMATS]) == PAGE
     if output is not None:
         (check_file if is_page else check_target)(output)
     camera = None if options.camera is None else read_camera(options.camera)
@@ -58,7 +75,7 @@ def play(options: argparse.Namespace) -> int:
 
 
 def _check_length(motion: BodyMotion, fps: float) -> None:
-    """Check that a motion is not so long that a video of it would fill the disk.
+    """Check that a video of a motion would not fill the disk.
 
     Raises:
         ArgumentError: the motion has too many frames.
@@ -70,18 +87,36 @@ def _check_length(motion: BodyMotion, fps: float) -> None:
 
 
 def _motion(env: Environment, options: argparse.Namespace) -> BodyMotion:
-    """Return the motion that the options ask for, from where the robot is."""
+    """Return the motion selected by the options, starting at the robot's present values."""
     if options.trajectory is not None:
-        robot = named_robot(env, options.robot)
-        motion = body_motion(env.simulation, options.trajectory, None if robot is None else robot.simulation_state)
+        motion = followed_file(env.simulation, motion_file(env, options))
         return motion if options.duration is None else motion.rescaled(options.duration)
+    robot, line = _line(env, options)
+    return BodyMotion.of_motion(robot.simulation_state, line)
+
+
+def _line(env: Environment, options: argparse.Namespace) -> tuple[Robot, Motion]:
+    """Return the moving robot, and its straight-line motion to the joint values of ``--to``."""
     robot = moving_robot(env, options.robot)
     start = robot.GetDOFValues()
     if options.to is None:
         goal = robot.simulation_state.kinematics.limits.clamp(np.array([math.pi] + [0.0] * (len(start) - 1)))
     else:
         goal = _checked_values("--to", options.to, robot)
-    return BodyMotion.of_motion(robot.simulation_state, Motion.line(start, goal, options.duration or 1.0))
+    return robot, Motion.line(start, goal, options.duration or 1.0)
+
+
+def _play_to_robot(options: argparse.Namespace) -> int:
+    """Write a motion for the controller of a robot."""
+    check_joint_trajectory_file(options.output)
+    env = load_model(options)
+    if options.trajectory is not None:
+        motion = motion_file(env, options)
+    else:
+        robot, line = _line(env, options)
+        motion = MotionFile("", line, robot.simulation_state, list(range(robot.GetDOF())))
+    export(env, motion, options)
+    return 0
 
 
 def _checked_values(option: str, values: list[float], body: KinBody) -> list[float]:
@@ -100,17 +135,17 @@ def _checked_values(option: str, values: list[float], body: KinBody) -> list[flo
 
 
 def look_choices(options: argparse.Namespace) -> LookChoices:
-    """Return what the options say about shadows, floor and lights."""
+    """Return the choices of shadows, floor and lights."""
     return LookChoices(options.shadows, options.floor, options.lights)
 
 
 def look_of(options: argparse.Namespace, env: Environment) -> Look:
-    """Return the look that the options ask for."""
+    """Return the look selected by the options."""
     return env.look(options.background, look_choices(options))
 
 
 def picture_of(options: argparse.Namespace, env: Environment, camera: ArrayLike | None) -> Frame:
-    """Return a picture as the options ask for it."""
+    """Render a picture according to the options."""
     look = {"shadows": options.shadows, "floor": options.floor, "lights": options.lights}
     return env.render(*options.size, camera=camera, background=options.background, **look)
 
@@ -134,17 +169,22 @@ def _play_in_window(env: Environment, motion: BodyMotion, shot: Shot, options: a
 
 
 def write_page(
-    path: str, env: Environment, motion: BodyMotion, options: argparse.Namespace, camera: Camera | None
+    path: str,
+    env: Environment,
+    motion: BodyMotion,
+    options: argparse.Namespace,
+    camera: Camera | None,
+    notes: Sequence[str] = (),
 ) -> None:
-    """Write the page that plays a motion, and say so."""
+    """Write the page that plays a motion, and report it."""
     view = None if camera is None else camera.T_world_camera
     look = {"shadows": options.shadows, "floor": options.floor, "lights": options.lights}
-    env.save_html(path, motion, fps=options.fps, camera=view, background=options.background, **look)
+    env.save_html(path, motion, fps=options.fps, camera=view, background=options.background, notes=notes, **look)
     print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s; any browser plays it)")
 
 
 def write_video(path: str, env: Environment, motion: BodyMotion, shot: Shot) -> None:
-    """Write a video of a motion, and say so."""
+    """Write a video of a motion, and report it."""
     count = number_of_frames(motion.duration, shot.fps)
     with progress(f"drawing {path}", count) as advance:
         write_frames(path, draw_frames(env, motion, shot), shot.fps, on_frame=advance)
@@ -155,8 +195,9 @@ def write_video(path: str, env: Environment, motion: BodyMotion, shot: Shot) -> 
 
 
 def render(options: argparse.Namespace) -> int:
-    """Draw a picture of a model."""
-    check_picture(options.output)
+    """Draw a picture of a model, or write a page that moves its joints."""
+    is_page = known_suffix(options.output, [PAGE, *STILL_FORMATS]) == PAGE
+    (check_file if is_page else check_picture)(options.output)
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     robot, (width, height) = named_robot(env, options.robot), options.size
@@ -166,20 +207,35 @@ def render(options: argparse.Namespace) -> int:
     if camera is None and robot is not None:
         camera = three_quarter_view(*shown_sphere(env, robot), width / height)
     matrix = None if camera is None else camera.T_world_camera
+    if is_page:
+        look = {"shadows": options.shadows, "floor": options.floor, "lights": options.lights}
+        env.save_html(options.output, robot=robot, camera=matrix, background=options.background, **look)
+        print(f"wrote {options.output} (any browser shows it, with a slider for each joint)")
+        return 0
     write_picture(options.output, picture_of(options, env, matrix))
     explain_rays(env, Format(width, height, options.shadows is not False))
     print(f"wrote {options.output}")
+    explain_nothing(env, matrix, Format(width, height, shadows=False))
     return 0
 
 
+def explain_nothing(env: Environment, camera: ArrayLike | None, form: Format) -> None:
+    """Warn that a picture shows no body."""
+    view = env.default_camera(form.aspect) if camera is None else Camera.from_matrix(camera)
+    if (env.renderer.segment(view, form) < 0).all():
+        shapes = any(link.GetGeometries() for body in env.GetBodies() for link in body.GetLinks())
+        reason = "turn the camera" if shapes else "the model has no shapes"
+        print(f"ravemj: nothing is in view: {reason}", file=sys.stderr)
+
+
 def explain_rays(env: Environment, form: Format) -> None:
-    """Say how to get OpenGL if a picture was ray-cast for lack of it."""
+    """Explain how to install OpenGL if a picture was ray-cast because it is missing."""
     if env.renderer.backend(form) == RAY and requested_backend() is None:
-        print(f"ravemj: no OpenGL here, so rays drew the picture; faster: {INSTALL['egl']}", file=sys.stderr)
+        print(f"ravemj: no OpenGL here, so rays drew the picture; faster: {remedy('egl')}", file=sys.stderr)
 
 
 def explain_shadows(env: Environment, form: Format) -> None:
-    """Say why a video has no shadows, if nobody has chosen that."""
+    """Explain why a video has no shadows, unless the user has chosen that."""
     if form.shadows is None and env.renderer.backend(form) != RAY and not env.renderer.has_shadows(form):
         print("no shadows, as OpenGL draws with the processor here; --shadows draws them")
 

@@ -1,4 +1,4 @@
-"""The page of all commands, from their own help: ``docs/cli.md``."""
+"""Generator of the command reference ``docs/cli.md`` from the help texts."""
 
 # argparse has no public way to look into a parser.
 # pyright: reportPrivateUsage=false
@@ -40,7 +40,7 @@ process is killed, the next one that writes into the same folder removes such a 
 
 
 def markdown() -> str:
-    """Return the page."""
+    """Return the page as Markdown."""
     commands = cast("argparse._SubParsersAction[argparse.ArgumentParser]", make_parser()._actions[-1])
     summaries = {choice.dest: choice.help or "" for choice in commands._choices_actions}
     index = [f"| [`{name}`](#ravemj-{name}) | {_cell(summary)} |\n" for name, summary in summaries.items()]

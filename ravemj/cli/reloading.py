@@ -1,4 +1,4 @@
-"""Reading a model again while it is shown."""
+"""Reloading a model while it is shown."""
 
 import argparse
 import math
@@ -18,29 +18,29 @@ _Stamps = dict[str, tuple[int, int] | None]
 
 
 class Reloader:
-    """Reads the model of a viewer again: camera, joint values and selection stay.
+    """Reloads the model of a viewer, preserving camera, joint values and selection.
 
-    A model that cannot be read changes nothing: the viewer shows the error, with file and line, and the last good one.
+    If reading fails, the viewer shows the error with file and line, and keeps the last valid model.
     """
 
     def __init__(self, env: Environment, viewer: Viewer, options: argparse.Namespace) -> None:
-        """Begin with the model as it is.
+        """Start with the loaded model.
 
         Args:
-            env: The environment, which was loaded from the model.
-            viewer: What shows it.
-            options: The options of the command: the models, and whether to read them again when one of their files has
-                changed (``watch``); else only on request.
+            env: The environment loaded from the model.
+            viewer: Its viewer.
+            options: The options of the command: the models, and ``watch``: whether to reload them when a file changes,
+                or only on request.
         """
         self._env, self._viewer, self._options = env, viewer, options
         self._files = env.files
         self._stamps = _stamps(self._files)
         self._error = ""
-        self._known = {(found.code, found.message) for found in env.diagnostics if _is_error(found)}
+        self._known = {(finding.code, finding.message) for finding in env.diagnostics if _is_error(finding)}
         viewer.interaction.controls.display.wants_reload = False
 
-    def look(self) -> None:
-        """Read the model again if that was asked for."""
+    def update(self) -> None:
+        """Reload the model if that was requested, or if a watched file has changed."""
         display = self._viewer.interaction.controls.display
         is_asked, display.wants_reload = display.wants_reload, False
         stamps = _stamps(self._files)
@@ -48,7 +48,7 @@ class Reloader:
             return
         self._stamps = stamps
         notices = self._viewer.interaction.controls.notices
-        notices.take_back(self._error)
+        notices.withdraw(self._error)
         self._error = ""
         try:
             gone = next((file for file, stamp in stamps.items() if stamp is None), None)
@@ -62,16 +62,16 @@ class Reloader:
             notices.say(self._error, math.inf)
             return
         try:
-            self._take_over(fresh)
+            self._copy_state(fresh)
         finally:
             fresh.Destroy()
         notices.say(f"Read {os.path.basename(model_file(self._options.model))} again")
 
     def _read(self) -> Environment:
-        """Return an environment with the model as it is now.
+        """Load the present model into a new environment.
 
         Raises:
-            RavemjError: it cannot be read, or MuJoCo refuses it.
+            RavemjError: it cannot be read, or MuJoCo rejects it.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RavemjWarning)
@@ -87,7 +87,7 @@ class Reloader:
             raise failure_of(broken)
         return fresh
 
-    def _take_over(self, fresh: Environment) -> None:
+    def _copy_state(self, fresh: Environment) -> None:
         env, interaction = self._env, self._viewer.interaction
         with env:
             values = {
@@ -110,7 +110,7 @@ class Reloader:
         self._stamps = _stamps(self._files)
 
     def _watch_also(self, source: Source) -> None:
-        """Watch a file that could not be read, too."""
+        """Also watch a file that could not be read."""
         if source.file not in self._files:
             self._files = (*self._files, source.file)
             self._stamps = _stamps(self._files)
@@ -121,7 +121,7 @@ def _is_error(finding: Diagnostic) -> bool:
 
 
 def _found_again(selected: Selection | None, env: Environment) -> Selection | None:
-    """Return the body, link or joint that has the name of the selected one; None if there is none any more."""
+    """Return the selection with the same names in the new model, or None."""
     body = None if selected is None else env.GetKinBody(selected.body.scene.name)
     if selected is None or body is None:
         return None
@@ -134,7 +134,7 @@ def _found_again(selected: Selection | None, env: Environment) -> Selection | No
 
 
 def _stamps(files: tuple[str, ...]) -> _Stamps:
-    """Return when each file was changed, and its size; None for a missing file, as while it is being saved."""
+    """Return modification time and size of each file; None for a missing one, as while it is being saved."""
     stamps: _Stamps = {}
     for file in files:
         try:

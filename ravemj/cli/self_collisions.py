@@ -1,4 +1,4 @@
-"""Pairs of links that touch in nearly all configurations: ``check --self`` lists them, ``--write-srdf`` writes them."""
+"""Link pairs that collide in nearly all configurations: ``check --self`` lists, ``--write-srdf`` writes them."""
 
 import argparse
 import copy
@@ -21,19 +21,19 @@ from ravemj.model.scene import KinBody
 from ravemj.rave import Robot
 
 SAMPLES = 1000
-"""Random configurations within the limits."""
+"""Number of random configurations within the limits."""
 
 ALWAYS = 0.95
-"""Part of the configurations from which on a pair counts as touching always."""
+"""Fraction of configurations above which a pair counts as always colliding."""
 
 
 class Touching(NamedTuple):
-    """Two links that touch without meaning: where the robot starts, or almost everywhere.
+    """A link pair with spurious collisions: at the start, or in almost all configurations.
 
     Attributes:
         links: Their names.
-        at_start: Whether they touch where the robot was loaded.
-        share: Part of the random configurations in which they touch.
+        at_start: Whether they collide in the initial configuration.
+        share: Fraction of the random configurations with a collision.
     """
 
     links: tuple[str, str]
@@ -42,14 +42,14 @@ class Touching(NamedTuple):
 
     @property
     def reason(self) -> str:
-        """The reason, in MoveIt's words."""
+        """The reason attribute of a disabled pair in MoveIt's SRDF files."""
         return "Always" if self.share > ALWAYS else "Default"
 
 
 def find(robot: Robot, samples: int = SAMPLES) -> list[Touching]:
-    """Return the pairs of links, adjacent ones aside, that touch at the start or in more than 95 % of configurations.
+    """Return the non-adjacent link pairs that collide at the start or in more than 95 % of configurations.
 
-    The configurations are random within the limits, circular joints within half a turn; the same at each call.
+    The configurations are random within the limits, for circular joints within half a turn, with a fixed seed.
     """
     names = [link.GetName() for link in robot.GetLinks()]
     at_start = _touching(robot)
@@ -66,9 +66,7 @@ def find(robot: Robot, samples: int = SAMPLES) -> list[Touching]:
 
 
 def _touching(robot: Robot) -> frozenset[Pair]:
-    checker = robot.GetEnv().GetCollisionChecker()
-    with checker.groups.world() as world:
-        return touching_pairs(world, robot.simulation_state)
+    return touching_pairs(robot.GetEnv().GetCollisionChecker().world(), robot.simulation_state)
 
 
 def _configurations(body: KinBody, count: int) -> Floats:
@@ -79,7 +77,7 @@ def _configurations(body: KinBody, count: int) -> Floats:
 
 
 def check(options: argparse.Namespace, model: str) -> int:
-    """Print the pairs of each robot of a model, and write them where that is asked for; return how many there are."""
+    """Print the pairs of each robot of a model, and write them if requested; return their number."""
     if options.write_srdf is not None:
         check_file(options.write_srdf)
     chosen = copy.copy(options)
@@ -87,28 +85,28 @@ def check(options: argparse.Namespace, model: str) -> int:
     env = load_model(chosen)
     total = 0
     for robot in env.GetRobots():
-        found = find(robot)
-        total += len(found)
-        for pair in found:
+        pairs = find(robot)
+        total += len(pairs)
+        for pair in pairs:
             where = ["at the start"] if pair.at_start else []
             where.append(f"in {100 * pair.share:.0f} % of {SAMPLES} random configurations")
             print(f"{model}: links '{pair.links[0]}' and '{pair.links[1]}' touch {', and '.join(where)}")
-        if not found:
+        if not pairs:
             print(f"{model}: no links of '{robot.GetName()}' touch at the start or almost always")
         if options.write_srdf is not None:
             beside = next((file for file in env.files if file.lower().endswith(".srdf")), None)
-            _write(options.write_srdf, robot.GetName(), found, beside)
-            print(f"wrote {options.write_srdf}, with {len(found)} disabled pairs")
+            _write(options.write_srdf, robot.GetName(), pairs, beside)
+            print(f"wrote {options.write_srdf}, with {len(pairs)} disabled pairs")
             break
     return total
 
 
-def _write(path: str, robot: str, found: Sequence[Touching], beside: str | None) -> None:
-    """Write an SRDF with disabled pairs: a copy of the robot's own with these added, or a new one."""
+def _write(path: str, robot: str, pairs: Sequence[Touching], beside: str | None) -> None:
+    """Write an SRDF with disabled pairs: a copy of the robot's own with additions, or a new one."""
     lines = [
         f"  <disable_collisions link1={quoteattr(pair.links[0])} link2={quoteattr(pair.links[1])} "
         f'reason="{pair.reason}"/>\n'
-        for pair in found
+        for pair in pairs
     ]
     head, tail = f'<?xml version="1.0"?>\n<robot name={quoteattr(robot)}>\n', "</robot>\n"
     if beside is not None and os.path.isfile(beside):

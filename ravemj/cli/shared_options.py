@@ -1,11 +1,11 @@
-"""What the parsers of several commands share."""
+"""Options shared by several commands."""
 
 import argparse
 from importlib import import_module
 from typing import TypeAlias
 
 from ravemj.cli.argument_parser import Parser
-from ravemj.cli.argument_types import argument, colour, file_name, package, size
+from ravemj.cli.argument_types import argument, colour, file_name, package, rate, size, vector
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.look import FLOORS, LIGHTS
 
@@ -20,10 +20,10 @@ def command(commands: Commands, run: str, summary: str, *examples: str) -> argpa
 
     Args:
         commands: The parser of all commands.
-        run: What does the work, as ``module.function``, whose name is the command's. The module, of ``ravemj.cli``, is
-            imported when the command runs: help needs none of them.
-        summary: What it does, beginning with a verb in lower case.
-        examples: Lines of a shell that use it.
+        run: Its function as ``module.function``, named like the command. The module of ``ravemj.cli`` is imported only
+            when the command runs, not for help.
+        summary: Description that begins with a verb in lower case.
+        examples: Example command lines.
     """
     module, _, name = run.partition(".")
 
@@ -42,7 +42,7 @@ def command(commands: Commands, run: str, summary: str, *examples: str) -> argpa
 
 
 def _complete(argument: argparse.Action, function: str) -> None:
-    """Let shells complete an argument with what a function of ``ravemj.cli.completion`` returns."""
+    """Set the shell completion of an argument to a function of ``ravemj.cli.completion``."""
 
     def completer(prefix: str, **known: object) -> list[str]:
         completion = import_module("ravemj.cli.completion")  # only where a shell asks
@@ -52,29 +52,44 @@ def _complete(argument: argparse.Action, function: str) -> None:
 
 
 def complete_models(argument: argparse.Action) -> None:
-    """Let shells complete an argument with names and files of models."""
+    """Set the shell completion of an argument to names and files of models."""
     _complete(argument, "models")
 
 
 def add_robot(parser: argparse.ArgumentParser, meaning: str) -> None:
-    """Add the robot that a command is about."""
+    """Add the option for the robot."""
     _complete(parser.add_argument("--robot", metavar="NAME", help=meaning), "robots")
 
 
 def add_manipulator(parser: argparse.ArgumentParser) -> None:
-    """Add the manipulator that a command moves."""
+    """Add the option for the manipulator."""
     argument = parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
     _complete(argument, "manipulators")
 
 
+def add_start(parser: argparse.ArgumentParser, meaning: str) -> None:
+    """Add the option for the start values of a motion."""
+    parser.add_argument("--from", dest="start", type=file_name, metavar="FILE", help=meaning)
+
+
+def add_rename(parser: argparse._ActionsContainer) -> None:  # pyright: ignore[reportPrivateUsage]
+    """Add the option for the joint names of the real robot."""
+    parser.add_argument(
+        "--rename",
+        type=file_name,
+        metavar="FILE",
+        help="names of joints of the real robot: an object in JSON or YAML, from the model's names to the robot's",
+    )
+
+
 def add_model(parser: argparse.ArgumentParser) -> None:
-    """Add the model that a command is about."""
+    """Add the argument for the model."""
     model = parser.add_argument(
         "model",
         type=file_name,
         metavar="MODEL",
-        help="OpenRAVE XML, COLLADA or URDF file: an environment, a robot or a kinbody; or a model that comes with "
-        f"ravemj: {', '.join(SHIPPED_MODELS)}",
+        help="OpenRAVE XML, COLLADA, URDF or MJCF file: an environment, a robot or a kinbody; or a model that comes "
+        f"with ravemj: {', '.join(SHIPPED_MODELS)}; or the name of a robot of a package (extra robots)",
     )
     complete_models(model)
     add_urdf_options(parser)
@@ -82,7 +97,10 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 
 def add_urdf_options(parser: argparse.ArgumentParser) -> None:
-    """Add what can be said about a URDF."""
+    """Add the options for URDF models."""
+    parser.add_argument(
+        "--download", action="store_true", help="fetch a robot of robot_descriptions or mujoco-menagerie if need be"
+    )
     group = parser.add_argument_group("robots in URDF")
     group.add_argument(
         "--srdf", type=file_name, metavar="FILE", help="SRDF of the robot; default: the one beside it; none for none"
@@ -101,7 +119,7 @@ def add_urdf_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None:
-    """Add size, camera and background of pictures."""
+    """Add the options for size, camera and background of pictures."""
     parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help=size_help)
     parser.add_argument(
         "--camera",
@@ -120,7 +138,7 @@ def add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None
 
 
 def add_look_options(parser: argparse.ArgumentParser) -> None:
-    """Add shadows, floor and lights."""
+    """Add the options for shadows, floor and lights."""
     parser.add_argument(
         "--shadows",
         action=argparse.BooleanOptionalAction,
@@ -137,4 +155,24 @@ def add_look_options(parser: argparse.ArgumentParser) -> None:
         choices=LIGHTS,
         default="both",
         help="lights: those of a studio, the model's own, or both, the default",
+    )
+
+
+def add_robot_motion_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options for motions of robot controllers."""
+    group = parser.add_argument_group("motions for robots: .yaml, .json and .ros2.csv")
+    group.add_argument(
+        "--rate",
+        type=rate,
+        default=100.0,
+        metavar="HZ",
+        help="points in a second (100); waypoints: one at each waypoint",
+    )
+    add_rename(group)
+    group.add_argument(
+        "--acceleration",
+        type=vector,
+        metavar="A",
+        help="acceleration limits, rad/s^2 or m/s^2: one for all joints of the robot or one for each, separated by "
+        "commas; default: the model's",
     )

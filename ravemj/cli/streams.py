@@ -1,4 +1,4 @@
-"""The standard streams of a command, which may be closed, full, or lack characters."""
+"""Robust standard streams: they may be closed, full, or lack characters."""
 
 import codecs
 import io
@@ -9,14 +9,14 @@ from typing import cast
 
 _PLAIN = {"…": "...", "─": "-", "│": "|", "├": "|", "└": "`", "╴": "-", "←": "<-", "²": "^2", "³": "^3", "±": "+-"}
 _CHOSEN = {"replace", "ignore", "xmlcharrefreplace", "namereplace"}
-"""Error handlers that never fail, so that they stay where users ask for them."""
+"""Error handlers that never fail; they are kept if the user has set them."""
 
 
 def prepare_streams() -> None:
-    """Make the standard streams of this process ready for whatever is printed.
+    """Configure the standard streams of this process so that any text can be printed.
 
-    Characters that the encoding of a stream lacks are written in ASCII. Writing to a closed standard output fails, as
-    to a full one. Messages that standard error does not take are lost.
+    Characters outside the encoding are escaped in ASCII. Writing to a closed standard output fails like writing to a
+    full one. Messages that standard error rejects are lost.
     """
     codecs.register_error("ravemj", _in_ascii)
     # In this order they get the numbers 0, 1 and 2, where no other file would be safe from what C libraries print.
@@ -38,7 +38,7 @@ def _in_ascii(error: UnicodeError) -> tuple[str, int]:
 
 
 class _Messages(io.TextIOWrapper):
-    """A stream that never fails: text that cannot be written is lost, and the command goes on."""
+    """A stream that never fails: text that cannot be written is lost, and the command continues."""
 
     def write(self, text: str) -> int:
         with suppress(OSError):

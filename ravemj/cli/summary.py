@@ -1,4 +1,4 @@
-"""Summary of a body, as numbers and lists that JSON can hold."""
+"""Summary of a body as JSON data."""
 
 import math
 from collections.abc import Sequence
@@ -105,7 +105,7 @@ def _manipulator(manipulator: Manipulator) -> Summary:
 
 
 def sensor_summary(sensor: AttachedSensor) -> Summary:
-    """Return a sensor; one that no robot carries is on no link, and its pose is that in the world."""
+    """Summarize a sensor; without a robot it has no link, and its pose is in the world."""
     camera = sensor.camera
     summary = {
         "name": sensor.name,
@@ -119,7 +119,7 @@ def sensor_summary(sensor: AttachedSensor) -> Summary:
 
 
 def _finite(value: object) -> object:
-    """Return what JSON can hold: None for each number that is not finite, and lists for tuples."""
+    """Convert a value to JSON data: None for numbers that are not finite, lists for tuples."""
     if isinstance(value, dict):
         return {name: _finite(part) for name, part in cast("Summary", value).items()}
     if isinstance(value, list | tuple):

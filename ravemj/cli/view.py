@@ -5,7 +5,8 @@ import contextlib
 import os
 import sys
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -21,35 +22,56 @@ from ravemj.rave import Environment, Robot
 if TYPE_CHECKING:
     from ravemj.gui.viewers.web import WebViewer
 
+Worker: TypeAlias = "Callable[[WindowViewer | WebViewer], Callable[[], None]]"
+"""Function that returns, for a viewer, the function to be called periodically while it is open."""
+
 _LOOK = 0.1
-"""Time between two checks for changed files and for a closed viewer [s]."""
+"""Period of checks for changed files [s]."""
 
 _TIMESTEP = 0.01
-"""Time of a step of physics [s]."""
+"""Time step of physics [s]."""
 
 _ASPECT = 4 / 3
-"""Width of a view divided by its height."""
+"""Aspect ratio of a view (width by height)."""
 
 
 def view(options: argparse.Namespace) -> int:
-    """Show a model until its window is closed, or its page is ended by Ctrl-C."""
+    """Show a model until its window is closed, or its page is stopped by Ctrl-C."""
     env = load_model(options)
-    robot = named_robot(env, options.robot)
-    try:
-        window = None if options.web or not has_display() else _open_window(env, robot, options)
-        if window is None:
-            _serve(env, robot, options)
-        else:
-            reloader = Reloader(env, window, options)
-            with signals_raised():  # so that what is being saved gets complete
-                _attend(window, reloader)
-    finally:
-        env.Destroy()
+    show(env, named_robot(env, options.robot), options, lambda viewer: Reloader(env, viewer, options).update, _LOOK)
     return 0
 
 
+def show(
+    env: Environment,
+    robot: Robot | None,
+    options: argparse.Namespace,
+    worker: Worker,
+    period: float,
+) -> None:
+    """Show an environment in a window or a page until it is closed.
+
+    Args:
+        env: The environment; it is destroyed at the end.
+        robot: The robot to look at; None: everything.
+        options: The options of the command.
+        worker: Returns the function that is called periodically.
+        period: Period of the calls [s].
+    """
+    try:
+        window = None if options.web or not has_display() else _open_window(env, robot, options)
+        if window is None:
+            _serve(env, robot, options, worker, period)
+        else:
+            work = worker(window)
+            with signals_raised():  # so that files being saved are completed
+                _run_until_closed(window, work, period)
+    finally:
+        env.Destroy()
+
+
 def _open_window(env: Environment, robot: Robot | None, options: argparse.Namespace) -> WindowViewer | None:
-    """Open a window; None where there is no OpenGL for it."""
+    """Open a window; return None if OpenGL is not available for it."""
     env.SetViewer("window")
     viewer = env.GetViewer()
     if not isinstance(viewer, WindowViewer):
@@ -59,7 +81,7 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Show the name of the model, and from a corner the robot, or everything if the file has no camera."""
+    """Set the title to the model's name; unless the file has a camera, view the robot or everything from a corner."""
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)
@@ -74,8 +96,14 @@ def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: arg
         env.StartSimulation(_TIMESTEP)
 
 
-def _serve(env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Serve the page, print its address, and wait for Ctrl-C, which is how it ends."""
+def _serve(
+    env: Environment,
+    robot: Robot | None,
+    options: argparse.Namespace,
+    worker: Worker,
+    period: float,
+) -> None:
+    """Serve the page, print its address, and wait for Ctrl-C."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(options.host, options.port, options.token, options.embed)
@@ -87,15 +115,15 @@ def _serve(env: Environment, robot: Robot | None, options: argparse.Namespace) -
             "listens there knows the address, too",
             file=sys.stderr,
         )
-    reloader = Reloader(env, viewer, options)
-    with contextlib.suppress(KeyboardInterrupt), signals_raised():  # so that pages learn that it has ended
+    work = worker(viewer)
+    with contextlib.suppress(KeyboardInterrupt), signals_raised():  # so that pages show that it has ended
         print(viewer.url, flush=True)
-        _attend(viewer, reloader)
+        _run_until_closed(viewer, work, period)
 
 
-def _attend(viewer: "WindowViewer | WebViewer", reloader: Reloader) -> None:
-    """Wait until a viewer is closed; meanwhile read the model again when that is asked for."""
+def _run_until_closed(viewer: "WindowViewer | WebViewer", work: Callable[[], None], period: float) -> None:
+    """Call a function periodically until a viewer is closed."""
     while viewer.is_open:
-        time.sleep(_LOOK)
+        time.sleep(period)
         with signals_delayed():
-            reloader.look()
+            work()

@@ -1,1 +1,1 @@
-"""OpenRAVE's sub-modules, and how scripts written for openravepy run unchanged."""
+"""OpenRAVE's sub-modules, and what scripts for openravepy need to run unchanged."""

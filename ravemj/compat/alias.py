@@ -1,8 +1,8 @@
-"""``import openravepy`` gives ravemj: in this process, or in the whole Python environment.
+"""Alias ``import openravepy`` for ravemj: in this process, or in the whole Python environment.
 
 Importing ravemj alone changes nothing. ``install_finder`` acts for the running process (``ravemj run``,
-``%load_ext ravemj``); ``install_package`` puts a package of a few lines where Python looks for packages
-(``ravemj alias --install``), so that old scripts run by themselves.
+``%load_ext ravemj``); ``install_package`` installs a package of a few lines (``ravemj alias --install``), so that old
+scripts run without changes.
 """
 
 import shutil
@@ -25,23 +25,23 @@ names.take_over(__name__)
 
 
 def install_finder() -> None:
-    """Make ``import openravepy`` give ravemj, in this process."""
+    """Make ``import openravepy`` import ravemj in this process."""
     names.install(NAME)
 
 
 def package_folder() -> Path:
-    """Return where ``install_package`` puts its package: among the packages of this Python environment."""
+    """Return the folder of ``install_package``: that of the packages of this Python environment."""
     return Path(sysconfig.get_path("purelib")) / NAME
 
 
 def install_package() -> Path:
-    """Put a package ``openravepy`` that forwards to ravemj into the current Python environment.
+    """Install a package ``openravepy`` that forwards to ravemj into the current Python environment.
 
     Returns:
         Its folder.
 
     Raises:
-        RavemjError: there is an openravepy that is not ours.
+        RavemjError: another openravepy is installed.
         OutputError: the environment cannot be written.
     """
     folder = package_folder()
@@ -57,13 +57,13 @@ def install_package() -> Path:
 
 
 def remove_package() -> Path | None:
-    """Take the package of ``install_package`` out again.
+    """Remove the package of ``install_package``.
 
     Returns:
-        The folder that is gone, or None where there was none.
+        The removed folder, or None if there was none.
 
     Raises:
-        RavemjError: there is an openravepy that is not ours.
+        RavemjError: another openravepy is installed.
         OutputError: the environment cannot be written.
     """
     folder = package_folder()
@@ -79,7 +79,7 @@ def remove_package() -> Path | None:
 
 
 def _foreign_package() -> str | None:
-    """Return where Python finds an openravepy that is not ours, or None."""
+    """Return the path of an openravepy that is not ravemj's, or None."""
     finders = [finder for finder in sys.meta_path if not isinstance(finder, names.Renamed)]
     for finder in finders:
         spec = finder.find_spec(NAME, None)

@@ -1,4 +1,4 @@
-"""``openravepy.convexdecompositionpy``: convex parts of triangles; ``ravemj convert`` writes models with them."""
+"""``openravepy.convexdecompositionpy``: convex decomposition of meshes; ``ravemj convert`` uses it."""
 
 from ravemj.compat.refusal import refusing
 

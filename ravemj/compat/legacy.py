@@ -1,4 +1,4 @@
-"""Names of openravepy that ravemj itself leaves out, since it has the same under other names."""
+"""Names of openravepy that ravemj has under other names."""
 
 import platform
 import re
@@ -18,23 +18,23 @@ raveGetDebugLevel=RaveGetDebugLevel raveLog=RaveLog raveLogDebug=RaveLogDebug ra
 raveLogFatal=RaveLogFatal raveLogInfo=RaveLogInfo raveLogVerbose=RaveLogVerbose raveLogWarn=RaveLogWarn
 raveSetDebugLevel=RaveSetDebugLevel
 """
-"""Older names, and those in ravemj."""
+"""Older names, and their names in ravemj."""
 
 
 class VoidPointer:
-    """What OpenRAVE hands out of its insides, without anything to do with it."""
+    """OpenRAVE's opaque handle, which has no function."""
 
 
 def RaveGlobalState() -> VoidPointer:
-    """Return something that stands for the library's state."""
+    """Return an opaque handle for the library's state."""
     return VoidPointer()
 
 
 def RaveGetIkTypeFromUniqueId(uniqueid: int) -> IkParameterizationType:
-    """Return the type of goals of inverse kinematics with a number.
+    """Return the goal type with a number.
 
     Args:
-        uniqueid: The number; only the bits that tell types apart count.
+        uniqueid: The number, of which only the bits that identify types are used.
     """
     kinds = {int(kind) & 0xFF: kind for kind in IkParameterizationType}
     if uniqueid & 0xFF not in kinds:
@@ -43,7 +43,7 @@ def RaveGetIkTypeFromUniqueId(uniqueid: int) -> IkParameterizationType:
 
 
 def enum_to_dict(enum: type[Enum]) -> dict[str, Any]:
-    """Return the members of an enumeration by their names.
+    """Return the members of an enumeration by name.
 
     Args:
         enum: The enumeration.
@@ -52,19 +52,19 @@ def enum_to_dict(enum: type[Enum]) -> dict[str, Any]:
 
 
 def openravepyCompilerVersion() -> str:
-    """Return the compiler of Python, since ravemj has none of its own."""
+    """Return the compiler of Python, since ravemj is not compiled."""
     return platform.python_compiler()
 
 
 def loadlatest() -> None:
-    """Do nothing: there is one version of the API."""
+    """Do nothing: there is only one version of the API."""
 
 
 def loadstable(ver: str) -> None:
-    """Do nothing: there is one version of the API.
+    """Do nothing: there is only one version of the API.
 
     Args:
-        ver: The version that a script wants.
+        ver: The version requested by a script.
     """
 
 
@@ -73,10 +73,10 @@ _Result = TypeVar("_Result")
 
 
 def with_destroy(fn: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
-    """Return a function that destroys all environments when it ends; OpenRAVE's examples put it above ``main``.
+    """Decorator that destroys all environments at the end of a function, as for ``main`` of OpenRAVE's examples.
 
     Args:
-        fn: The function that does the work.
+        fn: The function.
 
     Example:
         >>> @with_destroy
@@ -98,5 +98,5 @@ NAMES: dict[str, object] = {
     **{old: getattr(ravemj, new) for old, new in re.findall(r"(\S+)=(\S+)", _RENAMED)},
     **{name: own for name, own in globals().items() if name[0] != "_" and getattr(own, "__module__", "") == __name__},
 }
-"""What this module gives to ``openravepy``."""
+"""Names that this module provides for ``openravepy``."""
 globals().update(NAMES, __all__=list(NAMES))

@@ -1,4 +1,4 @@
-"""Base classes of OpenRAVE's that reload themselves; here they are plain classes.
+"""OpenRAVE's self-reloading base classes; here they are plain classes.
 
 >>> from openravepy import metaclass
 >>> class Model(metaclass.AutoReloader):
@@ -7,25 +7,25 @@
 
 
 class MetaInstanceTracker(type):
-    """A metaclass of old scripts; instances are not tracked."""
+    """Metaclass of old scripts; instances are not tracked."""
 
     def __init__(cls, name: str, bases: tuple[type, ...], ns: dict[str, object]) -> None:
         super().__init__(name, bases, ns)
 
 
 class MetaAutoReloader(MetaInstanceTracker):
-    """A metaclass of old scripts; classes are not reloaded."""
+    """Metaclass of old scripts; classes are not reloaded."""
 
 
 class InstanceTracker:
-    """A base class of old scripts; instances are not tracked."""
+    """Base class of old scripts; instances are not tracked."""
 
 
 class AutoReloader(InstanceTracker):
-    """A base class of old scripts; ``%autoreload`` of IPython reloads modules instead."""
+    """Base class of old scripts; IPython's ``%autoreload`` reloads modules instead."""
 
     def change_class(self, new_class: type) -> None:
-        """Make the object one of another class.
+        """Change the class of the object.
 
         Args:
             new_class: The class.

@@ -1,7 +1,7 @@
 """Modules that are imported under other names than those of their files.
 
 ``ravemj.misc`` is ``ravemj.compat.misc``, always; ``openravepy`` is ``ravemj.compat.openravepy`` where a script asked
-for it (see ``ravemj.compat.alias``). A module has one object, whatever name it is imported by.
+for it (see ``ravemj.compat.alias``). All names of a module refer to one module object.
 """
 
 import importlib
@@ -20,6 +20,7 @@ ONLY_OPENRAVEPY = (
     "convexdecompositionpy",
     "examples",
     "metaclass",
+    "openravepy_configurationcache",
     "openravepy_ext",
     "openravepy_int",
     "pyANN",
@@ -28,10 +29,10 @@ ONLY_OPENRAVEPY = (
 
 
 class Renamed(MetaPathFinder, Loader):
-    """A finder and loader of Python's import system: gives modules of ravemj for other names.
+    """Import finder and loader that provides modules of ravemj under other names.
 
     Args:
-        root: The first word of the names that it answers.
+        root: The first component of the names.
     """
 
     def __init__(self, root: str) -> None:
@@ -40,15 +41,21 @@ class Renamed(MetaPathFinder, Loader):
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return a spec for a name that stands for another one, else None."""
+        """Return a spec for an alternative name, else None."""
         del path, target
-        if fullname.partition(".")[0] != self.root or not _exists(real_name(fullname)):
+        if fullname.partition(".")[0] != self.root:
             return None
-        return ModuleSpec(fullname, self)
+        is_example = fullname.startswith(f"{self.root}.examples.")
+        return ModuleSpec(fullname, self) if is_example or _exists(real_name(fullname)) else None
 
     def exec_module(self, module: ModuleType) -> None:
-        """Put ravemj's module in place of the empty one."""
-        take_over(module.__name__)
+        """Replace the empty module by ravemj's; modules of examples stay empty."""
+        if module.__name__.startswith(f"{self.root}.examples."):
+            from ravemj.compat.examples import fill  # noqa: PLC0415 - rarely wanted
+
+            fill(module)
+        else:
+            take_over(module.__name__)
 
 
 def real_name(name: str) -> str:
@@ -65,7 +72,7 @@ def take_over(name: str) -> None:
 
 
 def share(name: str) -> None:
-    """Register a package of ``ravemj.compat`` under the name of a module of ``ravemj``, and its modules likewise."""
+    """Register a package of ``ravemj.compat``, and its modules, under a name in ``ravemj``."""
     real = name.replace("ravemj.", "ravemj.compat.", 1)
     importlib.import_module(real)
     for known in [known for known in sys.modules if known == real or known.startswith(f"{real}.")]:
@@ -73,19 +80,21 @@ def share(name: str) -> None:
 
 
 def install(root: str) -> None:
-    """Answer imports of names that start with a word, in this process."""
+    """Handle imports of names that start with a component, in this process."""
     if not any(isinstance(finder, Renamed) and finder.root == root for finder in sys.meta_path):
         sys.meta_path.insert(0, Renamed(root))
 
 
 def load_ipython_extension(ipython: Any) -> None:  # noqa: ANN401 - IPython's shell; IPython is not imported here
-    """Make ``import openravepy`` give ravemj, in this session; IPython calls it on ``%load_ext ravemj``.
+    """Make ``import openravepy`` import ravemj, and provide ``%learn``; IPython calls it on ``%load_ext ravemj``.
 
     Args:
         ipython: The session.
     """
-    del ipython
+    from ravemj.learn.magic import register  # noqa: PLC0415 - only in IPython
+
     install(OPENRAVEPY)
+    register(ipython)
 
 
 def _exists(name: str) -> bool:

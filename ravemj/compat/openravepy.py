@@ -1,8 +1,8 @@
-"""What ``import openravepy`` gives: OpenRAVE's names, and what its own module lets slip.
+"""The module of ``import openravepy``: OpenRAVE's names, and other names that its module exposes.
 
-Scripts that say ``from openravepy import *`` rely on ``numpy``, ``sys``, ``pickle``, ``logging`` and ``log`` too.
-What is ravemj's own (``load``, ``record``, ...) can be asked for, and does not come with the star, where it would hide
-names such as ``numpy.load``.
+Scripts with ``from openravepy import *`` also rely on ``numpy``, ``sys``, ``pickle``, ``logging`` and ``log``. ravemj's
+own names (``load``, ``record``, ...) are available, but not exported by the star, where they would hide names such as
+``numpy.load``.
 """
 
 import builtins
@@ -21,7 +21,7 @@ from ravemj.compat.names import ONLY_OPENRAVEPY
 from ravemj.rave.logs import log
 
 __version__ = "0.9.0"
-"""That of OpenRAVE's last release, for scripts that compare."""
+"""Version of OpenRAVE's last release, for scripts that compare it."""
 
 _OWN = {"load", "read_motion", "record"}
 _LEAKS = {
@@ -35,7 +35,7 @@ _LEAKS = {
 }
 _NAMES: list[str] = [name for name in dir(ravemj) if name not in _OWN and not name.startswith("_")]
 
-_ELSEWHERE = {  # where earlier versions had these, too
+_ELSEWHERE = {  # modules in which earlier versions had these names
     "OpenRAVEGlobalArguments": ("misc", "OpenRAVEGlobalArguments"),
     "OpenRAVEModel": ("databases", "DatabaseGenerator"),
 }
@@ -47,7 +47,7 @@ globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, **l
 
 
 def __getattr__(name: str) -> object:
-    """Import a module of openravepy's when it is asked for, or give what is ravemj's own."""
+    """Import a module of openravepy on first access, or return a name of ravemj's own."""
     if name in _ELSEWHERE:
         module, its_name = _ELSEWHERE[name]
         return getattr(importlib.import_module(f"ravemj.compat.{module}"), its_name)
@@ -57,5 +57,5 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    """Return what completion shows."""
+    """Return the names shown by completion."""
     return _ALL

@@ -1,4 +1,4 @@
-"""``openravepy.openravepy_ext``: what OpenRAVE's Python adds to its classes, which stands in ``openravepy`` here."""
+"""``openravepy.openravepy_ext``: OpenRAVE's Python extensions of its classes, which are in ``openravepy`` here."""
 
 from ravemj.compat.legacy import *  # noqa: F403 - what its __all__ lists
 from ravemj.geometry_functions import *  # noqa: F403 - what its __all__ lists

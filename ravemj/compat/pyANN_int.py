@@ -1,6 +1,6 @@
-"""``openravepy.pyANN_int``: searches for nearest points, as the library ANN answers them.
+"""``openravepy.pyANN_int``: nearest-neighbour searches with the interface of the library ANN.
 
-Distances are squared, and exact whatever ``eps`` is.
+Distances are squared, and exact for any ``eps``.
 """
 
 import numpy as np
@@ -12,19 +12,19 @@ from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError
 
 _CHUNK = 4_000_000
-"""Distances that are computed at once."""
+"""Maximum number of distances computed at once."""
 
 _NONE = -1
-"""The index that stands for no point."""
+"""Index that means no point."""
 
 
 class KDTree:
-    """Points that are searched.
+    """Set of points with nearest-neighbour searches.
 
     Args:
-        n: The points, shape (n, d); or ANN's number of points, for a tree without any.
-        dd: Their dimension, for such a tree.
-        bs: ANN's size of buckets; not used.
+        n: The points, shape (n, d); or ANN's number of points, for an empty tree.
+        dd: The dimension of an empty tree.
+        bs: Not used.
     """
 
     def __init__(self, n: "ArrayLike" = 0, dd: int = 0, bs: int = 1) -> None:
@@ -70,10 +70,10 @@ class KDTree:
         return order, np.take_along_axis(squared, order, axis=1)
 
     def kFRSearch(self, q: ArrayLike, sqrad: float, k: int, eps: float = 0.0) -> tuple[Ints, Floats, int]:
-        """Return the k nearest points within a squared radius, and how many there are within it.
+        """Return the k nearest points within a squared radius, and the number of points within it.
 
         Returns:
-            Indices and squared distances as of ``kSearch``; -1 and infinity where there are fewer than k points.
+            Indices and squared distances as of ``kSearch``; padded with -1 and infinity.
         """
         indices, distances, counts = self.kFRSearchArray(np.asarray(q)[None], sqrad, k, eps)
         return indices[0], distances[0], int(counts[0])
@@ -93,4 +93,4 @@ class KDTree:
 
 
 def max_pts_visit(maxPts: int) -> None:
-    """Do nothing: searches are exact, and visit all points."""
+    """Do nothing: searches are exact."""

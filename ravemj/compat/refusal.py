@@ -1,4 +1,4 @@
-"""What OpenRAVE has and ravemj lacks: functions that have its arguments, and raise ``UnsupportedError``."""
+"""Unsupported functions of OpenRAVE: they have its arguments, and raise ``UnsupportedError``."""
 
 import re
 from collections.abc import Callable
@@ -11,10 +11,10 @@ Kind = TypeVar("Kind", bound=type[object])
 
 
 def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoReturn]:
-    """Return a function that says what is missing.
+    """Return a function that raises an error with the missing capability.
 
     Args:
-        name: What users call it; a constructor by its class and ``__init__``.
+        name: Its name for users; a constructor by its class and ``__init__``.
         capability: What ravemj lacks.
         arguments: The names of its arguments, which completion shows; ``*`` and ``**`` before a name take the rest.
     """
@@ -31,7 +31,7 @@ def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoRetu
 
 
 def lacking(capability: str, methods: str) -> Callable[[Kind], Kind]:
-    """Return a decorator that gives a class methods of OpenRAVE's that need what ravemj lacks.
+    """Return a class decorator that adds unsupported methods of OpenRAVE.
 
     Args:
         capability: What ravemj lacks.

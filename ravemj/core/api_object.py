@@ -1,4 +1,4 @@
-"""The base class of API objects: how they appear in an interactive prompt, and how they speak of wrong arguments."""
+"""The base class of API objects: their display at interactive prompts, and their argument errors."""
 
 from collections.abc import Iterable
 from inspect import CO_VARARGS, CO_VARKEYWORDS
@@ -10,7 +10,7 @@ from ravemj.core.signatures import show_as_written
 
 
 class _ApiType(type):
-    """Gives classes the same ``dir`` as their objects: IPython completes an object by the union of both."""
+    """Metaclass that gives classes the ``dir`` of their objects, since IPython completes with the union of both."""
 
     def __dir__(cls) -> list[str]:
         return _listed(cls, super().__dir__())
@@ -19,20 +19,20 @@ class _ApiType(type):
 class ApiObject(metaclass=_ApiType):
     """An object with a ``repr`` without an address, and a ``dir`` of the names that users call.
 
-    ``dir`` and tab completion leave out names with an underscore, and those in ``_internal``, which other modules of
-    this package call. They have no underscore, since other modules may not call private names.
+    ``dir`` and tab completion omit names with an underscore and those in ``_internal``, which are for other modules of
+    this package. The latter have no underscore, since other modules may not call private names.
     """
 
     _internal: ClassVar[tuple[str, ...]] = ()
 
     _often_called: ClassVar[tuple[str, ...]] = ()
-    """Methods that loops call all the time; ``__init__`` where ravemj makes many objects. They check their arguments
-    themselves, since a wrapper would cost 0.1 µs a call."""
+    """Performance-critical methods, and ``__init__`` of classes with many objects. They check their arguments, since a
+    wrapper would cost 0.1 µs per call."""
 
     _names_wrong_arguments: ClassVar[bool] = True
 
     def __init_subclass__(cls, **kwargs: object) -> None:
-        """Let public methods and the constructor name an argument of a wrong type, and show their signature as written.
+        """Wrap public methods and the constructor for argument errors, and set their displayed signatures.
 
         See ``argument_errors`` and ``signatures``.
         """
@@ -41,8 +41,12 @@ class ApiObject(metaclass=_ApiType):
             skipped = _all_of(cls, "_internal") | _all_of(cls, "_often_called")
             for name, method in tuple(vars(cls).items()):
                 is_public = name[0] != "_" or name == "__init__"
-                if isinstance(method, FunctionType) and is_public and name not in skipped and _takes(method):
+                if not is_public or name in skipped:
+                    continue
+                if isinstance(method, FunctionType) and _takes(method):
                     setattr(cls, name, explained(method))
+                elif isinstance(method, staticmethod) and isinstance(method.__func__, FunctionType):
+                    setattr(cls, name, staticmethod(explained(method.__func__)))
         show_as_written(cls)
 
     def __dir__(self) -> list[str]:
@@ -53,7 +57,7 @@ class ApiObject(metaclass=_ApiType):
 
 
 def _takes(method: FunctionType) -> bool:
-    """Return whether a method takes arguments beside its object."""
+    """Return whether a method has arguments besides ``self``."""
     code = method.__code__
     return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
 

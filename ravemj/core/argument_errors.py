@@ -1,16 +1,18 @@
 """Errors that name the argument of a wrong type.
 
-A wrong argument often fails deep inside of a call, with an error of Python's that speaks of something else. The
-methods, constructors and functions of the API then compare their arguments with the annotations. Calls that succeed
-skip this.
+A wrong argument often fails deep inside a call, with an unrelated error of Python. Then the methods, constructors and
+functions of the API compare their arguments with the annotations. Successful calls skip this.
 """
 
 import os
 import re
+import reprlib
 from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
 from functools import cache, wraps
 from inspect import Parameter, formatannotation, signature
+from pathlib import Path
+from traceback import walk_tb
 from types import EllipsisType, FunctionType, MappingProxyType, NoneType
 from typing import Any, cast
 
@@ -20,7 +22,10 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError, RavemjError
 
-_PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, KeyError, OverflowError)
+_PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, KeyError, IndexError, OverflowError)
+_NAMELESS = {TypeError, ValueError, IndexError, OverflowError}
+_OURS = (str(Path(__file__).resolve().parents[1]), os.path.dirname(os.__file__), "<frozen")
+"""Path prefixes of the code of ravemj and Python; errors from other code, such as users' functions, are unchanged."""
 
 
 def _are_numbers(value: object) -> bool:
@@ -58,12 +63,12 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
         **dict.fromkeys(("bool", "Any", "object", "_empty"), ("anything", _is_any(object))),
     }
 )
-"""What errors call a type, and what is taken for it, by the name of the type in annotations."""
+"""Name in messages and type check of each type, by its name in annotations."""
 
 
 @cache  # so that a function with two names stays one
 def explained(function: FunctionType) -> Callable[..., Any]:
-    """Make a function raise a ``TypeError`` that names the argument of a wrong type which led to an error of Python's.
+    """Wrap a function so that an error of Python caused by a wrong argument type becomes a ``TypeError`` that names it.
 
     OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31).
     """
@@ -74,15 +79,18 @@ def explained(function: FunctionType) -> Callable[..., Any]:
             return function(*args, **kwargs)
         except _PYTHONS_ERRORS as error:
             message = None if isinstance(error, RavemjError) else _message(function, args, kwargs)
-            if message is None:
+            if message is not None:
+                raise TypeError(message) from error
+            named = _named(error, function, args, kwargs)
+            if named is None:
                 raise
-            raise TypeError(message) from error
+            raise named from error
 
     return call
 
 
 def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str | None:
-    """Return what is wrong with the first argument that is not of the annotated type; None if there is none."""
+    """Return the message about the first argument with a wrong type; None if there is none."""
     try:
         given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
@@ -90,6 +98,8 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
     for name, value in given.arguments.items():
         parameter = given.signature.parameters[name]
         if name == "self" or parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
+            continue
+        if value is None and parameter.default is None:  # an alias of types may hold None
             continue
         kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
@@ -100,8 +110,24 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
     return None
 
 
+def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Exception | None:
+    """Return an error of Python with the arguments that caused it; None if it names one, or comes from user code."""
+    files = (frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__))
+    if type(error) not in _NAMELESS or not all(file.startswith(_OURS) for file in files):
+        return None
+    try:
+        given = signature(function).bind(*args, **kwargs).arguments
+    except TypeError:
+        return None
+    given = {name: value for name, value in given.items() if name != "self"}
+    if not given or any(name in str(error) for name in given):
+        return None
+    values = ", ".join(f"{name}={reprlib.repr(value)}" for name, value in given.items())
+    return type(error)(f"{function.__name__}: {error}; given {values}")
+
+
 def _kinds(annotation: object) -> list[str]:
-    """Return the names of the types in an annotation, without what their containers hold."""
+    """Return the names of the types in an annotation, without type parameters."""
     text = annotation if isinstance(annotation, str) else formatannotation(annotation)
     while "[" in text:
         text = re.sub(r"\[[^\[\]]*\]", "", text)

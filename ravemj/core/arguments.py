@@ -15,7 +15,7 @@ Result = TypeVar("Result")
 
 
 def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable[Arguments, Result]]:
-    """Accept arguments under further names, which OpenRAVE's overloads use: ``also_named(further="argument")``."""
+    """Accept further keyword names of arguments, as in OpenRAVE's overloads: ``also_named(further="argument")``."""
 
     def decorate(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
         @wraps(function)
@@ -31,7 +31,7 @@ def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable
             for name, argument in names.items()
         ]
         parameters = [*known.values(), *further]
-        parameters.sort(key=lambda one: one.kind)
+        parameters.sort(key=lambda parameter: parameter.kind)
         vars(renamed)["__signature__"] = original.replace(parameters=parameters)
         pairs = ", ".join(f"``{name}`` for ``{argument}``" for name, argument in names.items())
         renamed.__doc__ = f"{cleandoc(function.__doc__ or '')}\n\nNote:\n    Also taken by name: {pairs}."
@@ -41,10 +41,10 @@ def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable
 
 
 def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name: str, wanted: str = "") -> Kind:
-    """Return an argument that a user gave; errors call it ``name``, and ask for ``wanted``, else for the class.
+    """Check the class of an argument and return it; errors call it ``name`` and the expected class ``wanted``.
 
     Raises:
-        ArgumentError: it is not of the class, or of one of the classes.
+        ArgumentError: it is not an instance of the class or classes.
     """
     if not isinstance(thing, kind):
         given = "None" if thing is None else f"of type {type(thing).__name__}"
@@ -55,10 +55,10 @@ def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name:
 
 
 def checked_index(index: int, count: int, name: str) -> int:
-    """Return an index that a user gave; errors call it ``name``.
+    """Check an index and return it; errors call it ``name``.
 
     Raises:
-        ArgumentError: it is no number, or not from 0 to ``count - 1``.
+        ArgumentError: it is not a whole number from 0 to ``count - 1``.
     """
     if type(index) is not int:
         checked_kind(index, (int, np.integer), name, "a number")
@@ -68,7 +68,7 @@ def checked_index(index: int, count: int, name: str) -> int:
 
 
 def checked_flag(text: str, command: str) -> bool:
-    """Return the argument of a command that turns something on or off.
+    """Parse the argument of an on/off command.
 
     Raises:
         ArgumentError: it is neither 0 nor 1.

@@ -1,7 +1,8 @@
-"""Checks of arrays that users pass in."""
+"""Validation of array arguments."""
 
 import math
 from collections.abc import Sequence
+from enum import Enum
 from types import EllipsisType
 
 import numpy as np
@@ -25,16 +26,16 @@ NOT_RIGID = 1e-3
 """Tolerance of a rotation matrix: the largest entry of R R^T - I."""
 
 FLOAT, INT = np.dtype(np.float64), np.dtype(np.int_)
-"""The types of arrays; numpy has one object of each."""
+"""Array types; numpy has a single object of each."""
 
 _IDENTITY = np.eye(4)
 
 ROUNDING = 1e-12
-"""Below this deviation a rotation matrix is not orthonormalized, so that exact input stays exact."""
+"""Deviation below which a rotation matrix is not orthonormalized, so that exact input stays exact."""
 
 
 def checked_numbers(values: ArrayLike, name: str) -> Floats:
-    """Return a copy as floats, at least one-dimensional.
+    """Return a copy as an array of floats, at least one-dimensional.
 
     Raises:
         ArgumentError: the values are not numbers.
@@ -45,10 +46,12 @@ def checked_numbers(values: ArrayLike, name: str) -> Floats:
         return np.array(values, dtype=np.float64, ndmin=1)
     except (TypeError, ValueError):
         raise ArgumentError(f"{name}: {values!r} should be numbers") from None
+    except OverflowError:  # whole numbers of hundreds of digits
+        raise ArgumentError(f"{name}: has a number that is too large") from None
 
 
 def _floats(values: ArrayLike, name: str) -> Floats:
-    """Return ``checked_numbers``, or the array itself where it has floats."""
+    """Return ``checked_numbers``, or the array itself if it has floats."""
     if type(values) is np.ndarray and values.dtype is FLOAT and values.ndim:
         return values
     return checked_numbers(values, name)
@@ -87,7 +90,7 @@ def checked_number(value: float, name: str, least: float = -math.inf, unit: str 
 
 
 def finite_vector(values: ArrayLike, length: int, name: str) -> Floats:
-    """Return ``checked_vector``, or the array itself where it is one already, for what is only read."""
+    """Return ``checked_vector``, or the array itself if it is valid, for read-only use."""
     if (
         type(values) is np.ndarray
         and values.dtype is FLOAT
@@ -99,7 +102,7 @@ def finite_vector(values: ArrayLike, length: int, name: str) -> Floats:
 
 
 def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
-    """Return the first numbers of a vector, which may have more, as OpenRAVE takes velocities and accelerations.
+    """Return the first numbers of a vector, which may be longer, as for velocities and accelerations in OpenRAVE.
 
     Raises:
         ArgumentError: there are fewer numbers, or one is not finite.
@@ -109,14 +112,14 @@ def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
 
 
 def checked_rows(numbers: ArrayLike, width: int, name: str) -> Floats:
-    """Return a finite array of shape (N, width), which is the given one where that has numbers of the right kind.
+    """Return a finite array of shape (N, width); the given array itself if its type is right.
 
     Raises:
-        ArgumentError: it has another shape, or something in it is no finite number.
+        ArgumentError: it has another shape, or an entry is not a finite number.
     """
     try:
         checked = np.asarray(numbers, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name}: should be numbers of shape (N, {width})") from None
     if checked.ndim != 2 or checked.shape[1] != width:
         raise ArgumentError(f"{name}: has shape {checked.shape}, and should have (N, {width})")
@@ -126,10 +129,10 @@ def checked_rows(numbers: ArrayLike, width: int, name: str) -> Floats:
 
 
 def checked_point(values: ArrayLike, name: str) -> Floats:
-    """Return a point, shape (3,), for what only reads it: the given array where that is one.
+    """Return a point, shape (3,), for read-only use: the given array itself if it is valid.
 
     Raises:
-        ValueError: it has another shape, as in OpenRAVE, whose bindings let Python's own error through.
+        ValueError: it has another shape; OpenRAVE's bindings raise this error too.
         ArgumentError: a number is not finite.
     """
     given = values if type(values) is np.ndarray else checked_numbers(values, name)
@@ -142,14 +145,17 @@ def checked_point(values: ArrayLike, name: str) -> Floats:
 
 
 def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:
-    """Return indices as an array; None stands for none, ``...`` for all.
+    """Return indices as an array; None means no index, ``...`` all.
 
     Raises:
         ArgumentError: the indices are not whole numbers.
+        TypeError: they are an enumeration's member.
         IndexError: one is not from 0 to ``count - 1``.
     """
     if indices is ...:
         return np.arange(count)
+    if isinstance(indices, Enum):  # random api-91001-120: an option in the place of indices
+        raise TypeError(f"{name} are {indices!r}, and should be whole numbers; give options by their name")
     checked = checked_whole_numbers(indices, name)
     plain = checked.tolist()
     if plain and not (min(plain) >= 0 and max(plain) < count):
@@ -158,7 +164,7 @@ def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name
 
 
 def checked_whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
-    """Return a copy as one row of whole numbers; None stands for none.
+    """Return a copy as a one-dimensional array of whole numbers; None gives an empty one.
 
     Raises:
         ArgumentError: they are no whole numbers.
@@ -170,18 +176,18 @@ def checked_whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
     if whole is not None and whole.dtype is INT:
         return whole.reshape(-1)
     given = checked_numbers([] if numbers is None else numbers, name).reshape(-1)
-    if not np.all(given == np.round(given)) or not np.isfinite(given).all():
+    if not np.all(given == np.round(given)) or not (np.abs(given) < 2.0**63).all():
         raise ArgumentError(f"{name} are {given.tolist()}, and should be whole numbers")
     return given.astype(np.int_)
 
 
 def checked_transform(transform: ArrayLike, name: str) -> Floats:
-    """Return a rigid transform as a 4x4 matrix, given as one of 4x4 or 3x4, or as a pose [w, x, y, z, tx, ty, tz].
+    """Return a rigid transform as a 4x4 matrix; the input is 4x4, 3x4, or a pose [w, x, y, z, tx, ty, tz].
 
     The quaternion is normalised, and so is a rotation that is scaled, as in OpenRAVE.
 
     Raises:
-        ValueError: it has another shape; this is Python's own error, as in OpenRAVE.
+        ValueError: it has another shape; OpenRAVE raises this error too.
         ArgumentError: a number is not finite, or the rotation matrix is not orthonormal.
     """
     given = checked_numbers(transform, name)
@@ -204,7 +210,7 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
 
 
 def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
-    """Return rigid transforms, each as ``checked_transform`` takes it, shape (n, 4, 4); errors as there."""
+    """Return rigid transforms, shape (n, 4, 4); inputs and errors as for ``checked_transform``."""
     try:
         given = np.array(transforms, dtype=np.float64)
     except (TypeError, ValueError):
@@ -216,13 +222,13 @@ def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
         if off < ROUNDING / 4 and ((x * cross_rows(y, z)).sum(axis=1) > 0).all():  # so each one is exact by itself
             given[:, 3] = _IDENTITY[3]
             return given
-    return np.array([checked_transform(one, name) for one in transforms]).reshape(-1, 4, 4)
+    return np.array([checked_transform(transform, name) for transform in transforms]).reshape(-1, 4, 4)
 
 
 def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
     """Return whether a rotation matrix, which may be scaled, is orthonormal up to rounding.
 
-    It computes with plain floats, which are several times faster than numpy for nine numbers.
+    It uses plain floats, which are several times faster than numpy for nine numbers.
 
     Raises:
         ArgumentError: it is not orthonormal even without its scale.

@@ -1,8 +1,8 @@
-"""Context managers whose end no signal can skip.
+"""Context managers whose exit no signal can skip.
 
-Python handles signals when a Python function begins and after calls. A signal that raises, as Ctrl-C does, at the begin
-of a Python function ``__exit__`` skips all of it. So the ``__exit__`` of these context managers is C code. Their
-``__enter__`` may be Python code, because no signal is handled between its ``return`` and the block.
+Python handles signals at the start of Python functions and after calls. A signal that raises an exception, like Ctrl-C,
+at the start of a Python function ``__exit__`` would skip it. So the ``__exit__`` of these context managers is C code.
+Their ``__enter__`` may be Python code, because no signal is handled between its ``return`` and the block.
 """
 
 import io
@@ -18,13 +18,13 @@ _T = TypeVar("_T")
 
 
 class _CodeInC(io.IOBase):
-    """``io.IOBase`` for its ``__exit__`` alone: C code that calls ``close()``, whatever it is given."""
+    """Uses only the ``__exit__`` of ``io.IOBase``: C code that calls ``close()``, whatever its arguments."""
 
     closed = True  # pyright: ignore - garbage collection should not call ``close``
 
 
 class Block(_CodeInC, Generic[_T]):
-    """Runs a generator to its ``yield`` at the begin of a ``with`` block, and the rest at its end.
+    """Runs a generator up to its ``yield`` at the start of a ``with`` block, and the rest at its end.
 
     Unlike with ``contextlib.contextmanager``, the generator does not see the error that ends the block.
     """
@@ -42,7 +42,7 @@ class Block(_CodeInC, Generic[_T]):
 
 
 def block(function: Callable[_P, Generator[_T]]) -> Callable[_P, AbstractContextManager[_T]]:
-    """Make a generator function a context manager; see ``Block``."""
+    """Convert a generator function to a context manager; see ``Block``."""
 
     @wraps(function)
     def begin(*args: _P.args, **kwargs: _P.kwargs) -> Any:  # noqa: ANN401 - typed above
@@ -52,7 +52,7 @@ def block(function: Callable[_P, Generator[_T]]) -> Callable[_P, AbstractContext
 
 
 class _Exit(Generic[_T]):
-    """An ``__exit__`` that is found when the block begins."""
+    """An ``__exit__`` that is looked up when the block begins."""
 
     def __init__(self, find: Callable[[_T], Callable[..., object]]) -> None:
         self._find = find
@@ -68,7 +68,7 @@ class _Exit(Generic[_T]):
 def exit_in_c(
     find: Callable[[_T], Callable[..., object]],
 ) -> Callable[[_T, type[BaseException] | None, BaseException | None, TracebackType | None], None]:
-    """Make an ``__exit__`` of a method that returns C code, which takes what ``__exit__`` takes.
+    """Create an ``__exit__`` from a method that returns a C function with the arguments of ``__exit__``.
 
     The method is called before the block begins.
     """
@@ -78,7 +78,7 @@ def exit_in_c(
 
 @block
 def restoring(action: Callable[[], object]) -> Generator[None]:
-    """Call a function at the end of the block, again if an interrupt ends it before it is complete."""
+    """Call a function at the end of the block, and again if an interrupt stops it before it is complete."""
     try:
         yield
     finally:
@@ -97,7 +97,7 @@ def always(action: Callable[[], object]) -> Callable[..., object]:
 
 
 class Closing(_CodeInC):
-    """Has an ``__exit__`` in C that closes the ``innermost_block`` that an object has then."""
+    """Has an ``__exit__`` in C that closes the owner's current ``innermost_block``."""
 
     close = property(attrgetter("_owner.innermost_block.close"))  # pyright: ignore[reportAssignmentType]
 

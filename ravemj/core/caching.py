@@ -11,7 +11,7 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
 else:
 
     class cached_property(functools.cached_property):  # noqa: N801 - as its base
-        """Python 3.11's has one lock for all objects of a class: another thread may hold it, in a fork for ever."""
+        """``functools.cached_property`` without Python 3.11's class-wide lock, which can block threads and forks."""
 
         def __init__(self, func: Callable[[Any], Any]) -> None:
             super().__init__(func)

@@ -1,16 +1,20 @@
-"""Enumerations as those of OpenRAVE: their text is their name, and dictionaries list their members."""
+"""Enumerations like OpenRAVE's: ``str`` gives the name, and dictionaries list the members."""
 
 from enum import Enum, EnumMeta, IntEnum, IntFlag
 from typing import Any
 
 
 class _Listed(EnumMeta):
-    """Gives enumerations the dictionaries that Boost.Python gives them, and old scripts read."""
+    """Metaclass with the dictionaries of Boost.Python's enumerations, which old scripts use."""
 
     @property
     def names(cls) -> dict[str, Any]:
         """The members by name."""
         return dict(cls.__members__)
+
+    def __dir__(cls) -> list[str]:
+        """Return all names, also those of combinations of flags and of second names, which Python leaves out."""
+        return sorted({*super().__dir__(), *cls.__members__})
 
     @property
     def values(cls) -> dict[int, Any]:
@@ -25,7 +29,7 @@ class NamedInt(IntEnum, metaclass=_Listed):
 
 
 class NamedFlag(IntFlag, metaclass=_Listed):
-    """Flags; ``str`` gives class and name, or the number where flags are combined with ``|``, as in OpenRAVE."""
+    """Flags; ``str`` gives class and name, or the number for flags combined with ``|``, as in OpenRAVE."""
 
     def __str__(self) -> str:
         return Enum.__str__(self) if self.name in type(self).__members__ else str(int(self))

@@ -1,4 +1,4 @@
-"""How threads wait for one another. Ctrl-C can leave ``threading.Event`` and ``queue.Queue`` locked for ever."""
+"""Interrupt-safe waiting between threads. Ctrl-C can leave ``threading.Event`` and ``queue.Queue`` locked for ever."""
 
 from contextlib import suppress
 from queue import SimpleQueue
@@ -9,11 +9,11 @@ _T = TypeVar("_T")
 
 
 class Flag:
-    """A flag that one thread sets and others wait for, whatever interrupts them."""
+    """A flag that one thread sets and others wait for, safe against interrupts."""
 
     def __init__(self) -> None:
         self._is_set = False
-        self._gate = Lock()  # open while the flag is set
+        self._gate = Lock()  # unlocked while the flag is set
         self._gate.acquire()
 
     def is_set(self) -> bool:
@@ -21,17 +21,17 @@ class Flag:
         return self._is_set
 
     def set(self) -> None:
-        """Set the flag, which wakes all who wait. It never waits itself, so it is safe in destructors and forks."""
+        """Set the flag and wake all waiting threads. It never blocks, so it is safe in destructors and forks."""
         self._is_set = True
         self._open()
 
     def clear(self) -> None:
-        """Take the flag back."""
+        """Clear the flag."""
         self._is_set = False
         self._gate.acquire(blocking=False)
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until the flag is set, or a time [s] is over; return whether it is set."""
+        """Wait until the flag is set, at most for a time [s]; return whether it is set."""
         try:
             if not self._is_set:
                 self._gate.acquire(timeout=-1 if timeout is None else max(timeout, 0.0))
@@ -41,12 +41,12 @@ class Flag:
         return self._is_set
 
     def _open(self) -> None:
-        with suppress(RuntimeError):  # it is open already
+        with suppress(RuntimeError):  # it is unlocked already
             self._gate.release()
 
 
 class Handover(Generic[_T]):
-    """A queue with room for so many items, whatever interrupts the threads at its ends."""
+    """A queue of limited length, safe against interrupts."""
 
     def __init__(self, length: int) -> None:
         self._items, self._room = SimpleQueue[_T](), SimpleQueue[None]()
@@ -54,7 +54,7 @@ class Handover(Generic[_T]):
             self._room.put(None)
 
     def put(self, item: _T) -> None:
-        """Append an item; wait while there is no room."""
+        """Append an item; block while the queue is full."""
         self._room.get()
         self._items.put(item)
 
@@ -62,16 +62,16 @@ class Handover(Generic[_T]):
         """Wait for the next item and return it.
 
         Raises:
-            queue.Empty: none came in time [s].
+            queue.Empty: no item arrived within the timeout [s].
         """
         item = self._items.get(timeout=timeout)
         self._room.put(None)
         return item
 
     def put_at_once(self, item: _T) -> None:
-        """Append an item, as if there were room."""
+        """Append an item, even if the queue is full."""
         self._items.put(item)
 
     def give_room(self) -> None:
-        """Let one more item in, from the end that takes no more."""
+        """Raise the capacity by one item; for the consumer that stops reading."""
         self._room.put(None)

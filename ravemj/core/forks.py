@@ -1,8 +1,8 @@
-"""What stays usable in the child after ``os.fork``.
+"""Handling of ``os.fork``: objects that the child process can and cannot use.
 
-A child has a copy of all objects, and of their threads only the one that forked. So locks that other threads held stay
-locked for ever there, and windows, pages and OpenGL contexts have nobody who serves them. What depends on these belongs
-to the process that made it; in the child, it raises an error.
+A child has copies of all objects, but only the thread that forked. So locks held by other threads stay locked for ever,
+and windows, pages and OpenGL contexts have no thread that serves them. Objects that depend on these belong to the
+process that created them; in the child they raise an error.
 """
 
 import os
@@ -16,20 +16,20 @@ from typing import Any, NoReturn
 from ravemj.errors import ErrorCode, RavemjError
 
 _LONGEST_IMPORT = 1.0
-"""How long [s] a fork waits for threads that import modules."""
+"""Maximum time that a fork waits for imports in other threads [s]."""
 
 NEW_PROCESS = 'start processes with multiprocessing.get_context("spawn")'
 
 
 def in_child(function: Callable[[], None]) -> Callable[[], None]:
-    """Have a function called in the child after each fork; a decorator."""
+    """Register a function to be called in the child after each fork; a decorator."""
     if hasattr(os, "register_at_fork"):  # not on Windows
         os.register_at_fork(after_in_child=function)
     return function
 
 
 def _await_imports() -> None:
-    """Wait until no other thread imports a module, which could not be imported in the child then."""
+    """Wait until no other thread is importing a module, since the child could not import that."""
     locks: dict[str, Any] = vars(sys.modules["_frozen_importlib"]).get("_module_locks", {})
     harmless = {None, threading.get_ident()}
     deadline = time.monotonic() + _LONGEST_IMPORT
@@ -44,7 +44,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def in_this_process(function: Callable[[], object]) -> Callable[[], None]:
-    """Return a function that calls another one in this process, and does nothing in a fork of it."""
+    """Wrap a function so that it does nothing in forks of this process."""
     process = os.getpid()
 
     def call() -> None:
@@ -55,11 +55,11 @@ def in_this_process(function: Callable[[], object]) -> Callable[[], None]:
 
 
 def disown(thing: object, but: tuple[str, ...] = ()) -> None:
-    """Let each further use of an object raise an error, since it belongs to the process that was forked.
+    """Make each further use of an object raise an error, since it belongs to the parent process.
 
     Args:
         thing: The object.
-        but: Methods without arguments that do nothing from now on.
+        but: Methods without arguments that do nothing instead.
     """
     thing.__class__ = _inherited(type(thing), but)
 

@@ -52,13 +52,13 @@ def connected_components(count: int, edges: Iterable[Pair]) -> list[int]:
 
 
 class DepthFirst(NamedTuple):
-    """The tree of a depth-first search in an undirected graph, which tells what single nodes cut off.
+    """The tree of a depth-first search in an undirected graph, with low points for finding cut vertices.
 
     Attributes:
-        number: For each node that was reached its place in the order of the search.
-        above: For each of them but the first the node before it on the way there.
-        highest: For each node the smallest number next to it or to a node behind it in the tree. A node cuts off the
-            branch of a node that hangs on it unless the branch has a smaller number than itself here.
+        number: Discovery index of each visited node.
+        above: Parent of each visited node in the tree, except the first.
+        highest: Low point of each node: the smallest discovery index adjacent to its subtree. A node is a cut vertex
+            for the subtree of a child unless the child's low point is below the node's index.
     """
 
     number: dict[int, int]
@@ -91,12 +91,12 @@ def depth_first(neighbours: Sequence[Iterable[int]], start: int) -> DepthFirst:
 class ShortestPaths:
     """The shortest paths in an undirected graph.
 
-    Among several shortest paths between two nodes it takes the one whose largest inner node is smallest, as OpenRAVE
-    does. Of several edges between two nodes the last one counts.
+    Of several shortest paths it selects the one whose largest inner node is smallest, as in OpenRAVE. Of several edges
+    between two nodes the last one counts.
     """
 
     def __init__(self, count: int, edges: Sequence[Pair]) -> None:
-        """Take the edges between ``count`` nodes."""
+        """Create the graph of ``count`` nodes from its edges."""
         self._edge: list[dict[int, int]] = [{} for _ in range(count)]  # to each neighbour
         for index, (first, second) in enumerate(edges):
             if first != second:
@@ -120,14 +120,14 @@ class ShortestPaths:
     def _step(self, start: int, end: int, distance: dict[int, int]) -> int:
         """Return the next node on the path, given the distances of nodes from its end."""
         nearer = self._nearer(start, distance)
-        while len(nearer) > 1:  # on the way to the largest inner node, and so on
+        while len(nearer) > 1:  # recursively, towards the largest inner node
             end = self._largest_inner(start, end, distance)
             distance = self._distances(end, start)
             nearer = self._nearer(start, distance)
         return nearer[0]
 
     def _largest_inner(self, start: int, end: int, distance: dict[int, int]) -> int:
-        """Return the largest inner node of the path, which is the smallest of all shortest paths."""
+        """Return the smallest possible largest inner node of a shortest path."""
         layers = [{start}]
         while end not in layers[-1]:
             layers.append({near for node in layers[-1] for near in self._nearer(node, distance)})
@@ -139,11 +139,11 @@ class ShortestPaths:
         return largest[start]
 
     def _nearer(self, node: int, distance: dict[int, int]) -> list[int]:
-        """Return the neighbours of a node that are nearer to where the distances are measured from."""
+        """Return the neighbours of a node that are nearer to the origin of the distances."""
         return [other for other in self._edge[node] if distance.get(other, len(self._edge)) < distance[node]]
 
     def _distances(self, origin: int, wanted: int) -> dict[int, int]:
-        """Return the distances of nodes from an origin, as far as that of a wanted node."""
+        """Return the distances of nodes from an origin, up to that of ``wanted`` (breadth-first search)."""
         distance = {origin: 0}
         queue = deque([origin])
         while queue and wanted not in distance:

@@ -13,14 +13,14 @@ _Function = TypeVar("_Function")
 
 
 class Handle(ApiObject):
-    """Keeps something for as long as the handle is in use."""
+    """Holds a resource or registration while the handle exists."""
 
     def __init__(
         self, release: Callable[_Arguments, object], *args: _Arguments.args, **kwargs: _Arguments.kwargs
     ) -> None:
-        """Make a handle that calls ``release`` with the other arguments once, at the end.
+        """Create a handle that calls ``release`` once with the other arguments, when it is closed or collected.
 
-        It has to be safe in any thread at any time: garbage collection calls it.
+        ``release`` must be safe in any thread at any time, since garbage collection may call it.
         """
         self._release = weakref.finalize(self, release, *args, **kwargs)
         self._release.atexit = False
@@ -42,7 +42,7 @@ class Handle(ApiObject):
 
 
 def registered(functions: list[_Function], function: _Function, name: str) -> Handle:
-    """Append a function of a user's to a list, and return the handle that keeps it there.
+    """Append a user's function to a list, and return a handle that removes it.
 
     Raises:
         ArgumentError: it is not a function.

@@ -1,8 +1,8 @@
-"""Locks of what threads compute in C, and how the end of Python waits for these threads.
+"""Locks for computations in C, and waiting for their threads at the exit of Python.
 
-Python does not stop daemon threads when it ends. One that comes back from MuJoCo or OpenGL after that crashes the
-process. So the end of Python takes all ``StateLock`` s for good: threads that compute finish, others wait for ever.
-A thread that keeps a lock is ended by ``SystemExit``.
+Python does not stop daemon threads at exit. One that returns from MuJoCo or OpenGL afterwards crashes the process. So
+the exit acquires all ``StateLock`` s permanently: computing threads finish, others wait for ever. A thread that holds a
+lock for too long is ended by ``SystemExit``.
 """
 
 import atexit
@@ -25,10 +25,10 @@ else:
     _Lock = type(RLock())
 
 LAST_CALL = 1.0
-"""How long [s] the end of Python waits for threads that compute, and then for those that it ends."""
+"""Maximum time that the exit waits for computing threads, and then for those that it ends [s]."""
 
 _EACH = 0.05
-"""How long [s] it waits at least for a thread that it has ended; another may have been waiting for the same lock."""
+"""Minimum waiting time for a thread that it has ended [s]; another may have been waiting for the same lock."""
 
 _locks: "WeakValueDictionary[int, StateLock]" = WeakValueDictionary()
 _before_end: list[Callable[[], object]] = []
@@ -37,7 +37,7 @@ _is_ending = False
 
 
 class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for pyright alone
-    """A reentrant lock for all calls that compute in C. Hold it by ``with``, which no interrupt can leave locked."""
+    """A reentrant lock for computations in C. Acquired by ``with``, it is released despite any interrupt."""
 
     def __init__(self) -> None:
         while is_left_to_end():
@@ -63,10 +63,8 @@ class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for 
             raise
 
     def __reduce__(self) -> NoReturn:
-        message = "an environment, and what is in it, cannot be pickled"
-        way_out = (
-            'load the model in the other process, from a file that env.Save("scene.dae") writes; arrays can be sent'
-        )
+        message = "links, joints and other parts of an environment cannot be pickled"
+        way_out = "send the environment or one of its bodies, and look the part up by its name"
         raise RavemjError(f"{message}: {way_out}", ErrorCode.InvalidState)
 
     if sys.version_info >= (3, 14):  # handles signals after an ``__enter__`` in C, before the block begins
@@ -77,7 +75,7 @@ class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for 
         """Try to acquire the lock for the block.
 
         Args:
-            timeout: How long to wait [s]; 0: not at all.
+            timeout: Maximum waiting time [s]; 0 does not wait.
 
         Yields:
             Whether this thread has the lock.
@@ -89,19 +87,19 @@ class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for 
 
 
 def is_left_to_end() -> bool:
-    """Return whether Python ends and this is another thread, which must free nothing in C any more."""
+    """Return whether Python is exiting and this is not the main thread, so that it must not free C objects."""
     return _is_ending and current_thread() is not main_thread()
 
 
 def before_end(function: Callable[[], object]) -> Callable[[], object]:
-    """Have a function called at the end of Python while the locks are free, to end threads; usable as a decorator."""
+    """Register a function that ends threads, called at exit before the locks are taken; usable as a decorator."""
     _before_end.append(function)
     return function
 
 
 @atexit.register
 def end() -> None:
-    """End threads and take all locks, once; what frees that with which threads compute calls it first."""
+    """End threads and acquire all locks, once. Exit handlers that free shared C objects call it first."""
     global _is_ending  # noqa: PLW0603 - Python ends once
     if _is_ending:
         return
@@ -121,10 +119,10 @@ def end() -> None:
 
 
 def _end_holder(lock: StateLock) -> None:
-    """Have ``SystemExit`` raised in the thread that holds a lock, once it is out of C."""
-    found = re.search(r"owner=(\d+)", repr(lock))
-    if found:
-        holder = ctypes.c_ulong(int(found[1]))
+    """Raise ``SystemExit`` in the thread that holds a lock, once it has left C code."""
+    owner = re.search(r"owner=(\d+)", repr(lock))
+    if owner:
+        holder = ctypes.c_ulong(int(owner[1]))
         ctypes.pythonapi.PyThreadState_SetAsyncExc(holder, ctypes.py_object(SystemExit))
 
 

@@ -1,8 +1,8 @@
-"""Files and folders that appear whole or not at all.
+"""Atomic writing of files and folders.
 
-They are written under a temporary name beside the target and renamed at the end. If writing fails, nothing
-is left behind, and an older target stays as it was. If a process is killed, the next process that writes into the
-folder removes its temporary files.
+They are written under a temporary name beside the target and renamed at the end. If writing fails, nothing is left
+behind, and an older target is unchanged. If a process is killed, the next process that writes into the folder removes
+its temporary files.
 """
 
 import os
@@ -37,7 +37,7 @@ def check_file(path: AnyPath) -> None:
 def check_folder(path: AnyPath, *patterns: str) -> None:
     """Check that a folder of files can be written, without touching anything.
 
-    What is there may only be an older one of its kind, with files of these patterns, such as ``frame_*.png``.
+    An existing folder may only contain files of these patterns, such as ``frame_*.png``.
 
     Raises:
         OutputError: The folder around it is missing or cannot be written, or something else is there.
@@ -59,7 +59,7 @@ def check_folder(path: AnyPath, *patterns: str) -> None:
 
 @contextmanager
 def new_file(path: AnyPath) -> Generator[Path]:
-    """Make a file: write it at the yielded temporary path, and the end of the block renames it.
+    """Create a file: write it at the yielded temporary path, which the end of the block renames.
 
     Raises:
         OutputError: As for ``check_file``, or the temporary file cannot be created or renamed.
@@ -76,7 +76,7 @@ def new_file(path: AnyPath) -> Generator[Path]:
 
 @contextmanager
 def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
-    """Make a folder of files: write them into the yielded temporary folder, and the end of the block renames it.
+    """Create a folder of files: write them into the yielded temporary folder, which the end of the block renames.
 
     Raises:
         OutputError: As for ``check_folder``, or the temporary folder cannot be created or renamed.
@@ -94,9 +94,9 @@ def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
 
 @contextmanager
 def added_files(path: AnyPath) -> Generator[Path]:
-    """Put files into a folder that may hold others: write them into the yielded temporary folder.
+    """Add files to a folder: write them into the yielded temporary folder.
 
-    The end of the block moves all of them, or none; the folder is made if need be. Files of the same names are
+    The end of the block moves all of them, or none; it creates the folder if necessary. Files of the same names are
     replaced.
 
     Raises:
@@ -136,14 +136,14 @@ def _move_all(source: Path, target: Path) -> None:
 
 
 def output_error(path: AnyPath, error: Exception) -> OutputError:
-    """Return the error of one line that says why a target cannot be written."""
+    """Return the one-line error with the reason why a target cannot be written."""
     reason = (getattr(error, "strerror", None) or "").lower() or " ".join(str(error).split()) or type(error).__name__
     return OutputError(f"cannot write {os.fspath(path)}: {reason}")
 
 
 @contextmanager
 def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError, ValueError)) -> Generator[None]:
-    """Raise an ``OutputError`` in place of errors of some kinds; by default, also for a path that holds a null byte."""
+    """Convert errors of some types to ``OutputError``; by default also those of paths with null bytes."""
     try:
         yield
     except (OutputError, BrokenPipeError):  # a pipe is not the target
@@ -153,12 +153,12 @@ def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError,
 
 
 def _real(path: AnyPath) -> Path:
-    """Return the absolute path; a link stays, and what it points at is replaced."""
+    """Return the absolute path; a symbolic link stays, and its target is replaced."""
     return Path(os.path.realpath(path))
 
 
 def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
-    """Yield what in a folder is neither a file that matches one of the patterns nor a folder of such files."""
+    """Yield the entries of a folder that match none of the patterns, directly or in a subfolder."""
     folders = {pattern.rpartition("/")[0] for pattern in patterns}
     for entry in folder.rglob("*"):
         name = entry.relative_to(folder).as_posix()
@@ -173,7 +173,7 @@ def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
 
 @contextmanager
 def _temporary(path: AnyPath) -> Generator[Path]:
-    """Yield a name beside a target; what has it at the end of the block is removed."""
+    """Yield a temporary path beside a target; a file or folder left there is removed at the end."""
     temporary = _real(path).with_name(f".ravemj-{_realm()}-{os.getpid()}-{os.urandom(4).hex()}.tmp")
     _remove_left_over(temporary.parent)
     remove = in_this_process(lambda: _remove(temporary))
@@ -186,7 +186,7 @@ def _temporary(path: AnyPath) -> Generator[Path]:
 
 @contextmanager
 def temporary_folder() -> Generator[str]:
-    """Yield a folder that is removed at the end of the block, by this process alone."""
+    """Yield a folder that this process alone removes at the end of the block."""
     folder = tempfile.mkdtemp(prefix="ravemj-")
     remove = in_this_process(lambda: shutil.rmtree(folder, ignore_errors=True))
     with on_signal(remove):
@@ -198,7 +198,7 @@ def temporary_folder() -> Generator[str]:
 
 @cache
 def _realm() -> str:
-    """Return eight hexadecimal digits for where our process id counts: the machine, and the container on it."""
+    """Return eight hexadecimal digits for the process id namespace: the machine, and the container on it."""
     import hashlib  # noqa: PLC0415 - slow to import
 
     try:
@@ -209,7 +209,7 @@ def _realm() -> str:
 
 
 def _remove_left_over(folder: Path) -> None:
-    """Remove temporary files and folders that the user's processes left behind when they were killed."""
+    """Remove temporary files and folders of the user's killed processes."""
     if os.name != "posix":  # there is no harmless way to ask for a process
         return
     for path in folder.glob(f".ravemj-{_realm()}-*"):

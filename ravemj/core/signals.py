@@ -1,11 +1,11 @@
-"""How a command ends on Ctrl-C (SIGINT), SIGTERM and SIGHUP: with the exit code 128 + the signal's number.
+"""Termination of commands by Ctrl-C (SIGINT), SIGTERM and SIGHUP, with the exit code 128 + the signal's number.
 
-It ends at once, whatever it imports, loads or draws, after the functions of ``on_signal``. Python's way, an exception
-at any place, is not safe there: C code turns it into other errors, and threads may wait for ever. Only where a command
-waits for its user, ``signals_raised`` raises one.
+The command ends immediately, during imports, loading or drawing, after the functions of ``on_signal``. An exception at
+an arbitrary point, as Python raises it, is not safe: C code converts it to other errors, and threads may wait for ever.
+Only while a command waits for its user, ``signals_raised`` raises an exception.
 
-``ravemj/__init__.py`` imports this before all else, so that it holds from the first line on; therefore this imports
-next to nothing. Programs that import ravemj keep the handlers that they have.
+``ravemj/__init__.py`` imports this module first, so that it is active from the first line on; therefore it has very few
+imports. Programs that import ravemj keep their signal handlers.
 """
 
 import os
@@ -38,17 +38,17 @@ _raises = False
 
 
 class Terminated(SystemExit):
-    """SIGTERM or SIGHUP, where signals are raised."""
+    """SIGTERM or SIGHUP as an exception."""
 
     def __init__(self, number: int) -> None:
-        """Make one of the number of the signal."""
+        """Create the exception from the number of the signal."""
         super().__init__(128 + number)
         self.number = number
 
 
 @contextmanager
 def on_signal(function: Callable[[], object]) -> Generator[None]:
-    """Have a function called when a signal ends the process within the block."""
+    """Call a function if a signal ends the process within the block."""
     _functions.append(function)
     try:
         yield
@@ -73,7 +73,7 @@ def signals_delayed() -> Generator[None]:
 
 @contextmanager
 def signals_raised() -> Generator[None]:
-    """Have a signal raise ``KeyboardInterrupt`` or ``Terminated`` in the block; a second one ends the process."""
+    """Raise ``KeyboardInterrupt`` or ``Terminated`` for a signal in the block; a second signal ends the process."""
     global _raises  # noqa: PLW0603 - signals are the process's
     _raises = True
     try:
@@ -83,21 +83,21 @@ def signals_raised() -> Generator[None]:
 
 
 def heed_signals() -> None:
-    """Let signals end this process if it is a command, except those that it was started to ignore."""
+    """Install the signal handlers if this process is a command, except for signals that it was started to ignore."""
     for number in _signals() if _IS_COMMAND else ():
         if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
             signal.signal(number, _end)
 
 
 def leave_signals_to_python() -> None:
-    """Let signals do what they do in any Python program, as scripts and people at a prompt expect."""
+    """Restore Python's signal handlers, as scripts and interactive prompts expect."""
     for number in _signals():
         if signal.getsignal(number) is _end:
             signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
 
 
 def message(number: int) -> str:
-    """Return the message that a command leaves when a signal has ended it."""
+    """Return the message of a command that a signal has ended."""
     return "ravemj: interrupted" if number == signal.SIGINT else f"ravemj: ended by {signal.Signals(number).name}"
 
 
@@ -126,7 +126,7 @@ def _end(number: int, frame: object) -> None:
 
 
 def _forget() -> None:
-    """Forget in a fork what the parent does: its temporary files, and blocks of its other threads."""
+    """Clear the parent's temporary files and blocks in a forked child."""
     _functions.clear()
     _delays.clear()
 

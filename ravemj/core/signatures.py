@@ -1,6 +1,6 @@
-"""Signatures as their source writes them: ``ArrayLike``, not the dozen types that it stands for.
+"""Signatures as written in the source: ``ArrayLike``, not the dozen types of its union.
 
-``?`` in IPython, ``help`` and ``inspect.signature`` show them. The source is read when one of them asks.
+``?`` in IPython, ``help`` and ``inspect.signature`` show them. The source is parsed on demand.
 """
 
 import ast
@@ -22,7 +22,7 @@ class _Annotation:
 
 
 class WrittenSignature(inspect.Signature):
-    """The signature of a function, made when somebody looks at it."""
+    """The signature of a function, computed on demand."""
 
     __slots__ = ("_evaluated", "_function")
 
@@ -44,7 +44,7 @@ class WrittenSignature(inspect.Signature):
 
 
 def show_as_written(thing: object) -> None:
-    """Show the signature of a function, or of a class' constructor and public methods, as their source has them."""
+    """Display the signature of a function, or of a class' constructor and public methods, as in the source."""
     if isinstance(thing, type):
         for name, member in tuple(vars(thing).items()):
             if name[0] != "_" or name in {"__init__", "__new__"}:
@@ -80,8 +80,8 @@ def _annotations(function: FunctionType) -> dict[str, str]:
     if not isinstance(definition, ast.FunctionDef):
         return {}
     arguments = [node for node in ast.walk(definition.args) if isinstance(node, ast.arg)]
-    found = {argument.arg: argument.annotation for argument in arguments} | {"return": definition.returns}
-    return {name: _text(annotation) for name, annotation in found.items() if annotation is not None}
+    annotations = {argument.arg: argument.annotation for argument in arguments} | {"return": definition.returns}
+    return {name: _text(annotation) for name, annotation in annotations.items() if annotation is not None}
 
 
 def _fields(constructor: FunctionType) -> dict[str, str]:

@@ -1,8 +1,8 @@
 """Rigid transforms as plain tuples of floats.
 
-A ``Pose`` is what OpenRAVE keeps in memory: a unit quaternion (w, x, y, z) and a translation. Tuples
-compare, hash and print by themselves, which frozen scene data needs, and for one pose at a time they are
-faster than numpy arrays. ``T_a_b`` maps coordinates of frame b to frame a, so ``T_a_c = T_a_b @ T_b_c``.
+A ``Pose`` is a unit quaternion (w, x, y, z) and a translation, as in OpenRAVE. Tuples can be compared, hashed and
+printed, which frozen scene data needs, and for single poses they are faster than numpy arrays. ``T_a_b`` maps
+coordinates of frame b to frame a, so ``T_a_c = T_a_b @ T_b_c``.
 """
 
 import math
@@ -145,6 +145,13 @@ _SHORTEST = 1e-290
 """Below this length a vector's components may be subnormal."""
 
 
+def not_subnormal(vector: Vec3) -> Vec3:
+    """Return a vector of the same direction whose length has an inverse; 0 stays 0."""
+    if math.hypot(*vector) < _SHORTEST:  # subnormal numbers have few digits; a power of two loses none
+        return (vector[0] * 2.0**600, vector[1] * 2.0**600, vector[2] * 2.0**600)
+    return vector
+
+
 def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
     """Return the right-handed rotation by an angle [rad] about an axis of any length; a zero axis means no rotation.
 
@@ -153,12 +160,10 @@ def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
     Raises:
         OverflowError: the angle is infinite.
     """
+    axis = not_subnormal(axis)
     length = math.hypot(*axis)
     if length == 0.0:
         return UNIT_WXYZ
-    if length < _SHORTEST:  # subnormal numbers have few digits; a power of two loses none
-        axis = (axis[0] * 2.0**600, axis[1] * 2.0**600, axis[2] * 2.0**600)
-        length = math.hypot(*axis)
     if math.isinf(angle):
         raise OverflowError("there is no turn by an infinite angle")
     cosine, sine = math.cos(angle / 2), math.sin(angle / 2)

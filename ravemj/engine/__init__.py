@@ -1,3 +1,3 @@
-"""The MuJoCo model of all bodies, and what is computed with it."""
+"""The MuJoCo model of all bodies, and computations with it."""
 
 import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco

@@ -1,4 +1,4 @@
-"""Simulation time, and the thread that lets it pass."""
+"""Simulation time, and the thread that advances it."""
 
 import logging
 import math
@@ -20,29 +20,29 @@ DEFAULT_STEP = 0.01
 """OpenRAVE's time step [s]."""
 
 PAUSE = 1e-4
-"""How long [s] the thread lets go between steps at least, so that others get the lock."""
+"""Minimum time [s] without the lock between steps, so that other threads can acquire it."""
 
 BEHIND = 0.1
-"""How much real time [s] the thread catches up with after it was held up; what is beyond is lost."""
+"""Maximum delay in real time [s] that the thread catches up with; more is lost."""
 
 LAST_STEP = 1.0
-"""How long [s] the end of Python waits for a step that has begun; a script's controller may hang in it."""
+"""Time limit [s] for a running step at the exit of Python; a script's controller may block in it."""
 
 POLL = 0.05
-"""How often [s] the thread looks whether it should end while others have the lock."""
+"""Interval [s] at which the thread checks for its end while others have the lock."""
 
 
 class Clock:
-    """Counts simulation time, and calls what happens in it.
+    """Clock of the simulation time, with a thread that runs its steps.
 
-    Time may pass from the start, as in OpenRAVE, but the thread comes with the first ``wake``. It holds the clock by
-    a weak reference, and so ends when whatever owns the clock is gone.
+    Running is enabled from the start, as in OpenRAVE, but the thread starts with the first ``wake``. It has a weak
+    reference to the clock, so it ends with the clock's owner.
     """
 
     def __init__(self, lock: StateLock, step: Callable[[float], None]) -> None:
-        """Make a clock that stands at 0; with the lock held, it calls ``step`` for each time step [s]."""
+        """Make a clock at time 0; with the lock held, it calls ``step`` for each time step [s]."""
         self.now = 0  # simulation time since the start [microseconds]
-        self.is_allowed = True  # whether time passes by itself; ``stop`` ends that
+        self.is_allowed = True  # whether the thread may run; ``stop`` ends that
         self._lock = lock
         self._step = step
         self._rhythm = _Rhythm(lock, Flag(), DEFAULT_STEP, 1.0)
@@ -50,13 +50,13 @@ class Clock:
         self._starting = Lock()
 
     def step(self, timestep: float) -> None:
-        """Let time pass by one step [s]."""
+        """Advance by one time step [s]."""
         with self._lock:
             self._step(timestep)
             self.now += round(timestep * 1e6)
 
     def wake(self) -> None:
-        """Let time pass by itself from now on, unless it was stopped."""
+        """Start the thread, unless the clock is stopped."""
         with self._starting:
             if self.is_allowed and self._thread is None:
                 self._rhythm = replace(self._rhythm, ending=Flag())
@@ -72,29 +72,29 @@ class Clock:
                     raise
 
     def start(self, timestep: float, *, realtime: bool) -> None:
-        """Let time pass by itself from now on, in steps of so many seconds, in real time or as fast as it can."""
+        """Run time steps of a length [s] in the thread, in real time or as fast as possible."""
         self.stop()
         self._rhythm = replace(self._rhythm, timestep=timestep, pace=1.0 if realtime else math.inf)
         self.resume()
 
     def resume(self) -> None:
-        """Let time pass again after ``stop``, in the steps and at the pace from before."""
+        """Continue after ``stop``, with the previous time step and pace."""
         self.is_allowed = True
         self.wake()
 
     @property
     def is_running(self) -> bool:
-        """Whether time passes by itself now; asking does not wake it."""
+        """Whether the thread runs; does not start it."""
         return self._thread is not None
 
     @property
     def timestep(self) -> float:
-        """Length of the steps with which time passes by itself [s]."""
+        """Time step of the thread [s]."""
         return self._rhythm.timestep
 
     @property
     def pace(self) -> float:
-        """Seconds of simulation that are wanted in a second: 1 is real time, inf as many as can be computed."""
+        """Target simulation speed: 1 is real time, inf is as fast as possible."""
         return self._rhythm.pace
 
     @pace.setter
@@ -102,7 +102,7 @@ class Clock:
         self._rhythm.pace = pace
 
     def stop(self, *, wait: bool = True) -> None:
-        """Let time stand still; with ``wait``, return only when the thread has ended."""
+        """Stop the thread; ``wait`` waits for its end."""
         with self._starting:
             self.is_allowed = False
             self._rhythm.ending.set()
@@ -111,7 +111,7 @@ class Clock:
             thread.join()
 
     def lose_thread(self) -> None:
-        """Take note that the calling thread ends, if it is the clock's: ``wake`` then starts another."""
+        """Note that the calling thread ends, if it is the clock's; ``wake`` then starts another."""
         with self._starting:
             if self._thread is threading.current_thread():
                 self._thread = None
@@ -130,7 +130,7 @@ def _forget_threads() -> None:
 
 @before_end
 def _end_threads() -> None:
-    """End the threads while Python is still there: one that comes back from MuJoCo later crashes the process."""
+    """Stop the threads before Python exits; one that returns from MuJoCo later would crash the process."""
     for thread, ending in tuple(_threads.items()):
         ending.set()
         thread.join(LAST_STEP)
@@ -138,10 +138,10 @@ def _end_threads() -> None:
 
 @dataclass
 class _Rhythm:
-    """What the thread knows without the clock."""
+    """Schedule of the simulation thread, readable without a reference to the clock."""
 
     lock: StateLock  # held during each step
-    ending: Flag  # set when the thread should end
+    ending: Flag  # set to end the thread
     timestep: float  # [s]
     pace: float  # seconds of simulation in a second; inf: no step waits
 
@@ -158,7 +158,7 @@ def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
 
 
 def _step(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> bool:
-    """Let time pass by a step; return whether it goes on."""
+    """Run a time step; return whether to continue."""
     present = clock()
     if present is None or rhythm.ending.is_set():
         return False

@@ -23,9 +23,9 @@ _LONGEST_CHAIN = 496  # links; MuJoCo's reader of XML takes 500 elements inside 
 
 
 class Compiled:
-    """A scene in MuJoCo: the text, MuJoCo's editable form of it, and the model.
+    """Compiled scene: MJCF text, MuJoCo's editable spec, and model.
 
-    Masses and inertias that MuJoCo refuses are the nearest legal ones in the model.
+    Masses and inertias that MuJoCo rejects are replaced by the nearest valid ones in the model.
     """
 
     def __init__(
@@ -34,41 +34,40 @@ class Compiled:
         diagnostics: Diagnostics,
         options: "mjcf.Options | None" = None,
         edit: "Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None" = None,
+        written: "mjcf.Mjcf | None" = None,
     ) -> None:
-        """Compile a scene; ``edit`` changes the model before, and ``diagnostics`` takes what the translation finds.
+        """Compile a scene; ``edit`` changes the model before, and ``diagnostics`` receives warnings of the translation.
+
+        ``written`` is an existing translation of the scene.
 
         Raises:
             CompileError: MuJoCo refuses the model.
         """
         from ravemj.formats import mjcf  # noqa: PLC0415 - slow to import
 
-        self.mjcf = mjcf.write(scene, diagnostics, options)
-        try:
-            with mujoco.MjVfs() as files:
-                for name, content in self.mjcf.assets.items():
-                    files[f"{mjcf.ASSETS}/{name}"] = content.encode()
-                self.spec = mujoco.MjSpec.from_string(self.mjcf.text, vfs=files)
-                if edit is not None:
-                    edit(self.spec, self.mjcf)
-                with warnings.catch_warnings(record=True) as complaints:
-                    warnings.simplefilter("always")
-                    self.model = self.spec.compile(vfs=files)
-        except ValueError as error:
-            raise _compile_error(str(error), self.mjcf) from None
-        _keep_centers(self.model)
+        self.mjcf = written or mjcf.write(scene, diagnostics, options)
+        self.spec, self.model, complaints = compile_text(self.mjcf, edit)
         for complaint in complaints:
-            self._report(str(complaint.message), scene, diagnostics)
+            self._report(complaint, scene, diagnostics)
+
+    @cached_property
+    def complete_spec(self) -> mujoco.MjSpec:
+        """MuJoCo's editable spec including meshes, so that it compiles by itself."""
+        from ravemj.formats import mjcf  # noqa: PLC0415 - slow to import
+
+        self.spec.assets = {f"{mjcf.ASSETS}/{name}": text.encode() for name, text in self.mjcf.assets.items()}
+        return self.spec
 
     @cached_property
     def data(self) -> mujoco.MjData:
-        """The state of the model; made when it is first asked for, since it takes half as long as compiling."""
+        """State of the model; created on first use, since that takes half as long as compiling."""
         return mujoco.MjData(self.model)
 
     @classmethod
     def mechanism(cls, body: KinBody) -> "Compiled":
-        """Compile the links and joints of one body, without shapes; each root hangs on a free joint.
+        """Compile the links and joints of one body without shapes; each root has a free joint.
 
-        The model has the true masses and inertias. What the translation finds is left to that of the whole scene.
+        The model has the true masses and inertias. Warnings are left to the translation of the whole scene.
 
         Raises:
             CompileError: MuJoCo refuses the model.
@@ -81,7 +80,7 @@ class Compiled:
         return compiled
 
     def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
-        """Record a warning of MuJoCo's, with the link that it is about where it names a DOF."""
+        """Record a warning of MuJoCo, with the link concerned if it names a DOF."""
         source, about = Source("the translated model", 0), ""
         match = _DOF.search(complaint)
         if match:
@@ -93,13 +92,39 @@ class Compiled:
         diagnostics.warn("near-singular", f"MuJoCo warns{about}: {complaint}", source, hint)
 
     def write_true_inertias(self, scene: Scene) -> None:
-        """Give the links that MuJoCo's compiler refuses their true values back; inverse dynamics needs them."""
+        """Restore true inertias of links that MuJoCo's compiler rejects, as inverse dynamics needs them."""
         for body_index, link_index in self.mjcf.altered:
             inertial = scene.bodies[body_index].links[link_index].inertial
             name = self.mjcf.names[body_index].links[link_index]
             body_id = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
             if np.isfinite(inertial.mass) and np.isfinite(inertial.inertia).all():
                 write_inertial(self.model, body_id, inertial)
+
+
+def compile_text(
+    text: "mjcf.Mjcf", edit: "Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None" = None
+) -> tuple[mujoco.MjSpec, mujoco.MjModel, list[str]]:
+    """Compile a document; return MuJoCo's editable spec, the model, and MuJoCo's warnings.
+
+    Raises:
+        CompileError: MuJoCo refuses the model.
+    """
+    from ravemj.formats import mjcf  # noqa: PLC0415 - slow to import
+
+    try:
+        with mujoco.MjVfs() as files:
+            for name, content in text.assets.items():
+                files[f"{mjcf.ASSETS}/{name}"] = content.encode()
+            spec = mujoco.MjSpec.from_string(text.text, vfs=files)
+            if edit is not None:
+                edit(spec, text)
+            with warnings.catch_warnings(record=True) as complaints:
+                warnings.simplefilter("always")
+                model = spec.compile(vfs=files)
+    except ValueError as error:
+        raise _compile_error(str(error), text) from None
+    _keep_centers(model)
+    return spec, model, [str(complaint.message) for complaint in complaints]
 
 
 def _keep_centers(model: mujoco.MjModel) -> None:
@@ -109,7 +134,7 @@ def _keep_centers(model: mujoco.MjModel) -> None:
 
 
 def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> None:
-    """Give a body of a model other mass properties."""
+    """Set the mass properties of a body in a model."""
     frame = principal_frame(inertial)
     added = inertial.mass - model.body_mass[body_id]
     model.body_mass[body_id] = inertial.mass
@@ -124,7 +149,7 @@ def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> N
 
 
 def _compile_error(message: str, text: "mjcf.Mjcf") -> CompileError:
-    """Return MuJoCo's complaint with the place in the user's file that it is about."""
+    """Convert MuJoCo's error message to an error with the position in the user's file."""
     match = _LINE.search(message)
     line = int(match[1]) if match else 0
     source = text.source_of_line(line) or Source("the translated model", line)

@@ -1,4 +1,4 @@
-"""Rules of bodies that hold others."""
+"""Rules of grabbing."""
 
 from collections.abc import Iterable, Sequence
 
@@ -8,9 +8,9 @@ from ravemj.engine.simulation.body import BodyState, GrabbedBody
 
 
 def grab_as_it_stands(holder: BodyState, body: BodyState, link: int, ignored: Iterable[int]) -> GrabbedBody:
-    """Return how a link of a holder holds a body in the pose that both have now.
+    """Return the grab of a body by a link at their present relative pose.
 
-    The body does not collide with the link, the links that it touches now, and those to be ignored.
+    Collisions with the link, the links in contact at present, and ``ignored`` are ignored.
     """
     touched = touching_links(holder.simulation.collisions(), holder, body)
     T_link_body = inverse(holder.link_transform(link)) @ body.link_transform(0)
@@ -18,7 +18,7 @@ def grab_as_it_stands(holder: BodyState, body: BodyState, link: int, ignored: It
 
 
 def still_possible(holder: BodyState, grabs: Sequence[GrabbedBody]) -> list[GrabbedBody]:
-    """Return those of a body's former grabs that can be; in another world, of the bodies of the same names."""
+    """Return the grabs of a body that are still possible; in another world, with bodies of the same names."""
     world = holder.simulation
     bodies = [one.body if one.body.simulation is world else world.body(one.body.scene.name) for one in grabs]
     return [

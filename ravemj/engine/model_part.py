@@ -1,4 +1,4 @@
-"""A body in a model of several bodies."""
+"""Part of a MuJoCo model that is one body."""
 
 from typing import TYPE_CHECKING
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from ravemj.formats.mjcf import BodyNames
 
 _WIDTHS = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
-"""How many numbers joints of several have in ``qpos`` and ``qvel``; the others have one."""
+"""Numbers of ``qpos`` and ``qvel`` elements of joint types with several; others have one."""
 
 
 class ModelPart:
-    """The part of a model that is one body: its links and joints, in the order of the model that is the body's own."""
+    """Part of a model that is one body: its links and joints, in the order of the body's own model."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, names: "BodyNames") -> None:
         self._model = model
@@ -28,7 +28,7 @@ class ModelPart:
         self._positions, self._quaternions = model.body_pos[bodies], model.body_quat[bodies]  # views of the model
         self._roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         joints = np.flatnonzero((model.jnt_bodyid >= first) & (model.jnt_bodyid < first + len(found)))
-        self.qpos = self.qvel = slice(0, 0)  # where the body is in ``qpos`` and ``qvel``
+        self.qpos = self.qvel = slice(0, 0)  # indices of the body in ``qpos`` and ``qvel``
         self.is_free = False  # whether its roots have free joints, as in its own model; else the world holds them
         if len(joints):
             start, last = int(joints[0]), int(joints[-1])
@@ -37,10 +37,10 @@ class ModelPart:
             self.qvel = slice(int(model.jnt_dofadr[start]), int(model.jnt_dofadr[last]) + speeds)
             self.is_free = model.jnt_type[start] == mujoco.mjtJoint.mjJNT_FREE
         self._qpos = data.qpos[self.qpos]
-        self.stamp = -1  # ``BodyKinematics.stamp`` of what was last taken over
+        self.stamp = -1  # ``BodyKinematics.stamp`` of the last update
 
     def take(self, kinematics: BodyKinematics) -> bool:
-        """Go where the body is, and return whether more than joint values changed."""
+        """Copy the body's configuration into this model; return whether more than joint values changed."""
         self._qpos[:] = kinematics.qpos if self.is_free else kinematics.qpos[kinematics.inner_qpos]
         has_moved = kinematics.pose_stamp > self.stamp
         if has_moved:
@@ -49,7 +49,6 @@ class ModelPart:
         return has_moved
 
     def _take_poses(self, kinematics: BodyKinematics) -> None:
-        """Take over where the roots are, and what was displaced."""
         self._positions[:] = kinematics.model.body_pos[1:]
         self._quaternions[:] = kinematics.model.body_quat[1:]
         for root, place in zip(() if self.is_free else self._roots, kinematics.root_qpos, strict=not self.is_free):
@@ -57,6 +56,6 @@ class ModelPart:
             self._model.body_pos[body_id], self._model.body_quat[body_id] = pose[:3], pose[3:]
 
     def give(self, kinematics: BodyKinematics) -> None:
-        """Let the body go where it is in this model."""
+        """Copy this model's configuration to the body."""
         kinematics.set_qpos(self._qpos, inner_only=not self.is_free)
         self.stamp = kinematics.stamp

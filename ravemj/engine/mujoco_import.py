@@ -1,12 +1,12 @@
-"""Imports mujoco before all else, also where ``MUJOCO_GL`` names a library that is not there.
+"""Import of mujoco, also if ``MUJOCO_GL`` names a missing library.
 
-MuJoCo loads that library while it is imported, and fails without it. Whoever wants no picture does not need it, and
-whoever wants one gets ravemj's own message when it is drawn (``ravemj.graphics.rendering.contexts``).
+MuJoCo's import loads that library, and fails without it. It is only necessary for pictures; their drawing then reports
+the error (``ravemj.graphics.rendering.contexts``).
 
-On the way MuJoCo may import glfw, which asks its library for its version in a process of its own. Signals wait until
-that process has ended: Ctrl-C, which reaches both, would have it print a traceback.
+MuJoCo may import glfw, which runs a subprocess to query its library's version. Signals are blocked until it ends:
+otherwise Ctrl-C, which reaches both, makes it print a traceback.
 
-What MuJoCo warns of goes to the log; by itself it writes a file ``MUJOCO_LOG.TXT`` into the working folder.
+MuJoCo's warnings go to the log, instead of a file ``MUJOCO_LOG.TXT`` in the working folder.
 """
 
 import importlib

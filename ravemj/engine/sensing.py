@@ -1,4 +1,4 @@
-"""What sensors measure, as numbers, and what viewers draw of it. Pictures of cameras are the renderers'."""
+"""Sensor measurements, and their drawings. Camera images are made by the renderers."""
 
 import math
 from functools import lru_cache
@@ -15,38 +15,38 @@ from ravemj.model.drawing import NOTHING, Primitives, line_list, merge, mesh, po
 from ravemj.model.scene import Device, FlashLidar, ForceTorque, Intrinsics, Laser
 
 _WHOLE = 1e-9
-"""How near to one more step of the angle a range may end, in steps, and still hold its ray."""
+"""Tolerance in angle steps within which the last ray of a range is included."""
 
 _FRUSTUM = 0.15
-"""Depth of a drawn frustum [m]."""
+"""Depth of a drawn camera frustum [m]."""
 
 _ICON = 0.05
-"""Least radius of the fan that stands for a laser [m]."""
+"""Minimum radius of the fan drawn for a laser [m]."""
 
 _POINT = 5.0  # pixels, as in OpenRAVE
 _LINE = 1.5  # pixels
 _ICON_RAYS = 11
 _FAN_OPACITY = 0.2  # as in OpenRAVE
 _EDGES = (0, 1, 0, 2, 0, 3, 0, 4, 1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 5, 7)
-"""Ends of the lines of a frustum: from the eye to the corners, between these, and the mark over the picture's top."""
+"""Edges of a frustum: from the eye to the corners, between these, and the mark on the image's top side."""
 
 
 class Scan(NamedTuple):
-    """What the n rays of a laser measure, in the world."""
+    """Measurement of a laser with n rays, in the world."""
 
-    origin: Floats  # where the rays begin [m], shape (3,)
+    origin: Floats  # origin of the rays [m], shape (3,)
     directions: Floats  # of unit length, shape (n, 3)
-    distances: Floats  # how far each goes [m], shape (n,): the greatest range where it meets nothing
-    is_hit: NDArray[np.bool_]  # which meet something, shape (n,)
-    geoms: NDArray[np.int32]  # what they meet, shape (n,); -1: nothing
+    distances: Floats  # range of each ray [m], shape (n,); the maximum without a hit
+    is_hit: NDArray[np.bool_]  # whether each ray has a hit, shape (n,)
+    geoms: NDArray[np.int32]  # the geoms hit, shape (n,); -1 without a hit
 
 
 @lru_cache(maxsize=64)
 def ray_directions(device: Laser | FlashLidar) -> Floats:
-    """Return the unit directions of a device's rays in its own frame, shape (n, 3); not to be changed.
+    """Return the unit directions of a device's rays in its own frame, shape (n, 3); read-only.
 
-    Those of a laser lie in the plane of x and y, in the order of their angles. Those of a flash lidar go through its
-    pixels as those of a camera do, column after column, as in OpenRAVE.
+    Rays of a laser are in the xy plane, in the order of angles. Rays of a flash lidar pass through its pixels, column
+    by column, as in OpenRAVE.
     """
     if isinstance(device, Laser):
         steps = math.floor((device.max_angle - device.min_angle) / device.resolution + _WHOLE)
@@ -61,12 +61,12 @@ def ray_directions(device: Laser | FlashLidar) -> Floats:
 
 
 def _around(angles: NDArray[np.floating[Any]]) -> Floats:
-    """Return the unit vectors in the plane of x and y at angles [rad], shape (n, 3)."""
+    """Return the unit vectors in the xy plane at angles [rad], shape (n, 3)."""
     return np.column_stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))])
 
 
 def spun(laser: Laser, T_world_sensor: Floats, angle: float) -> Floats:
-    """Return the pose of a laser's plane that has turned about its spin axis by an angle [rad], shape (4, 4)."""
+    """Return the pose of a laser's scan plane rotated about its spin axis by an angle [rad], shape (4, 4)."""
     turn = np.eye(4)
     turn[:3, :3] = rows_from_wxyz(wxyz_from_axis_angle(laser.spin_axis, angle))
     centre = np.array(laser.spin_position)
@@ -75,9 +75,10 @@ def spun(laser: Laser, T_world_sensor: Floats, angle: float) -> Floats:
 
 
 def scan(world: CollisionWorld, device: Laser | FlashLidar, T_world_rays: Floats) -> Scan:
-    """Return where the rays of a device meet the bodies of a world, the robot that carries it included.
+    """Return the hits of a device's rays with the bodies of a world, including its own robot.
 
-    All rays are one call of ``mj_multiRay``. One that meets something nearer than the least range goes on from there.
+    All rays are cast in one call of ``mj_multiRay``. A ray that hits something below the minimum range continues behind
+    it.
     """
     origin = T_world_rays[:3, 3].copy()
     directions = ray_directions(device) @ T_world_rays[:3, :3].T
@@ -101,7 +102,7 @@ def motion_at(state: BodyState, link: int, point: Floats) -> tuple[Floats, Float
 
 
 def acceleration_at(physics: Physics, state: BodyState, link: int, point: Floats) -> Floats:
-    """Return what an accelerometer at a point on a link measures: its acceleration without that of free fall.
+    """Return the reading of an accelerometer at a point on a link: its acceleration minus gravity.
 
     Point and acceleration [m/s^2] are in world axes, shape (3,).
     """
@@ -112,9 +113,9 @@ def acceleration_at(physics: Physics, state: BodyState, link: int, point: Floats
 
 
 def encoder_values(state: BodyState, resolution: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
-    """Return what the encoders of a robot's joints read: values, velocities and steps, each of shape (dof,).
+    """Return the readings of a robot's joint encoders: values, velocities and steps, each of shape (dof,).
 
-    The values [rad or m] are rounded to the steps, of which there is one for each DOF, one for all, or none.
+    Values [rad or m] are rounded to steps: one for each DOF, one for all, or none.
     """
     values = state.kinematics.values()
     velocities = state.dynamics.dof_velocities(state.link_velocities())
@@ -125,7 +126,7 @@ def encoder_values(state: BodyState, resolution: tuple[float, ...]) -> tuple[Flo
 
 
 def wrench(physics: Physics, state: BodyState, link: int, T_world_sensor: Floats) -> tuple[Floats, Floats]:
-    """Return the force with which its parent holds a link, and all that hangs on it, as MuJoCo's sensor does.
+    """Return the force that a link receives from its parent, including the load of its descendants.
 
     Returns:
         Force on the link [N] and torque about the sensor's origin [N m], each of shape (3,), in the sensor's axes.
@@ -136,7 +137,7 @@ def wrench(physics: Physics, state: BodyState, link: int, T_world_sensor: Floats
 
 
 def corrected(device: ForceTorque, force: Floats, torque: Floats) -> tuple[Floats, Floats]:
-    """Return force and torque as a calibrated device says them: with its sign and its matrix."""
+    """Apply the sign and the calibration matrix of a device to force and torque."""
     both = device.polarity * np.concatenate([force, torque])
     if device.correction:
         both = np.reshape(device.correction, (6, 6)) @ both
@@ -144,14 +145,14 @@ def corrected(device: ForceTorque, force: Floats, torque: Floats) -> tuple[Float
 
 
 def touches(physics: Physics, state: BodyState, link: int, T_world_sensor: Floats) -> tuple[Floats, Floats]:
-    """Return the points where a link is touched [m], and the forces on it there [N], each (n, 3), in sensor axes."""
+    """Return the contact points of a link [m], and the forces on it there [N], each (n, 3), in sensor axes."""
     points, forces = physics.link_contacts(state, link)
     axes, origin = T_world_sensor[:3, :3], T_world_sensor[:3, 3]
     return (points - origin) @ axes, forces @ axes
 
 
 def shape_figure(device: Device, color: Vec3) -> Primitives:
-    """Return what shows where a sensor is, in its own frame: frusta of cameras, fans of lasers, nothing of others."""
+    """Return the drawing of a sensor in its own frame: camera frustum, laser fan, nothing for others."""
     match device:
         case Intrinsics() | FlashLidar() if device.problem() is None:
             return _frustum(device, color)
@@ -172,7 +173,7 @@ def _frustum(camera: Intrinsics | FlashLidar, color: Vec3) -> Primitives:
 
 
 def scan_figure(device: Laser | FlashLidar, found: Scan, color: Vec3) -> Primitives:
-    """Return what a laser measures, in the world: points where it meets something, and the surface that it sweeps."""
+    """Return the drawing of a laser's measurement in the world: the hits, and the scanned surface."""
     ends = found.origin + found.distances[:, None] * found.directions
     met = ends[found.is_hit]
     dots = points(met, _POINT, _colors(len(met), color, 1.0)) if len(met) else NOTHING
@@ -182,7 +183,7 @@ def scan_figure(device: Laser | FlashLidar, found: Scan, color: Vec3) -> Primiti
 
 
 def _fan(origin: Floats, ends: Floats, color: Vec3, opacity: float) -> Primitives:
-    """Return the triangles between a point and each two ends that follow one another."""
+    """Return the triangles between a point and consecutive ends."""
     first = np.arange(1, len(ends))
     triangles = np.column_stack([np.zeros_like(first), first, first + 1])
     return mesh(np.vstack([origin, ends]), triangles, _colors(len(ends) + 1, color, opacity))

@@ -1,4 +1,4 @@
-"""Bodies as they are now: a scene with their values, poses and enabled links."""
+"""Snapshot of bodies: a scene with their present values, poses and enabled links."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,9 +13,9 @@ from ravemj.model.scene import Grab, Joint, KinBody
 
 
 def snapshot(body: BodyState) -> KinBody:
-    """Return the description of a body as it is now.
+    """Return the description of a body in its present state.
 
-    A joint whose link a script put elsewhere gets the pose of that link for its own.
+    The joint of a displaced link gets the pose of that link as its own.
     """
     scene = body.scene
     links = [replace(link, enabled=enabled) for link, enabled in zip(scene.links, body.link_enabled, strict=True)]
@@ -28,7 +28,7 @@ def snapshot(body: BodyState) -> KinBody:
         )
         for one in body.grabs
     )
-    if not body.is_compiled:  # it is where its description has it
+    if body.known_kinematics is None:  # it is where its description has it
         return replace(scene, links=tuple(links), grabs=grabs)
     poses = [pose_of(transform) for transform in body.link_transforms()]
     kinematics = body.own_kinematics
@@ -47,7 +47,7 @@ def snapshot(body: BodyState) -> KinBody:
 
 
 def _settled(joint: Joint, values: Sequence[float], poses: Sequence[Pose]) -> Joint:
-    """Return a joint with its values, and with the pose of its child where the values do not put it."""
+    """Return a joint with its values, and with the pose of its child if that differs from the values."""
     axes = tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
     expected = relative_pose(joint, values)
     found = poses[joint.parent].inverse() @ poses[joint.child]

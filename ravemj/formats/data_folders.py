@@ -6,16 +6,16 @@ from ravemj.errors import Source, SourceError
 
 
 def data_folders() -> list[str]:
-    """Return the folders, the first to look in first."""
+    """Return the folders in search order."""
     return [folder for folder in os.environ.get("OPENRAVE_DATA", "").split(os.pathsep) if folder]
 
 
 def find(name: str, *folders: str) -> str | None:
-    """Return the path of a file in one of some folders or those of ``OPENRAVE_DATA``; None where it is in none.
+    """Search for a file in folders and in those of ``OPENRAVE_DATA``; return its path, or None.
 
     Args:
         name: The file, relative to a folder.
-        folders: Where to look first; ``""`` is the working folder.
+        folders: Folders to search first; ``""`` is the working folder.
     """
     candidates = (os.path.join(folder, name) for folder in (*folders, *data_folders()))
     return next((path for path in candidates if os.path.exists(path)), None)

@@ -1,7 +1,6 @@
 """The policy on which files a model may read; ``docs/files.md`` says it for users.
 
-Every reader asks here before it opens a file that another file names, so that no name of it leads further, however it
-is spelled.
+Every reader checks here before it opens a file that another file names, however the path is spelled.
 """
 
 import os
@@ -13,7 +12,7 @@ from ravemj.formats.data_folders import data_folders
 
 
 class FileAccess:
-    """The files of one reading: those that may be read, and those that were.
+    """The file access of one reading: permitted files, and files read so far.
 
     Attributes:
         diagnostics: Takes every finding of the reading.
@@ -32,12 +31,12 @@ class FileAccess:
 
     @classmethod
     def opened(cls, path: str) -> "FileAccess":
-        """Return the access of a model that its user opens; a text lies in the working folder."""
+        """Return the access of a model that its user opens; a text counts as a file in the working folder."""
         return cls((os.path.dirname(path), *data_folders()), is_dropped=False)
 
     @classmethod
     def dropped(cls, path: str, others: Iterable[str] = ()) -> "FileAccess":
-        """Return the access of a model that was dropped on a viewer, given what was dropped together with it."""
+        """Return the access of a model that was dropped on a viewer, together with other files."""
         return cls((os.path.dirname(path), path, *others), is_dropped=True)
 
     def permits(self, path: str) -> bool:

@@ -1,4 +1,4 @@
-"""Limits of what a model may hold, for all readers: a small file must neither fill the memory nor occupy a processor.
+"""Resource limits of all readers: a small file must not exhaust memory or processor time.
 
 Documents are counted before a parser builds a tree of them, archives while they are unpacked, and counts that files
 declare before anything of that size is allocated.
@@ -9,7 +9,7 @@ import os
 from ravemj.errors import ArgumentError, LimitError, Source
 
 VARIABLE = "RAVEMJ_MOST_BYTES"
-"""Environment variable with another number of bytes for ``most_bytes``."""
+"""Environment variable that overrides the limit ``most_bytes``."""
 
 MOST_RATIO = 200
 """Largest ratio of the size of unpacked content to that of the archive. Meshes and XML reach about 20."""
@@ -24,7 +24,7 @@ MOST_NUMBERS = 50_000_000
 """Largest number of numbers in one list."""
 
 MOST_TRIANGLES = 5_000_000
-"""Largest number of triangles in a mesh file; a few hundred bytes of USE or instances can ask for billions."""
+"""Largest number of triangles in a mesh file; a few hundred bytes of USE or instances could produce billions."""
 
 MOST_MODEL_TRIANGLES = 4 * MOST_TRIANGLES
 """Largest number of triangles in all mesh files of a model; each scale of a file counts."""
@@ -55,7 +55,7 @@ def check_bytes(count: int, what: str, source: Source) -> None:
 
     Args:
         count: Its size, or a lower bound of it.
-        what: What is said of it, for instance "the file has".
+        what: Start of the message, for instance "the file has".
         source: The file.
 
     Raises:
@@ -80,7 +80,7 @@ def check_unpacked(count: int, packed: int, source: Source) -> None:
 
 
 def most_unpacked(packed: int) -> int:
-    """Return how much of the unpacked content has to be read to see whether it is too large."""
+    """Return the number of unpacked bytes to read to decide whether the content is too large."""
     return min(most_bytes(), MOST_RATIO * packed) + 1
 
 
@@ -113,23 +113,23 @@ def check_json(content: bytes, source: Source) -> None:
 
 
 def check_count(count: int, most: int, what: str, source: Source) -> None:
-    """Refuse more things than a limit allows; ``what`` is the noun for them.
+    """Refuse a count above a limit; ``what`` is the noun in the message.
 
     Raises:
-        LimitError: There are too many.
+        LimitError: The count is above the limit.
     """
     if count > most:
         raise LimitError(f"there are {count:,} {what}, and at most {most:,} are read", source)
 
 
-class Budget:
-    """The XML documents that one model has read, against the limits.
+class ParsingBudget:
+    """Counts the XML documents of one model against the limits.
 
-    A document that is used several times counts its elements at each use, and its bytes as often as it is parsed.
+    The elements of a document count at each use, its bytes each time it is parsed.
     """
 
     def __init__(self) -> None:
-        """Begin with nothing read.
+        """Start with a count of zero.
 
         Raises:
             ArgumentError: The environment variable ``RAVEMJ_MOST_BYTES`` is wrong.

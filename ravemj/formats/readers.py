@@ -1,4 +1,4 @@
-"""The choice of a reader by the kind of a file."""
+"""Selection of the reader by the kind of a file."""
 
 import difflib
 import functools
@@ -11,36 +11,38 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.data_folders import find
 from ravemj.formats.file_access import FileAccess
+from ravemj.formats.mjcf.recognition import is_mjcf
 from ravemj.formats.openrave_xml import Reading, read
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, give, given_scale
 from ravemj.formats.openrave_xml.other_files import add_mesh, is_mesh, uniform
 from ravemj.formats.openrave_xml.tree import content_of
+from ravemj.formats.robot_packages import INSTALL, robot_names
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.formats.urdf.xacro import expand, is_xacro
 from ravemj.model.builder import BodyBuilder
 from ravemj.model.scene import AttachedSensor, KinBody, Scene
 
-_COLLADA, _HEAD = b"<COLLADA", 1000  # the root element, and the bytes that it is looked for in
-_TEXT = "data"  # what a text is called in messages, as if it lay in the working folder
-_LIKENESS = 0.7  # from here on a missing file is taken for the misspelt name of a model
+_COLLADA, _HEAD = b"<COLLADA", 1000  # the root element, and the number of bytes to search for it
+_TEXT = "data"  # name of a text in messages, as if it were a file in the working folder
+_LIKENESS = 0.7  # similarity from which on a missing file is taken for a misspelt model name
 
 
 def read_file(
     path: str | os.PathLike[str], given: Attributes = NOTHING, metre: float = 1.0, access: FileAccess | None = None
 ) -> Reading:
-    """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
+    """Read a model file from the working folder or a folder of ``OPENRAVE_DATA``.
 
     Args:
         path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm`` is
             what has the id ``arm`` in a COLLADA file.
         given: Attributes that act on the bodies of the file; see ``openrave_xml.given``.
-        metre: Length of a metre in the unit of the scene. COLLADA says its unit, and its lengths are converted;
-            gravity and the numbers of other files stay as they are, as in OpenRAVE.
+        metre: Length of a metre in the unit of the scene. Only lengths of COLLADA files, which declare a unit, are
+            converted; gravity and other files are not, as in OpenRAVE.
         access: The files that may be read; by default those of a model that its user opens.
 
     Returns:
-        What was read; its ``failure`` says what ended the reading.
+        The result; its ``failure`` is the error that ended the reading, if any.
     """
     place, wanted = _without_scheme(os.fspath(path)), ""
     found = find(place, "")
@@ -60,7 +62,7 @@ def read_file(
 
 
 def _read_model(path: str, wanted: str, given: Attributes, metre: float, access: FileAccess) -> Reading:
-    """Read XML, or COLLADA, which may have any name: ``Environment.Save`` writes it under the one it is given."""
+    """Read XML, or COLLADA under any file name, since ``Environment.Save`` accepts any."""
     if not path.lower().endswith(collada.SUFFIXES):
         try:
             content = content_of(path)
@@ -68,11 +70,20 @@ def _read_model(path: str, wanted: str, given: Attributes, metre: float, access:
             return Reading(Scene(), Diagnostics(), error, {path: None})
         if is_xacro(path, content):
             return _read_xacro(path, given, access)
+        if is_mjcf(content):
+            return _read_mjcf(path, content, given, access)
         if _COLLADA not in content[:_HEAD]:
             return read(path, given, content, access)
     uri = f"{path}#{wanted}" if wanted else path
     read_content = functools.partial(collada.read_file, uri, access)
     return _read_collada(path, given, metre, access, lambda scale: read_content(scale=scale))
+
+
+def _read_mjcf(path: str, content: bytes, given: Attributes, access: FileAccess) -> Reading:
+    """Read MJCF, which MuJoCo compiles: the only format whose reader stands above this room."""
+    from ravemj.engine.mjcf_reading import read_mjcf  # noqa: PLC0415 - it needs MuJoCo
+
+    return read_mjcf(path, content, given, access)
 
 
 def _read_xacro(path: str, given: Attributes, access: FileAccess) -> Reading:
@@ -88,21 +99,26 @@ def _read_xacro(path: str, given: Attributes, access: FileAccess) -> Reading:
 
 
 def missing(path: str) -> SourceError:
-    """Return the error for a file that is in none of OpenRAVE's places."""
-    similar = difflib.get_close_matches(path, SHIPPED_MODELS, 1, _LIKENESS)
+    """Return the error for a missing file."""
+    similar = difflib.get_close_matches(path, [*SHIPPED_MODELS, *robot_names()], 1, _LIKENESS)
     hint = "check the path, or set OPENRAVE_DATA"
     if similar:
         name = similar[0]
-        hint += f"; did you mean {name}, which comes with ravemj? In Python: ravemj.model_path('{name}')"
+        whose = "which comes with ravemj" if name in SHIPPED_MODELS else "a robot of an installed package"
+        hint += f"; did you mean {name}, {whose}? In Python: ravemj.model_path('{name}')"
+    elif path.endswith("_description") and not robot_names():
+        hint = INSTALL
     return SourceError("there is no such file", Source(path), hint)
 
 
 def read_data(data: str | bytes, given: Attributes = NOTHING, metre: float = 1.0) -> Reading:
-    """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file.
+    """Read an OpenRAVE XML or COLLADA document from memory; arguments as for ``read_file``.
 
     Files that it names are looked for in the working folder.
     """
     content, access = data if isinstance(data, bytes) else data.encode(), FileAccess.opened(_TEXT)
+    if is_mjcf(content):
+        return _read_mjcf(_TEXT, content, given, access)
     if _COLLADA not in content[:_HEAD]:
         reading = read(_TEXT, given, content, access)
         return replace(reading, named_files=access.files)
@@ -126,7 +142,7 @@ def _read_collada(
         if not content.bodies and content.others:
             message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
             context.diagnostics.error("no-kinematics", message, source, "read it with ReadKinBodyURI")
-        found, names = (*content.bodies, *content.others), _Names()
+        found, names = (*content.bodies, *content.others), _BodyNames()
         give(given, found)
         for built in found:
             built.name = names.give(built.name or "body")
@@ -137,19 +153,19 @@ def _read_collada(
     except SourceError as error:
         failure = error
     except ArithmeticError:
-        failure = SourceError("a number in the file is too large to compute with", source)
+        failure = SourceError("a number in the file is too large or too small to compute with", source)
     scene = Scene(tuple(bodies), None, gravity, tuple(sensors), description)
     return Reading(scene, context.diagnostics, failure, access.files, renames=True)
 
 
-class _Names:
-    """The names that bodies of a file have got, each with the next number to put behind it."""
+class _BodyNames:
+    """The body names of a file in use, each with its next numeric suffix."""
 
     def __init__(self) -> None:
         self._next: dict[str, int] = {}
 
     def give(self, name: str) -> str:
-        """Return a name, with a number behind it if it is taken, and take it."""
+        """Reserve and return a unique name: the given one, with a numeric suffix if it is in use."""
         unused = name
         while unused in self._next:
             unused = f"{name}{self._next[name]}"
@@ -159,7 +175,7 @@ class _Names:
 
 
 def _without_scheme(uri: str) -> str:
-    """Return the path of a URI ``file:`` or ``openrave:``; anything else as it is."""
+    """Return the path of a ``file:`` or ``openrave:`` URI; other names are unchanged."""
     scheme, separator, rest = uri.partition(":")
     if not separator or scheme.lower() not in {"file", "openrave"}:
         return uri

@@ -1,4 +1,4 @@
-"""What the elements of a ``<sensor>`` mean, in OpenRAVE XML and in COLLADA; readers and writers of both share it."""
+"""Meanings of the elements of a ``<sensor>``, shared by readers and writers of OpenRAVE XML and COLLADA."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -25,10 +25,10 @@ class SensorTag(NamedTuple):
     """An element that describes a sensor.
 
     Attributes:
-        fields: The fields of the device that its numbers fill, one each; "" for a number without meaning.
-        meaning: What it holds.
-        unit: What one unit is in the device's.
-        size: How many numbers a single field takes; 0: there may be any number of numbers.
+        fields: The fields of the device that its numbers set, one each; "" for a number without meaning.
+        meaning: Description of its content.
+        unit: Factor from the element's unit to the field's.
+        size: Number of values of a single field; 0 for any.
     """
 
     fields: tuple[str, ...]
@@ -38,7 +38,7 @@ class SensorTag(NamedTuple):
 
     @property
     def numbers(self) -> int:
-        """How many numbers it holds; 0 for any."""
+        """Number of values in the element; 0 for any."""
         return len(self.fields) if self.size == 1 else self.size
 
 
@@ -100,18 +100,18 @@ _SPIN_TAGS = {
 
 
 def sensor_tags(device: Device) -> Mapping[str, SensorTag]:
-    """Return the elements that describe such a device, by their tags as they are written."""
+    """Return the elements that describe a device, by their tags."""
     spins = isinstance(device, Laser) and device.spins
     return {**_TAGS[type(device)], **(_SPIN_TAGS if spins else {})}
 
 
 def described(device: Device, tag: SensorTag, values: Sequence[float] | str) -> Device:
-    """Return a device with what an element says about it.
+    """Return a device updated from an element.
 
     Args:
         device: The device.
-        tag: What the element means.
-        values: The numbers in it, or its text where the field is one; what is missing counts as 0.
+        tag: Meaning of the element.
+        values: The numbers in the element, or its text if the field is a text; missing numbers are 0.
     """
     first = tag.fields[0]
     if isinstance(values, str):
@@ -125,12 +125,12 @@ def described(device: Device, tag: SensorTag, values: Sequence[float] | str) -> 
 
 
 def is_text(device: Device, tag: SensorTag) -> bool:
-    """Return whether an element of a device holds a text, and no numbers."""
+    """Return whether an element contains a text instead of numbers."""
     return isinstance(getattr(device, tag.fields[0]), str)
 
 
 def written(device: Device, *, collada: bool = False) -> list[tuple[str, str | float | Sequence[float]]]:
-    """Return the elements that say what a device is, with their content; the first tag of each field.
+    """Return the elements that describe a device, with their content; the first tag of each field.
 
     Args:
         device: The device.
@@ -152,6 +152,6 @@ def written(device: Device, *, collada: bool = False) -> list[tuple[str, str | f
 
 
 def _content(values: "list[Any]", tag: SensorTag) -> str | float | Sequence[float]:
-    """Return what an element holds for the values of its fields."""
+    """Return the content of an element, given the values of its fields."""
     in_degrees = [settled.degrees(value) if tag.unit == _DEGREE else value for value in values]
     return in_degrees if len(in_degrees) > 1 else in_degrees[0]

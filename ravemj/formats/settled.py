@@ -1,8 +1,8 @@
-"""Numbers of files: rounded so that what was read is written with the same digits again.
+"""Rounding of numbers in files, so that reading and writing again reproduces the same digits.
 
-Readers compose transforms, normalize quaternions and turn degrees into radians, which moves numbers by their last
-digits. Writers round what such numbers come to; what is read back then lies so near the rounded number, and so far from
-the next one, that it is rounded to the same. An error of 1e-13 is a thousandth of what any test can see.
+Readers compose transforms, normalize quaternions and convert degrees to radians, which changes the last digits. Writers
+round the results to fewer digits; the errors of reading are so much smaller that the rounded number is a fixed point.
+An error of 1e-13 is a thousandth of what any test can detect.
 """
 
 import math
@@ -21,7 +21,7 @@ _TIE = 1e-9  # numbers this near to each other count as equally large
 
 
 def number(value: float, largest: float | None = None) -> float:
-    """Return a number with thirteen significant digits, or with as many decimals as another number with as many has."""
+    """Round a number to thirteen significant digits of ``largest``, by default of the number itself."""
     largest = abs(value if largest is None else largest)
     if not math.isfinite(largest) or largest == 0.0:
         return value
@@ -29,13 +29,13 @@ def number(value: float, largest: float | None = None) -> float:
 
 
 def numbers(values: Sequence[float]) -> list[float]:
-    """Return numbers with thirteen digits for the largest of them, and as many decimals for the others."""
+    """Round numbers to thirteen digits of the largest of them."""
     largest = max(map(abs, values), default=0.0)
     return [number(value, largest) for value in values]
 
 
 def position(point: Vec3) -> Vec3:
-    """Return a point with twelve decimals, fewer far from the origin [m]."""
+    """Round a point [m] to twelve decimals, fewer far from the origin."""
     largest = max(1.0, *map(abs, point))
     if not math.isfinite(largest):
         return point
@@ -44,18 +44,18 @@ def position(point: Vec3) -> Vec3:
 
 
 def direction(vector: Vec3) -> Vec3:
-    """Return a unit vector whose parts are rounded, but for the largest, which makes its length 1."""
+    """Round a unit vector; its largest component follows from the others."""
     return cast(Vec3, _unit(vector))
 
 
 def pose(T: Pose) -> Pose:
-    """Return a pose with rounded position and rotation, the quaternion's largest part positive."""
+    """Round a pose; the largest component of the quaternion becomes positive."""
     wxyz = T.wxyz if T.wxyz[_largest(T.wxyz)] > 0 else tuple(-part for part in T.wxyz)
     return Pose(position(T.position), cast(Wxyz, _unit(wxyz)))
 
 
 def axis_angle(wxyz: Wxyz) -> tuple[float, ...]:
-    """Return the axis and the angle [deg] of a settled quaternion: x y z angle."""
+    """Return axis and angle [deg] of a rounded quaternion: x y z angle."""
     w, x, y, z = wxyz
     sine = math.hypot(x, y, z)
     if sine == 0.0:
@@ -69,18 +69,18 @@ def degrees(angle: float) -> float:
 
 
 def values(joint: Joint) -> list[float]:
-    """Return the values of a joint that were measured from poses [rad or m]."""
+    """Round the values of a joint that were measured from poses [rad or m]."""
     return [round(axis.value, _LENGTH_DECIMALS) for axis in joint.axes]
 
 
 def _largest(parts: Sequence[float]) -> int:
-    """Return the index of the largest part; of several that are as large but for rounding, the first."""
+    """Return the index of the largest component; of components that are equal up to rounding, the first."""
     largest = max(map(abs, parts))
     return next(index for index, part in enumerate(parts) if abs(part) >= largest - _TIE)
 
 
 def _unit(parts: Sequence[float]) -> tuple[float, ...]:
-    """Round the parts of a unit vector; the largest follows from the others, so that normalizing changes nothing."""
+    """Round a unit vector; its largest component follows from the others, so that normalizing changes nothing."""
     rounded = [_snapped(round(part, _UNIT_DECIMALS)) for part in parts]
     index = _largest(parts)
     rest = sum(part * part for place, part in enumerate(rounded) if place != index)
@@ -89,5 +89,5 @@ def _unit(parts: Sequence[float]) -> tuple[float, ...]:
 
 
 def _snapped(part: float) -> float:
-    """Return the exact sine of an eighth of a turn in place of what is nearly that: models are full of right angles."""
+    """Return the exact sine of 45 degrees for numbers near it, since right angles are frequent in models."""
     return math.copysign(_SQRT_HALF, part) if abs(abs(part) - _SQRT_HALF) < 1e-12 else part

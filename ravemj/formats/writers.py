@@ -1,4 +1,4 @@
-"""Files with models: COLLADA, and OpenRAVE XML with its meshes; they appear whole or not at all."""
+"""Files with models: COLLADA, OpenRAVE XML and URDF with their meshes; they appear whole or not at all."""
 
 import io
 import os
@@ -17,10 +17,12 @@ from ravemj.formats.collada.external import ExternalBody, find_external
 from ravemj.formats.file_access import FileAccess
 from ravemj.formats.openrave_xml import writer as openrave_xml
 from ravemj.formats.openrave_xml.geom_writer import FOLDER, MeshFormat
+from ravemj.formats.urdf import writer as urdf
+from ravemj.formats.urdf.shape_writer import FOLDER as MESHES
 from ravemj.model.comparison import compare
 from ravemj.model.scene import UNLIMITED, KinBody, Scene, View
 
-ModelFormat = Literal["collada", "openrave"]
+ModelFormat = Literal["collada", "openrave", "urdf"]
 
 _ARCHIVE_SUFFIX = ".zae"
 _COMPRESSION = 2  # of 9: a fifth of the time of the default, and files that are a tenth larger
@@ -40,35 +42,53 @@ def save(
     Args:
         path: The file. COLLADA goes into a zip archive where it ends in ``.zae``.
         scene: What to write.
-        diagnostics: Takes a warning for everything that the format cannot say.
+        diagnostics: Receives a warning for everything that the format cannot represent.
         kind: The format.
         meshes: The kind of the files in the folder ``meshes`` beside an OpenRAVE XML file.
         external: Bodies that COLLADA refers to in other files; see ``external_bodies``.
 
     Raises:
-        OutputError: It cannot be written, or a name in it cannot.
+        OutputError: The file or a name in it cannot be written.
     """
+    if kind == "urdf":
+        _save_urdf(Path(path), scene, diagnostics)
+        return
     for body in scene.bodies:
         _warn_of_losses(body, diagnostics)
     if kind == "openrave":
-        described = [body.name for body in scene.bodies if body.description]
-        if described or scene.description:
-            message = f"descriptions are left out, of {', '.join(described) or 'the environment'}"
-            diagnostics.warn("not-written", message, Source(os.fspath(path)), "COLLADA keeps them")
-        _save_openrave_xml(Path(path), openrave_xml.write(scene, diagnostics, meshes))
-        return
+        _save_openrave_xml(Path(path), scene, diagnostics, meshes)
+    else:
+        _save_collada(Path(path), scene, diagnostics, external)
+
+
+def _save_urdf(path: Path, scene: Scene, diagnostics: Diagnostics) -> None:
+    """Write a robot, its SRDF beside it, and its meshes into a folder."""
+    document = urdf.write(scene, diagnostics)
+    with new_file(path) as file:
+        file.write_text(document.urdf, encoding="utf-8", newline="\n")
+        with new_file(path.with_suffix(".srdf")) as other:
+            other.write_text(document.srdf, encoding="utf-8", newline="\n")
+        if document.meshes:
+            with added_files(path.parent / MESHES) as folder:
+                for name, content in document.meshes.items():
+                    (folder / name).write_bytes(content)
+
+
+def _save_collada(
+    path: Path, scene: Scene, diagnostics: Diagnostics, external: Mapping[str, ExternalBody] | None
+) -> None:
     if scene.view not in (None, View()):
         message = "background and camera are left out: COLLADA has no place for them"
-        diagnostics.warn("not-written", message, Source(os.fspath(path)), "OpenRAVE XML keeps them")
+        diagnostics.warn("not-written", message, Source(str(path)), "OpenRAVE XML keeps them")
     content = collada.write(scene, diagnostics, external).encode()
-    if os.fspath(path).lower().endswith(_ARCHIVE_SUFFIX):
-        content = _archive(f"{Path(path).stem}.dae", content)
+    if path.suffix.lower() == _ARCHIVE_SUFFIX:
+        content = _archive(f"{path.stem}.dae", content)
     with new_file(path) as file:
         file.write_bytes(content)
 
 
 def _warn_of_losses(body: KinBody, diagnostics: Diagnostics) -> None:
-    """Warn of what neither format can say of a body; only scripts and JSON give it."""
+    """Warn of properties of a body that neither format can represent; scripts and JSON can."""
     for arm in body.manipulators:
         if arm.gripper_name:
             message = f"the name '{arm.gripper_name}' of the gripper of the manipulator '{arm.name}' is left out"
@@ -92,10 +112,10 @@ def external_bodies(
     """Return the bodies that a COLLADA file can refer to in the files that they were read from.
 
     Args:
-        path: The file that is going to be written.
-        scene: Its bodies; a reference has to give one as it is now.
-        names: Names of those that are asked for.
-        diagnostics: Takes a warning for each of them that cannot be had by a reference.
+        path: The file to write.
+        scene: Its bodies; reading a reference must reproduce the present body.
+        names: Names of the bodies to refer to.
+        diagnostics: Receives a warning for each body that a reference does not reproduce.
         scheme: What URIs of files in the folders of ``OPENRAVE_DATA`` start with; None for relative ones.
     """
     asked = [(number, body) for number, body in enumerate(scene.bodies) if body.name in names]
@@ -125,10 +145,10 @@ def _external(
 
 
 def _referred(path: AnyPath, body: KinBody, reference: ExternalBody) -> KinBody:
-    """Return what a reader makes of a reference to a body.
+    """Return the body that reading a reference produces.
 
     Raises:
-        SourceError: It makes nothing of it.
+        SourceError: The reference cannot be read.
     """
     document = collada.write(Scene((body,)), Diagnostics(), {body.name: reference})
     found = read_text(document.encode(), os.fspath(path), FileAccess.opened(os.fspath(path))).bodies
@@ -137,7 +157,12 @@ def _referred(path: AnyPath, body: KinBody, reference: ExternalBody) -> KinBody:
     return found[0].freeze(Diagnostics())
 
 
-def _save_openrave_xml(path: Path, document: openrave_xml.Document) -> None:
+def _save_openrave_xml(path: Path, scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat) -> None:
+    described = [body.name for body in scene.bodies if body.description]
+    if described or scene.description:
+        message = f"descriptions are left out, of {', '.join(described) or 'the environment'}"
+        diagnostics.warn("not-written", message, Source(str(path)), "COLLADA keeps them")
+    document = openrave_xml.write(scene, diagnostics, meshes)
     with new_file(path) as file:
         file.write_text(document.text, encoding="utf-8", newline="\n")
         if document.meshes:

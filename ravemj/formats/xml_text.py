@@ -32,12 +32,12 @@ class XmlText:
         return "\n".join([_HEAD, *self._lines, ""])
 
     def append(self, other: "XmlText") -> None:
-        """Append lines that were made apart."""
+        """Append the lines of another text."""
         self._lines += other._lines
 
     @contextmanager
     def inside(self, tag: str, /, **attributes: Content | None) -> Generator[None]:
-        """Write an element around what the block writes; attributes that are None are left out."""
+        """Write an element around the content that the block writes; attributes that are None are left out."""
         self._lines.append(f"{self._indent}<{tag}{_attributes(attributes)}>")
         self._indent += "  "
         yield
@@ -61,7 +61,7 @@ def text_of(content: Content, tag: str) -> str:
 
     Args:
         content: The content.
-        tag: What holds it, for messages.
+        tag: Name of its element or attribute, for messages.
 
     Raises:
         OutputError: XML cannot hold one of its characters, or a number is not finite, which OpenRAVE reads as 0.

@@ -1,9 +1,12 @@
 """OpenRAVE's functions on rotations, poses, rays and boxes.
 
-Quaternions are (w, x, y, z), poses (qw, qx, qy, qz, x, y, z), angles radians. Lists, tuples and arrays of any kind of
-number are taken; what comes back are new arrays of float64. Names and meaning are OpenRAVE's, older names included.
+Quaternions are (w, x, y, z), poses (qw, qx, qy, qz, x, y, z), angles radians. Arguments may be lists, tuples and arrays
+of any number type; results are new float64 arrays. Names and meaning are OpenRAVE's, including older names.
 """
 
+from types import FunctionType
+
+from ravemj.core.argument_errors import explained
 from ravemj.core.signatures import show_as_written
 from ravemj.geometry_functions.affine import (
     DOFAffine,
@@ -152,4 +155,7 @@ __all__ = [
 ]
 
 for _name in __all__:
+    if isinstance(globals()[_name], FunctionType):
+        globals()[_name] = explained(globals()[_name])
+        globals()[_name].__module__ = __name__  # where pickle finds it
     show_as_written(globals()[_name])

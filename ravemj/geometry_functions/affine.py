@@ -1,5 +1,6 @@
-"""Affine DOFs: which parts of a body's pose move, and their values."""
+"""Affine DOFs: movable components of a body's pose, and their values."""
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -15,14 +16,14 @@ Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
 
 
 class DOFAffine(NamedFlag):
-    """Parts of a pose; combine them with ``|``. There is one kind of rotation at most."""
+    """Components of a pose; combine them with ``|``. At most one rotation type is allowed."""
 
     NoTransform = 0
     X = 1
     Y = 2
     Z = 4
     RotationAxis = 8
-    """A turn about a given axis: one angle [rad]."""
+    """Rotation about a given axis: one angle [rad]."""
     Rotation3D = 16
     """Any rotation: its axis times its angle [rad], three values."""
     RotationQuat = 32
@@ -45,12 +46,12 @@ _SIZES = {
 _AXES = {DOFAffine.X: 0, DOFAffine.Y: 1, DOFAffine.Z: 2}
 
 
-@lru_cache(maxsize=64)  # planners place a base thousands of times
+@lru_cache(maxsize=64)  # planners set the pose of a base thousands of times
 def _parts(affinedofs: int) -> tuple[DOFAffine, ...]:
-    """Return the parts in the order of their values.
+    """Return the components in the order of their values.
 
     Raises:
-        ArgumentError: there are two kinds of rotation.
+        ArgumentError: there are two rotation types.
     """
     parts = tuple(part for part in _SIZES if part & affinedofs)
     if sum(bool(part & DOFAffine.RotationMask) for part in parts) > 1:
@@ -59,10 +60,10 @@ def _parts(affinedofs: int) -> tuple[DOFAffine, ...]:
 
 
 def RaveGetAffineDOF(affinedofs: int) -> int:
-    """Return how many values the parts ``affinedofs`` of a pose have, ``DOFAffine`` values combined with ``|``.
+    """Return the number of values of the pose components ``affinedofs``, ``DOFAffine`` values combined with ``|``.
 
     Raises:
-        ArgumentError: there are two kinds of rotation.
+        ArgumentError: there are two rotation types.
 
     Example:
         >>> RaveGetAffineDOF(DOFAffine.X | DOFAffine.Y | DOFAffine.RotationAxis)
@@ -72,14 +73,14 @@ def RaveGetAffineDOF(affinedofs: int) -> int:
 
 
 def RaveGetAffineDOFFromIndex(affinedofs: int, index: int) -> DOFAffine:
-    """Return which part a value belongs to.
+    """Return the component that a value belongs to.
 
     Args:
         affinedofs: ``DOFAffine`` combined with ``|``.
-        index: A place among the affine values.
+        index: An index among the affine values.
 
     Raises:
-        ArgumentError: there are not so many values.
+        ArgumentError: the index is out of range.
     """
     owners = [part for part in _parts(affinedofs) for _ in range(_SIZES[part])]
     if not 0 <= index < len(owners):
@@ -88,14 +89,14 @@ def RaveGetAffineDOFFromIndex(affinedofs: int, index: int) -> DOFAffine:
 
 
 def RaveGetIndexFromAffineDOF(affinedofs: int, dof: int) -> int:
-    """Return where the first value of a part is.
+    """Return the index of the first value of a component.
 
     Args:
         affinedofs: ``DOFAffine`` combined with ``|``.
         dof: One of the ``DOFAffine``.
 
     Raises:
-        ArgumentError: the part is not among ``affinedofs``.
+        ArgumentError: the component is not among ``affinedofs``.
     """
     index = 0
     for part in _parts(affinedofs):
@@ -108,15 +109,15 @@ def RaveGetIndexFromAffineDOF(affinedofs: int, dof: int) -> int:
 def RaveGetAffineDOFValuesFromTransform(
     transform: ArrayLike, affinedofs: int, rotationaxis: ArrayLike | None = None
 ) -> Floats:
-    """Return the values of parts of a pose.
+    """Return the values of pose components.
 
     Args:
         transform: A matrix of 4x4 or a pose of 7 numbers.
         affinedofs: ``DOFAffine`` values, combined.
-        rotationaxis: The axis of ``RotationAxis``; None: z.
+        rotationaxis: The axis of ``RotationAxis``; by default z.
 
     Returns:
-        X, Y, Z [m], then the rotation, as far as they are among ``affinedofs``; shape (n,).
+        X, Y, Z [m], then the rotation, restricted to ``affinedofs``; shape (n,).
     """
     return affine_values(arguments.pose(transform, "transform"), affinedofs, _axis(rotationaxis))
 
@@ -124,13 +125,13 @@ def RaveGetAffineDOFValuesFromTransform(
 def RaveGetTransformFromAffineDOFValues(
     values: ArrayLike, affinedofs: int, rotationaxis: ArrayLike | None = None, transform: ArrayLike | None = None
 ) -> Floats:
-    """Return a transform with parts replaced.
+    """Return a transform with replaced components.
 
     Args:
         values: One for each DOF, in the order of ``RaveGetAffineDOFValuesFromTransform``.
         affinedofs: ``DOFAffine`` values, combined.
-        rotationaxis: The axis of ``RotationAxis``; None: z.
-        transform: What to start from, a matrix of 4x4 or a pose of 7 numbers; None: the identity.
+        rotationaxis: The axis of ``RotationAxis``; by default z.
+        transform: The initial transform, a 4x4 matrix or a pose of 7 numbers; by default the identity.
 
     Returns:
         Shape (4, 4).
@@ -145,7 +146,7 @@ def _axis(rotationaxis: ArrayLike | None) -> Vec3:
 
 
 def affine_values(pose: Pose, affinedofs: int, axis: Vec3 = Z_AXIS) -> Floats:
-    """Return the values of parts of a pose, X, Y, Z, then the rotation."""
+    """Return the values of pose components: X, Y, Z, then the rotation."""
     values: list[float] = []
     for part in _parts(affinedofs):
         if part in _AXES:
@@ -156,19 +157,19 @@ def affine_values(pose: Pose, affinedofs: int, axis: Vec3 = Z_AXIS) -> Floats:
 
 
 def rotation_values(pose: Pose, part: DOFAffine, axis: Vec3 = Z_AXIS) -> list[float]:
-    """Return the values of one kind of rotation."""
-    w, *vector = pose.wxyz
+    """Return the values of one rotation type."""
     if part == DOFAffine.RotationQuat:
         return list(pose.wxyz)
     if part == DOFAffine.RotationAxis:
         return [-normalizeAxisRotation(axis, pose.wxyz)[0]]
-    sine = float(np.linalg.norm(vector))
-    factor = 2 * float(np.arctan2(sine, w)) / sine if sine else 0.0
-    return [factor * component for component in vector]
+    w, x, y, z = pose.wxyz
+    sine = math.sqrt(x * x + y * y + z * z)
+    factor = 2 * math.atan2(sine, w) / sine if sine else 0.0
+    return [factor * x, factor * y, factor * z]
 
 
 def pose_with_values(pose: Pose, values: Floats, affinedofs: int, axis: Vec3 = Z_AXIS) -> Pose:
-    """Return the pose with parts replaced by their values; the rest stays."""
+    """Return the pose with some components replaced."""
     position, quaternion = list(pose.position), pose.wxyz
     numbers = iter(values.tolist())
     for part in _parts(affinedofs):

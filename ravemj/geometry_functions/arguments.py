@@ -1,7 +1,7 @@
 """Checks of the arguments of the geometry functions.
 
-As in OpenRAVE, vectors that are too short are refused, and longer ones are cut off. A wrong shape is a
-``ValueError``, as there, whose bindings let Python's own error through (gap-03, random-api-6).
+As in OpenRAVE, too short vectors are errors, and longer ones are truncated. A wrong shape is a ``ValueError``, as in
+OpenRAVE, whose bindings raise Python's own error (gap-03, random-api-6).
 """
 
 import numpy as np
@@ -13,10 +13,10 @@ from ravemj.errors import ArgumentError, ErrorCode
 
 
 def numbers(values: ArrayLike, length: int, name: str) -> Floats:
-    """Return a copy of the first numbers of a vector.
+    """Return a copy of the first elements of a vector.
 
     Raises:
-        ValueError: there are fewer.
+        ValueError: the vector is too short.
     """
     vector = checked_numbers(values, name)
     if vector.ndim != 1 or len(vector) < length:
@@ -37,7 +37,7 @@ def wxyz(values: ArrayLike, name: str) -> Wxyz:
 
 
 def unit_wxyz(values: ArrayLike, name: str) -> Wxyz:
-    """Return a quaternion that is nearly of unit length, with unit length.
+    """Return a quaternion of nearly unit length, normalized.
 
     Raises:
         ArgumentError: its squared length is not within 0.99 and 1.01 (code Assert), or it has too few numbers.
@@ -52,7 +52,7 @@ def unit_wxyz(values: ArrayLike, name: str) -> Wxyz:
 
 
 def matrix(values: ArrayLike, columns: int, name: str) -> Floats:
-    """Return the three upper rows, and so many columns, of a matrix that may have more."""
+    """Return the upper three rows and first columns of a matrix."""
     given = checked_numbers(values, name)
     if given.ndim != 2 or given.shape[0] < 3 or given.shape[1] < columns:
         raise ValueError(f"{name}: has shape {given.shape}, and should have shape (4, 4)")
@@ -60,7 +60,7 @@ def matrix(values: ArrayLike, columns: int, name: str) -> Floats:
 
 
 def table(values: ArrayLike, columns: int, name: str) -> Floats:
-    """Return a copy of a two-dimensional array with that many columns; no rows may be written as []."""
+    """Return a copy of a two-dimensional array with a number of columns; [] means no rows."""
     rows = checked_numbers(values, name)
     if rows.size == 0:
         return np.empty((0, columns))
@@ -70,12 +70,12 @@ def table(values: ArrayLike, columns: int, name: str) -> Floats:
 
 
 def pose(values: ArrayLike, name: str) -> Pose:
-    """Return a transform given as a pose of 7 numbers, quaternion first, or as a matrix of 3x4 or 4x4.
+    """Return a transform given as a pose of 7 numbers, quaternion first, or as a 3x4 or 4x4 matrix.
 
-    The quaternion gets unit length.
+    The quaternion is normalized.
 
     Raises:
-        ArgumentError: it is neither, or the quaternion is zero.
+        ArgumentError: it has another form, or the quaternion is zero.
     """
     given = checked_numbers(values, name)
     if given.ndim == 2:

@@ -1,4 +1,4 @@
-"""Rays and boxes: small values that pickle, print and convert."""
+"""Rays and boxes of the API, which can be pickled, printed and converted."""
 
 from collections.abc import Iterable
 
@@ -12,7 +12,7 @@ from ravemj.geometry_functions import arguments
 
 
 class Ray(ApiObject):
-    """A ray; its length is that of its direction.
+    """Ray; its length is that of its direction.
 
     Example:
         >>> ray = Ray([0, 0, 2], [0, 0, -5])  # reaches down to z = -3
@@ -40,7 +40,7 @@ class Ray(ApiObject):
 
 
 class AABB(ApiObject):
-    """An axis-aligned box.
+    """Axis-aligned box.
 
     Example:
         >>> box = robot.ComputeAABB()
@@ -58,17 +58,17 @@ class AABB(ApiObject):
         return np.array(self._pos)
 
     def extents(self) -> Floats:
-        """Return half the edge lengths [m], shape (3,)."""
+        """Return the half extents [m], shape (3,)."""
         return np.array(self._extents)
 
     def GetCombined(self, aabb: "AABB") -> "AABB":
-        """Return the smallest box around this one and another, ``aabb``."""
+        """Return the smallest box that contains this one and ``aabb``."""
         low = np.minimum(self.pos() - self.extents(), aabb.pos() - aabb.extents())
         high = np.maximum(self.pos() + self.extents(), aabb.pos() + aabb.extents())
         return AABB((low + high) / 2, (high - low) / 2)
 
     def GetTransformed(self, pose: ArrayLike) -> "AABB":
-        """Return the smallest axis-aligned box around this one, moved by ``pose``: 7 numbers, or a matrix of 4x4."""
+        """Return the smallest axis-aligned box around this one transformed by ``pose``: 7 numbers, or a 4x4 matrix."""
         return AABBFromOrientedBox(OrientedBoxFromAABB(self, pose))
 
     def toDict(self) -> dict[str, Floats]:
@@ -83,7 +83,7 @@ class AABB(ApiObject):
 
 
 class OrientedBox(ApiObject):
-    """An oriented box."""
+    """Oriented box."""
 
     @also_named(transform="pose")
     def __init__(self, pose: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:
@@ -91,7 +91,7 @@ class OrientedBox(ApiObject):
         self._extents = arguments.vec3(extents, "extents")
 
     def extents(self) -> Floats:
-        """Return half the edge lengths [m], shape (3,)."""
+        """Return the half extents [m], shape (3,)."""
         return np.array(self._extents)
 
     def transform(self) -> Floats:
@@ -118,7 +118,7 @@ def _listed(numbers: Iterable[float], separator: str = ",") -> str:
 
 
 def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
-    """Return a box moved by a transform, a matrix of 4x4 or a pose of 7 numbers.
+    """Return an axis-aligned box transformed to an oriented one by a 4x4 matrix or a pose of 7 numbers.
 
     Args:
         aabb: The box.
@@ -130,7 +130,7 @@ def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
 
 
 def AABBFromOrientedBox(obb: OrientedBox) -> AABB:
-    """Return the smallest axis-aligned box around the oriented box ``obb``."""
+    """Return the smallest axis-aligned box that contains the oriented box ``obb``."""
     transform = obb.transform()
     return AABB(transform[:3, 3], np.abs(transform[:3, :3]) @ obb.extents())
 
@@ -146,10 +146,10 @@ def CheckAABBCollision(aabb1: AABB, aabb2: AABB) -> bool:
 
 
 def CheckOBBCollision(obb1: OrientedBox, obb2: OrientedBox) -> bool:
-    """Return whether two boxes overlap or touch: no plane along their faces or edges separates them.
+    """Return whether two boxes overlap or touch, by the separating axis theorem.
 
     Args:
-        obb1: A turned box.
+        obb1: An oriented box.
         obb2: The other.
     """
     first, second = obb1.transform(), obb2.transform()
@@ -166,16 +166,16 @@ def CheckAABBAndOBBCollision(aabb: AABB, obb: OrientedBox) -> bool:
 
     Args:
         aabb: The box.
-        obb: The turned box.
+        obb: The oriented box.
     """
     return CheckOBBCollision(OrientedBoxFromAABB(aabb, np.eye(4)), obb)
 
 
 def CheckBoxAtOriginAndOBBCollision(extents: ArrayLike, obb: OrientedBox) -> bool:
-    """Return whether a box in the origin, given by half its edge lengths, and another box overlap or touch.
+    """Return whether an axis-aligned box at the origin and an oriented box overlap or touch.
 
     Args:
-        extents: Half the edge lengths of the first box [m], shape (3,).
-        obb: The turned box.
+        extents: The half extents of the first box [m], shape (3,).
+        obb: The oriented box.
     """
     return CheckAABBAndOBBCollision(AABB(ZERO, extents), obb)

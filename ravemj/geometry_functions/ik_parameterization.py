@@ -1,53 +1,76 @@
-"""Goals of inverse kinematics as numbers: what they take of a pose, how they move, how far they are from each other.
+"""Values of IK goals: extraction from poses, transforms, distances.
 
 The numbers are, by type: of ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; of ``Rotation3D`` the quaternion; of
 ``Translation3D`` and ``Lookat3D`` the point; of ``Direction3D`` the direction; of ``Ray4D`` and
 ``TranslationDirection5D`` direction and point; of ``TranslationXY2D`` x and y, of ``TranslationXYOrientation3D`` the
-angle behind them; of ``TranslationLocalGlobal6D`` a point of the tool and where it shall be; of the types with
-``AxisAngle`` angle and point. That angle is one in the frame of the arm's base, and stays as it is when goals move.
+angle behind them; of ``TranslationLocalGlobal6D`` a point of the tool and its desired position; of the types with
+``AxisAngle`` angle and point. This angle is in the arm's base frame, and transforms of goals do not change it.
 """
 
 import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.arrays import NOT_RIGID, checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, send_warning
 from ravemj.geometry_functions.boxes import Ray
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
 from ravemj.geometry_functions.rotations import quatRotateDirection, rotationMatrixFromQuat
 
 _Type = IkParameterizationType
+_IDENTITY = np.eye(3)
 _RAYS = {_Type.Ray4D, _Type.TranslationDirection5D}
 _PLACES = {_Type.Translation3D, _Type.Lookat3D}
 _PLANAR = {_Type.TranslationXY2D, _Type.TranslationXYOrientation3D}
 _WITH_ANGLE = frozenset(kind for kind in GOAL_TYPES if "AxisAngle" in kind.name)
-"""Types whose first number is an angle to an axis of the frame of the arm's base, or about one."""
+"""Types whose first value is an angle to or about an axis of the arm's base frame."""
 _ABOUT_AXIS = frozenset(kind for kind in _WITH_ANGLE if "Norm" in kind.name)
 _WITH_DIRECTION = {_Type.Direction3D, *_RAYS}
-"""Types whose first three numbers are a direction."""
+"""Types whose first three values are a direction."""
 _WITH_POINT = {*_PLACES, *_RAYS, *_WITH_ANGLE, _Type.TranslationLocalGlobal6D}
-"""Types whose last three numbers are a point that moves."""
+"""Types whose last three values are a point that is transformed."""
 _ANGLE_WEIGHT = 0.4
-"""OpenRAVE's weight of a squared angle [1/rad^2] beside a squared distance [1/m^2]."""
+"""OpenRAVE's weight of a squared angle [1/rad^2] relative to a squared distance [1/m^2]."""
 _UNIT = 0.01
-"""How far the squared length of a direction may be from 1."""
+"""Tolerance of the squared length of a direction."""
+
+
+def goal_transform(value: ArrayLike, name: str) -> Floats:
+    """Return the pose of a goal like ``checked_transform``, shape (4, 4); warn if its rotation is scaled.
+
+    As in OpenRAVE, scaling a matrix changes its rotation.
+
+    Raises:
+        ValueError: as there.
+        ArgumentError: as there.
+    """
+    matrix = checked_transform(value, name)
+    given = np.asarray(value, dtype=np.float64)
+    if given.ndim == 2:
+        rotation = given[:3, :3]
+        off = float(np.abs(rotation.T @ rotation - _IDENTITY).max())
+        if off > NOT_RIGID:
+            told = f"the rotation is scaled by {np.cbrt(np.linalg.det(rotation)):.4g}"
+            message = f"{told}; the goal has the rotation that OpenRAVE makes of it, not the one without the scale"
+            send_warning(Diagnostic("warning", "scaled-rotation", message, Source(name)))
+    return matrix
 
 
 def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN401 - as the type asks for
-    """Return the numbers of a goal that a user gave as a matrix, a ray or a vector, shape (n,).
+    """Return the values of a user's goal, given as a matrix, a ray or a vector, shape (n,).
 
     Raises:
-        ArgumentError: they are not what the type asks for; with the code ``Assert``, a direction is no unit vector.
+        ArgumentError: they do not match the type; with the code ``Assert``, a direction is not a unit vector.
     """
     if kind not in GOAL_TYPES:
         known = ", ".join(sorted(one.name for one in GOAL_TYPES))
         raise ArgumentError(f"type: is {kind.name}, and should be one of {known}")
     if kind == _Type.Transform6D:
-        return pose_of(checked_transform(value, "value")).numbers()
+        return pose_of(goal_transform(value, "value")).numbers()
     if kind in _RAYS:
         ray = checked_kind(value, Ray, "value")
         return np.concatenate([_checked_direction(ray.dir()), ray.pos()])
@@ -62,7 +85,7 @@ def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: A
 
 
 def length_scales(kind: IkParameterizationType, factor: float) -> Floats:
-    """Return what multiplies the numbers of a goal in another unit of length: the factor for lengths, else 1."""
+    """Return the factors of a goal's values for another unit of length: ``factor`` for lengths, else 1."""
     scales = np.full(goal_size(kind), factor)
     if kind == _Type.TranslationXYOrientation3D:
         scales[2:] = 1
@@ -86,13 +109,13 @@ def _checked_direction(direction: Floats) -> Floats:
 def goal_of_tool(
     kind: IkParameterizationType, T_frame_tool: Floats, direction: Floats, like: Floats | None = None
 ) -> Floats:
-    """Return the numbers of the goal that a tool reaches where it is, shape (n,).
+    """Return the values of the goal that a tool reaches at a pose, shape (n,).
 
     Args:
         kind: The type of goal.
         T_frame_tool: The tool's pose, shape (4, 4).
-        direction: Where the tool points in its own frame, shape (3,).
-        like: A goal of that type: its point of the tool is taken, or the point that is looked at.
+        direction: The tool direction in its own frame, shape (3,).
+        like: A goal of that type, which supplies the tool point or the look-at point.
     """
     position, pointing = T_frame_tool[:3, 3], T_frame_tool[:3, :3] @ direction
     x, y, z = pointing.tolist()
@@ -121,7 +144,7 @@ def goal_of_tool(
 
 
 def moved_goal(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
-    """Return the numbers of a goal that is moved by a pose, as ``pose * goal``."""
+    """Return the values of a goal transformed by a pose, as ``pose * goal``."""
     if kind == _Type.Transform6D:
         return (pose @ goal_pose(values)).numbers()
     if kind == _Type.Rotation3D:
@@ -139,7 +162,7 @@ def moved_goal(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floa
 
 
 def goal_moved_in_its_frame(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
-    """Return the numbers of a goal that is moved by a pose in its own frame, as ``goal * pose``."""
+    """Return the values of a goal transformed by a pose in its own frame, as ``goal * pose``."""
     rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
     if kind == _Type.Transform6D:
         return (goal_pose(values) @ pose).numbers()
@@ -162,11 +185,11 @@ _FOLLOW = "_transform="
 
 
 def moved_custom_values(name: str, values: Floats, pose: Pose) -> Floats:
-    """Return numbers that a user attached to a goal, after the goal is moved by a pose; their name says what they are.
+    """Return custom values of a goal after a transform by a pose; their name determines their type.
 
     Raises:
-        ArgumentError: the name has a word behind ``_transform=`` that is none of ``point``, ``direction``, ``quat`` and
-            ``ikparam`` (``InvalidState``), or there are too few numbers.
+        ArgumentError: the word after ``_transform=`` is not ``point``, ``direction``, ``quat`` or ``ikparam``
+            (``InvalidState``), or there are too few values.
     """
     if _FOLLOW not in name:
         return values
@@ -185,7 +208,7 @@ def moved_custom_values(name: str, values: Floats, pose: Pose) -> Floats:
 
 
 def goal_distance_squared(kind: IkParameterizationType, first: Floats, second: Floats) -> float:
-    """Return the squared distance between two goals of one type [m^2 and rad^2]; angles count less beside places."""
+    """Return the squared distance between two goals of one type [m^2 and rad^2]; angles have a smaller weight."""
     if kind in {_Type.Transform6D, _Type.Rotation3D}:
         square = _half_turn(first, second) ** 2
         return _squared_length(first[4:] - second[4:]) + _ANGLE_WEIGHT * square if len(first) > 4 else square
@@ -205,18 +228,18 @@ def goal_distance_squared(kind: IkParameterizationType, first: Floats, second: F
 
 
 def has_point(kind: IkParameterizationType) -> bool:
-    """Return whether the last three numbers of a goal of a type are a point."""
+    """Return whether the last three values of a goal type are a point."""
     return kind == _Type.Transform6D or kind in _WITH_POINT
 
 
 def goal_pose(values: Floats) -> Pose:
-    """Return the pose that the numbers of a goal are."""
+    """Convert values of a goal to a pose."""
     x, y, z = values[4:].tolist()
     return Pose((x, y, z), _wxyz(values))
 
 
 def goal_ray(values: Floats) -> Ray:
-    """Return the ray that the numbers of a goal are."""
+    """Convert values of a goal to a ray."""
     return Ray(values[3:], values[:3])
 
 
@@ -226,17 +249,16 @@ def _wxyz(values: Floats) -> Wxyz:
 
 
 def _angle_about_z(pose: Pose) -> float:
-    """Return the part of a rotation that turns about z [rad]."""
+    """Return the component of a rotation about z [rad]."""
     return 2 * math.atan2(pose.wxyz[3], pose.wxyz[0])
 
 
 def _wrapped(angle: float) -> float:
-    """Return an angle in [-pi, pi]."""
     return math.remainder(angle, 2 * math.pi)
 
 
 def _nearest_point(ray: Floats) -> Floats:
-    """Return the point of a ray, given by direction and point, that is nearest to the origin."""
+    """Return the point of a ray, given by direction and point, nearest to the origin."""
     direction, point = ray[:3], ray[3:]
     return point - direction * (direction @ point)
 

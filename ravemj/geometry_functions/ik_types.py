@@ -1,14 +1,14 @@
-"""The types of goals of inverse kinematics."""
+"""Types of IK goals."""
 
 from ravemj.core.enumerations import NamedInt
 
 
 class IkParameterizationType(NamedInt):
-    """Which part of a pose the tool of an arm shall reach.
+    """Constrained components of the tool pose.
 
     Each number encodes the degrees of freedom, the count of values, and a unique number.
 
-    Those that end in ``Velocity`` stand for velocities in trajectories; no goal is of such a type.
+    Types that end in ``Velocity`` are velocities in trajectories, not goals.
     """
 
     none = 0
@@ -50,14 +50,14 @@ class IkParameterizationType(NamedInt):
 
 
 GOAL_TYPES = frozenset(kind for kind in IkParameterizationType if kind >> 24 and not kind & 0x8000)
-"""The types that goals have."""
+"""Types of goals."""
 
 
 def goal_dof(kind: int) -> int:
-    """Return how many degrees of freedom a goal of a type takes away."""
+    """Return the number of degrees of freedom that a goal type constrains."""
     return int(kind) >> 28 & 0xF
 
 
 def goal_size(kind: int) -> int:
-    """Return how many numbers a goal of a type has."""
+    """Return the number of values of a goal type."""
     return int(kind) >> 24 & 0xF

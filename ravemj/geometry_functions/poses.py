@@ -1,4 +1,4 @@
-"""Transforms as matrices of 4x4 and as poses (qw, qx, qy, qz, x, y, z)."""
+"""Transforms as 4x4 matrices and as poses (qw, qx, qy, qz, x, y, z)."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,7 +52,7 @@ invertPoses = InvertPoses
 def MultiplyPose(pose1: ArrayLike, pose2: ArrayLike) -> Floats:
     """Return the pose that applies ``pose2``, then ``pose1``, shape (7,).
 
-    The quaternion has unit length, whatever those of the poses have.
+    The quaternion is normalized.
 
     Raises:
         ArgumentError: a quaternion is zero.
@@ -67,23 +67,23 @@ poseMult = MultiplyPose
 
 
 def poseTransformPoint(pose: ArrayLike, point: ArrayLike) -> Floats:
-    """Return a point moved by a pose, shape (3,)."""
+    """Return a point transformed by a pose, shape (3,)."""
     return np.array(_pose(pose).apply(arguments.vec3(point, "point")))
 
 
 def poseTransformPoints(pose: ArrayLike, points: ArrayLike) -> Floats:
-    """Return points of shape (n, 3) moved by a pose, shape (n, 3)."""
+    """Return points of shape (n, 3) transformed by a pose, shape (n, 3)."""
     return transformPoints(_pose(pose).matrix(), arguments.table(points, 3, "points"))
 
 
 def transformPoints(T: ArrayLike, points: ArrayLike) -> Floats:
-    """Return ``points``, shape (n, k), moved by the affine matrix ``T``, shape (k + 1, k + 1) or (k, k + 1)."""
+    """Return ``points``, shape (n, k), transformed by the affine matrix ``T``, shape (k + 1, k + 1) or (k, k + 1)."""
     linear, offset = _linear(T)
     return arguments.table(points, len(offset), "points") @ linear.T + offset
 
 
 def transformInversePoints(T: ArrayLike, points: ArrayLike) -> Floats:
-    """Return ``points``, shape (n, k), moved by the inverse of the rigid matrix ``T``, as for ``transformPoints``."""
+    """Return ``points``, shape (n, k), transformed by the inverse of the rigid ``T``; see ``transformPoints``."""
     linear, offset = _linear(T)
     return (arguments.table(points, len(offset), "points") - offset) @ linear
 
@@ -99,12 +99,12 @@ def _linear(matrix: ArrayLike) -> tuple[Floats, Floats]:
 def transformLookat(lookat: ArrayLike, camerapos: ArrayLike, cameraup: ArrayLike) -> Floats:
     """Return the pose, shape (4, 4), of a camera that looks at a point, with z towards it.
 
-    Without a direction to look along, z is that of the world; without a usable y axis, y of the world is tried, then x.
+    If camera and point coincide, z is that of the world; if the y axis is undefined, it is y of the world, then x.
 
     Args:
         lookat: The point.
-        camerapos: Where the camera is.
-        cameraup: Where its y axis should point. Cameras of viewers have y down, so give them the direction down.
+        camerapos: The camera position.
+        cameraup: The desired y axis. Viewer cameras have y down, so give the down direction.
     """
     position = np.array(arguments.vec3(camerapos, "camerapos"))
     forward = np.array(arguments.vec3(lookat, "lookat")) - position
@@ -124,14 +124,14 @@ TransformLookat = transformLookat
 
 
 def ComputePoseDistSqr(pose0: ArrayLike, pose1: ArrayLike, quatweight: float = 1.0) -> float:
-    """Return the squared distance of two poses: of the positions, plus ``quatweight`` times that of the quaternions.
+    """Return the squared distance of two poses: of positions, plus ``quatweight`` times that of quaternions.
 
-    The sign of a quaternion does not count.
+    The sign of a quaternion is ignored.
 
     Args:
         pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
         pose1: The other, shape (7,).
-        quatweight: Weight of the rotations against the positions.
+        quatweight: Weight of rotations relative to positions.
     """
     return float(ComputePoseArrayDistSqr(pose0, [arguments.numbers(pose1, 7, "pose1")], quatweight)[0])
 
@@ -141,8 +141,8 @@ def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: 
 
     Args:
         pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
-        posearray: Poses, a row each, shape (n, 7).
-        quatweight: Weight of the rotations against the positions.
+        posearray: Poses, one per row, shape (n, 7).
+        quatweight: Weight of rotations relative to positions.
     """
     first, others = arguments.numbers(pose0, 7, "pose0"), arguments.table(posearray, 7, "posearray")
     squares = [((others[:, :4] - sign * first[:4]) ** 2).sum(axis=1) for sign in (1, -1)]
@@ -150,12 +150,12 @@ def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: 
 
 
 def poseSerialization(pose: ArrayLike) -> str:
-    """Return a transform, a pose of 7 numbers or a matrix of 4x4, as the text of its 7 numbers."""
+    """Return a transform, a pose of 7 numbers or a 4x4 matrix, as the text of its 7 numbers."""
     return _text(arguments.pose(pose, "pose").numbers())
 
 
 def matrixSerialization(transform: ArrayLike) -> str:
-    """Return a transform, a pose of 7 numbers or a matrix of 4x4, as the text of the columns of its 3x4 matrix."""
+    """Return a transform, a pose of 7 numbers or a 4x4 matrix, as the text of the columns of its 3x4 matrix."""
     return _text(arguments.pose(transform, "transform").matrix()[:3].T.ravel())
 
 
@@ -182,17 +182,17 @@ def quatMultArrayT(q: ArrayLike, qarray: ArrayLike) -> Floats:
 
 
 def quatArrayRotate(qarray: ArrayLike, trans: ArrayLike) -> Floats:
-    """Return the vector ``trans`` turned by unit quaternions, the columns of ``qarray``, shape (4, n); shape (3, n)."""
+    """Return the vector ``trans`` rotated by the columns of ``qarray``, unit quaternions, (4, n); shape (3, n)."""
     return quatArrayTRotate(checked_numbers(qarray, "qarray").T, trans).T.copy()
 
 
 def quatArrayTRotate(qarray: ArrayLike, trans: ArrayLike) -> Floats:
-    """Return the vector ``trans`` turned by each unit quaternion of ``qarray``, shape (n, 4); shape (n, 3)."""
+    """Return the vector ``trans`` rotated by each unit quaternion of ``qarray``, shape (n, 4); shape (n, 3)."""
     return _rotated(arguments.table(qarray, 4, "qarray"), arguments.numbers(trans, 3, "trans"))
 
 
 def quatRotateArrayT(q: ArrayLike, transarray: ArrayLike) -> Floats:
-    """Return the vectors of ``transarray``, shape (n, 3), turned by the unit quaternion ``q``; shape (n, 3)."""
+    """Return the vectors of ``transarray``, shape (n, 3), rotated by the unit quaternion ``q``; shape (n, 3)."""
     return _rotated(arguments.numbers(q, 4, "q"), arguments.table(transarray, 3, "transarray"))
 
 
@@ -210,11 +210,11 @@ def quatArrayTDist(q: ArrayLike, qarray: ArrayLike) -> Floats:
 
 
 def normalizeZRotation(qarray: ArrayLike) -> tuple[Floats, Floats]:
-    """Take the turn about z out of the unit quaternions ``qarray``, shape (n, 4).
+    """Remove the rotation about z from the unit quaternions ``qarray``, shape (n, 4).
 
     Returns:
-        The quaternions after a further turn about z that brings them closest to none, shape (n, 4); and the angles
-        [rad] that it took out, shape (n,).
+        The quaternions after a rotation about z that brings them closest to the identity, shape (n, 4); and the removed
+        angles [rad], shape (n,).
     """
     quaternions = arguments.table(qarray, 4, "qarray")
     half = np.arctan2(-quaternions[:, 3], quaternions[:, 0])
@@ -231,7 +231,7 @@ def _products(left: Floats, right: Floats) -> Floats:
 
 
 def _rotated(quaternions: Floats, vectors: Floats) -> Floats:
-    """Return vectors in the last axis turned by unit quaternions in the last axis."""
+    """Return vectors in the last axis rotated by unit quaternions in the last axis."""
     w, v = quaternions[..., :1], quaternions[..., 1:]
     twice = 2 * np.cross(v, vectors)
     return vectors + w * twice + np.cross(v, twice)

@@ -19,16 +19,16 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 
 FEW_DIGITS = 0.1
-"""Below this sine of the angle between two quaternions its cosine keeps too few digits for those between them."""
+"""Sine of the angle between two quaternions below which its cosine is too inaccurate for interpolation."""
 
 
 def quatFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
-    """Return the quaternion (w, x, y, z) of a turn about an axis, shape (4,).
+    """Return the quaternion (w, x, y, z) of a rotation about an axis, shape (4,).
 
     Args:
-        axisangle: The axis times the angle [rad]; with ``angle``, the axis, of any length. Zero is no turn.
+        axisangle: The axis times the angle [rad]; with ``angle``, the axis, of any length. Zero is the identity.
         angle: The angle [rad].
         axis: The axis, by OpenRAVE's other name of the first argument.
 
@@ -42,7 +42,7 @@ def quatFromAxisAngle(
 def rotationMatrixFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
-    """Return the matrix of a turn about an axis, shape (3, 3).
+    """Return the matrix of a rotation about an axis, shape (3, 3).
 
     The arguments ``axisangle``, ``angle`` and ``axis`` are as for ``quatFromAxisAngle``.
     """
@@ -52,7 +52,7 @@ def rotationMatrixFromAxisAngle(
 def matrixFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
-    """Return the transform of a turn about an axis, shape (4, 4).
+    """Return the transform of a rotation about an axis, shape (4, 4).
 
     The arguments ``axisangle``, ``angle`` and ``axis`` are as for ``quatFromAxisAngle``.
 
@@ -73,8 +73,8 @@ def _turn(axis: ArrayLike | None, angle: float | None) -> Wxyz:
 def quatFromRotationMatrix(rotation: ArrayLike) -> Floats:
     """Return the quaternion (w, x, y, z), shape (4,), of the matrix ``rotation``, shape (3, 3), (3, 4) or (4, 4).
 
-    w is negative or not as OpenRAVE has it: never with a trace of 0 and more, else the part that belongs to the largest
-    diagonal element is positive.
+    The sign is OpenRAVE's: if the trace is not negative, w is positive; else the component of the largest diagonal
+    element is.
     """
     return np.array(_of_matrix(rotation))
 
@@ -117,7 +117,7 @@ def rotationMatrixFromQArray(quatarray: ArrayLike) -> list[Floats]:
 
 
 def matrixFromQuat(quat: ArrayLike) -> Floats:
-    """Return the transform that turns by the quaternion ``quat``, shape (4, 4).
+    """Return the transform with the rotation of the quaternion ``quat``, shape (4, 4).
 
     Raises:
         ArgumentError: the quaternion is far from unit length.
@@ -132,7 +132,7 @@ def _transform(quaternion: Wxyz) -> Floats:
 
 
 def quatMultiply(quat0: ArrayLike, quat1: ArrayLike) -> Floats:
-    """Return the product of two quaternions, shape (4,): it turns by ``quat1``, then by ``quat0``."""
+    """Return the product of two quaternions, shape (4,): the rotation by ``quat1``, then by ``quat0``."""
     return np.array(multiply(arguments.wxyz(quat0, "quat0"), arguments.wxyz(quat1, "quat1")))
 
 
@@ -140,7 +140,7 @@ MultiplyQuat = quatMult = quatMultiply
 
 
 def quatInverse(quat: ArrayLike) -> Floats:
-    """Return the quaternion that turns back: the conjugate of ``quat``, shape (4,)."""
+    """Return the inverse rotation: the conjugate of ``quat``, shape (4,)."""
     return np.array(conjugate(arguments.wxyz(quat, "quat")))
 
 
@@ -148,19 +148,19 @@ InvertQuat = quatInverse
 
 
 def quatRotate(q: ArrayLike, trans: ArrayLike) -> Floats:
-    """Return the vector ``trans`` turned by the unit quaternion ``q``, shape (3,)."""
+    """Return the vector ``trans`` rotated by the unit quaternion ``q``, shape (3,)."""
     return np.array(rotate(arguments.wxyz(q, "q"), arguments.vec3(trans, "trans")))
 
 
 def ExtractAxisFromQuat(quat: ArrayLike, iaxis: int) -> Floats:
-    """Return where a unit quaternion turns the x, y or z axis (``iaxis`` 0, 1, 2), shape (3,).
+    """Return the x, y or z axis (``iaxis`` 0, 1, 2) rotated by a unit quaternion, shape (3,).
 
     Args:
         quat: A quaternion [w, x, y, z], shape (4,).
         iaxis: 0, 1 or 2 for x, y or z.
 
     Raises:
-        ArgumentError: there is no such axis.
+        ArgumentError: the axis does not exist.
     """
     if iaxis not in {0, 1, 2}:
         raise ArgumentError(f"iaxis: is {iaxis}, and should be 0, 1 or 2")
@@ -168,9 +168,9 @@ def ExtractAxisFromQuat(quat: ArrayLike, iaxis: int) -> Floats:
 
 
 def quatRotateDirection(sourcedir: ArrayLike, targetdir: ArrayLike) -> Floats:
-    """Return the smallest turn that brings the direction ``sourcedir`` onto ``targetdir``, a quaternion, shape (4,).
+    """Return the smallest rotation from the direction ``sourcedir`` to ``targetdir``, a quaternion, shape (4,).
 
-    Opposite directions are half a turn apart about an axis close to x.
+    For opposite directions, the axis is close to x.
     """
     source = np.array(arguments.vec3(sourcedir, "sourcedir"))
     target = np.array(arguments.vec3(targetdir, "targetdir"))
@@ -182,7 +182,7 @@ def quatRotateDirection(sourcedir: ArrayLike, targetdir: ArrayLike) -> Floats:
 
 
 def _orthogonal(direction: Floats) -> Floats:
-    """Return a vector orthogonal to a unit vector: the part of x, or else of z."""
+    """Return a vector orthogonal to a unit vector: the component of x, or else of z."""
     for axis in (np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])):
         rest = axis - direction * direction[axis.argmax()]
         if rest @ rest >= 1e-8:
@@ -191,10 +191,10 @@ def _orthogonal(direction: Floats) -> Floats:
 
 
 def normalizeAxisRotation(axis: ArrayLike, quat: ArrayLike) -> tuple[float, Floats]:
-    """Return the turn about an axis after which the rotation ``quat``, a unit quaternion, is closest to none.
+    """Return the rotation about an axis that brings ``quat``, a unit quaternion, closest to the identity.
 
     Returns:
-        The angle [rad], and the quaternion that turns by ``quat``, then about ``axis`` by that angle, shape (4,).
+        The angle [rad], and the rotation by ``quat`` followed by that about ``axis``, a quaternion, shape (4,).
     """
     direction, quaternion = arguments.vec3(axis, "axis"), arguments.wxyz(quat, "quat")
     along = sum(part * other for part, other in zip(direction, quaternion[1:], strict=True))
@@ -203,16 +203,16 @@ def normalizeAxisRotation(axis: ArrayLike, quat: ArrayLike) -> tuple[float, Floa
 
 
 def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshortarc: bool = True) -> Floats:
-    """Return the rotation on the way from one to another, at constant angular velocity.
+    """Return the spherical linear interpolation between two rotations.
 
     Args:
         quat0: Unit quaternion at t = 0.
         quat1: Unit quaternion at t = 1.
         t: From 0 to 1.
-        forceshortarc: Whether to take the shorter way; else the way between the quaternions as they are.
+        forceshortarc: Whether to take the shorter arc; otherwise the signs of the quaternions determine it.
 
     Returns:
-        Unit quaternion, shape (4,). Of quaternions of other lengths, which mean nothing here, it has another one.
+        Unit quaternion, shape (4,). For other lengths the result is meaningless.
     """
     start, end = np.array(arguments.wxyz(quat0, "quat0")), np.array(arguments.wxyz(quat1, "quat1"))
     cosine = float(start @ end)
@@ -235,12 +235,12 @@ quatSlerp = InterpolateQuatSlerp
 def InterpolateQuatSquad(
     quat0: ArrayLike, quat1: ArrayLike, quat2: ArrayLike, quat3: ArrayLike, t: float, forceshortarc: bool = True
 ) -> Floats:
-    """Return the rotation on a smooth way from ``quat0`` to ``quat3``, drawn towards two others.
+    """Return the spherical cubic interpolation from ``quat0`` to ``quat3``, with two control quaternions.
 
     Args:
         quat0: Unit quaternion at t = 0.
-        quat1: What the way is drawn towards, near its start.
-        quat2: What the way is drawn towards, near its end.
+        quat1: Control quaternion near the start.
+        quat2: Control quaternion near the end.
         quat3: Unit quaternion at t = 1.
         t: From 0 to 1.
         forceshortarc: As for ``quatSlerp``.

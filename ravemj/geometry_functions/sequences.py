@@ -1,4 +1,4 @@
-"""Sequences of points that cover a cube evenly."""
+"""Low-discrepancy sequences in a cube."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from ravemj.core.transforms import Floats, Ints
 
 
 def halton(first: int, count: int, dimensions: int) -> Floats:
-    """Return ``count`` points of Halton's sequence from the place ``first`` on, in the prime bases 2, 3, 5, ...
+    """Return ``count`` points of Halton's sequence from the index ``first``, in the prime bases 2, 3, 5, ...
 
     The point 0 is the origin. Shape (count, dimensions), from 0 to 1, without 1.
 
@@ -17,7 +17,7 @@ def halton(first: int, count: int, dimensions: int) -> Floats:
 
 
 def _radical_inverse(places: Ints, base: int) -> Floats:
-    """Return numbers with their digits mirrored at the point."""
+    """Return the radical inverse of indices: their digits mirrored at the radix point."""
     mirrored, weight, rest = np.zeros(len(places)), 1.0 / base, places.copy()
     while rest.any():
         mirrored += rest % base * weight

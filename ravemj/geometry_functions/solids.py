@@ -1,4 +1,4 @@
-"""Meshes of simple solids, and an order of visiting points."""
+"""Meshes of simple solids, and a nearest-neighbour order of points."""
 
 import itertools
 from collections.abc import Callable
@@ -24,7 +24,7 @@ _ICOSAHEDRON = [
 
 
 def ComputeBoxMesh(extents: ArrayLike) -> tuple[Floats, Ints]:
-    """Return corners, shape (8, 3), and triangles, shape (12, 3), of a box of half edge lengths ``extents`` [m]."""
+    """Return the vertices, shape (8, 3), and triangles, shape (12, 3), of a box of half extents ``extents`` [m]."""
     signs = np.array(list(itertools.product((1.0, -1.0), repeat=3)))
     return signs * arguments.numbers(extents, 3, "extents"), np.array(_BOX_TRIANGLES)
 
@@ -55,7 +55,7 @@ def ComputeGeodesicSphereMesh(radius: float = 1.0, level: int = 2) -> tuple[Floa
 
     Args:
         radius: Radius [m].
-        level: How often the triangles of an icosahedron are divided into four.
+        level: Number of subdivisions of an icosahedron's triangles into four.
 
     Returns:
         Points, shape (2 + 10 * 4**level, 3), and triangles, shape (20 * 4**level, 3).
@@ -69,7 +69,7 @@ def ComputeGeodesicSphereMesh(radius: float = 1.0, level: int = 2) -> tuple[Floa
 
 
 def _faces(corners: Floats) -> list[tuple[int, int, int]]:
-    """Return the triangles between neighbours of an icosahedron, seen anticlockwise from outside."""
+    """Return the triangles of an icosahedron's adjacent vertices, counter-clockwise seen from outside."""
     near = corners @ corners.T > 0.4
     faces: list[tuple[int, int, int]] = []
     for a, b, c in itertools.combinations(range(len(corners)), 3):
@@ -80,7 +80,7 @@ def _faces(corners: Floats) -> list[tuple[int, int, int]]:
 
 
 def refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """Return each triangle of a mesh as four, the new corners on the unit sphere, in the order in which edges come."""
+    """Subdivide each triangle of a mesh into four, with new vertices on the unit sphere in the order of edges."""
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     unique, first, places = np.unique(edges, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
@@ -93,7 +93,7 @@ def refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
 
 
 def TSP(solutions: ArrayLike, distfn: Callable[[Floats, Floats], float]) -> Floats:
-    """Return points in an order in which each is followed by the nearest of the rest.
+    """Return points in a greedy order: each is followed by the nearest of the remaining ones.
 
     Args:
         solutions: The points, shape (n, k); the first one stays first.

@@ -1,4 +1,4 @@
-"""Paths of videos, which notebooks show."""
+"""Paths of videos that notebooks display."""
 
 from base64 import b64encode
 from html import escape
@@ -6,14 +6,14 @@ from pathlib import Path
 
 _TYPES = {".gif": "image/gif", ".webp": "image/webp", ".png": "image/png", ".mp4": "video/mp4"}
 _MOST_BYTES = 10_000_000
-"""A larger video would make a notebook slow; its path is shown instead."""
+"""Maximum size of an embedded video; of a larger one, which would slow the notebook down, the path is shown."""
 
 
 class ShownPath(type(Path())):
-    """The path of a video. As the last line of a notebook's cell it shows the video, which is then in the notebook."""
+    """The path of a video. As the result of a notebook cell it embeds the video."""
 
     def _repr_html_(self) -> str | None:
-        """Return what notebooks show; None for what browsers do not play, for large files and for missing ones."""
+        """Return the notebook display; None for formats without browser support, large files and missing ones."""
         kind = _TYPES.get(self.suffix.lower())
         if kind is None or not self.is_file() or self.stat().st_size > _MOST_BYTES:
             return None

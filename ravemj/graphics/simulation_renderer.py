@@ -1,4 +1,4 @@
-"""Pictures of a simulation: who draws them, from where, on what background."""
+"""Rendering of a simulation: renderers per thread, cameras, backgrounds."""
 
 import threading
 from collections.abc import Callable
@@ -29,13 +29,13 @@ Drawn = TypeVar("Drawn")
 
 
 class Format(NamedTuple):
-    """The size and the quality of a picture."""
+    """Size and quality of a picture."""
 
     width: int = 640  # [pixels]
     height: int = 480  # [pixels]
-    shadows: bool | None = None  # whether lights cast some; None: if OpenGL draws with a graphics card
+    shadows: bool | None = None  # whether lights cast shadows; None: only with a graphics card
     samples: int = 4  # per pixel against jagged edges: 4, or 0 for speed
-    scale: float = 1.0  # columns as a part of those that it is shown with: points and lines are so much narrower
+    scale: float = 1.0  # columns relative to the displayed size, by which points and lines become narrower
 
     @property
     def aspect(self) -> float:
@@ -51,10 +51,10 @@ class Format(NamedTuple):
 
 
 class SimulationRenderer:
-    """Draws a simulation; each thread keeps the renderer of its last picture, for the next one.
+    """Renders a simulation; each thread reuses the renderer of its last picture.
 
-    The simulation is locked while its state is copied, and free while the picture is drawn: another ``StateLock``
-    makes the end of Python wait for that.
+    The simulation is locked only while its state is copied. A separate ``StateLock`` makes the exit of Python wait for
+    rendering threads.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -70,21 +70,21 @@ class SimulationRenderer:
         gizmos: Primitives = NOTHING,
         style: Style = AS_IT_IS,
     ) -> Frame:
-        """Draw the bodies and the drawings as they are now.
+        """Render the present state of bodies and drawings.
 
         Args:
-            camera: Where the picture is taken from.
+            camera: The camera.
             look: Background, floor and lights; a colour is a background without floor, with the model's lights.
             form: Size and quality.
             drawings: False: without the drawings of scripts.
-            gizmos: What else is drawn.
-            style: How the bodies are drawn.
+            gizmos: Additional drawings.
+            style: Drawing style of the bodies.
 
         Returns:
-            Shape (height, width, 3), top row first.
+            The picture, shape (height, width, 3), top row first.
 
         Raises:
-            RenderingError: nothing can draw here, or ``MUJOCO_GL`` names what does not work.
+            RenderingError: no renderer works on this machine, or not the one in ``MUJOCO_GL``.
         """
         with self._simulation.lock:
             compiled = self._simulation.compiled()
@@ -97,15 +97,15 @@ class SimulationRenderer:
             return renderer.render(self._kept.data, camera, look, shown.widened(form.scale), style)
 
     def depth(self, camera: Camera, form: Format) -> NDArray[np.float32]:
-        """Return how far away the bodies are: along the viewing direction [m], shape (height, width); else infinite."""
+        """Return depths along the viewing direction [m], shape (height, width); infinite for the background."""
         return self._measured(form, lambda renderer, data: renderer.depth(data, camera))
 
     def segment(self, camera: Camera, form: Format) -> NDArray[np.int32]:
-        """Return which geom of the present model each pixel shows, shape (height, width); -1 for none."""
+        """Return the geom id of each pixel in the present model, shape (height, width); -1 for the background."""
         return self._measured(form, lambda renderer, data: renderer.segment(data, camera))
 
     def _measured(self, form: Format, measure: Callable[[Renderer, mujoco.MjData], Drawn]) -> Drawn:
-        """Return what a function measures in the present state, with the renderer of this thread."""
+        """Return the result of a function of this thread's renderer and the present state."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             renderer = self._current(form)
@@ -114,10 +114,10 @@ class SimulationRenderer:
             return measure(renderer, self._kept.data)
 
     def render_again(self, camera: Camera, look: Look | ArrayLike, form: Format) -> Frame | None:
-        """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
+        """Render this thread's last state from another camera, without locking the simulation.
 
-        Bodies are where they were then, or where they were published since; there are shadows if there were some.
-        The picture is one as ``render`` returns it, or None where this thread has drawn nothing yet.
+        Bodies have the poses of that state, or those published since. The result is a picture as from ``render``; None
+        if this thread has not rendered yet.
         """
         if getattr(self._kept, "key", None) is None:
             return None
@@ -131,12 +131,12 @@ class SimulationRenderer:
             return self._kept.renderer.render(self._kept.data, camera, look, shown.widened(form.scale), style)
 
     def backend(self, form: Format) -> str:
-        """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
+        """Return the backend that renders pictures of a format: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
         with self._simulation.lock:
             return self._current(form).backend
 
     def has_shadows(self, form: Format) -> bool:
-        """Return whether such pictures have shadows: rays draw none."""
+        """Return whether pictures of a format have shadows; the ray caster draws none."""
         with self._simulation.lock:
             return self._current(form).has_shadows
 
@@ -148,7 +148,7 @@ class SimulationRenderer:
             self._kept.model, self._kept.data = model, mujoco.MjData(model)
             size = form.width, form.height
             self._kept.renderer = open_renderer(model, *size, shadows=form.shadows, samples=form.samples)
-            self._kept.key = (self._simulation.version, form.shadows)  # compiling makes another version
+            self._kept.key = (self._simulation.version, form.shadows)  # recompilation changes the version
         self._kept.renderer.resize(form.width, form.height, form.samples)
         return self._kept.renderer
 
@@ -159,26 +159,26 @@ class SimulationRenderer:
             self._kept.key = None
 
     def file_camera(self) -> Camera | None:
-        """Return the camera that the loaded file asks for, or None."""
+        """Return the camera of the loaded file, or None."""
         T_world_camera = self._simulation.view.T_world_camera
         return None if T_world_camera is None else Camera(T_world_camera.matrix())
 
     def camera_from_above(self) -> Camera:
-        """Return OpenRAVE's first view: along -z, with +y up, of the whole scene."""
+        """Return OpenRAVE's initial view of the whole scene: along -z, with +y up."""
         return view_from_above(*self.bounding_sphere())
 
     def camera_for_stills(self, aspect: float) -> Camera:
-        """Return the file's camera, else a view of the whole scene that fits: width divided by height is ``aspect``."""
+        """Return the file's camera, else a view of the whole scene; ``aspect`` is width divided by height."""
         return self.file_camera() or three_quarter_view(*self.bounding_sphere(), aspect)
 
     def lowest_point(self) -> float:
-        """Return the least z [m] of all that is drawn; infinite where nothing is."""
+        """Return the least z of the drawn geoms [m]; infinity if there are none."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             return lowest_point(compiled.model, compiled.data)
 
     def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
-        """Return centre (3,) and radius [m] of a sphere around all that is drawn."""
+        """Return centre, shape (3,), and radius [m] of a bounding sphere of the drawn geoms."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             return bounding_sphere(compiled.model, compiled.data)

@@ -1,6 +1,6 @@
 """Pictures and videos on disk.
 
-A frame is a uint8 array (height, width, 3): sRGB, the top row first. The name of the target says what is written:
+A frame is a uint8 array, shape (height, width, 3): sRGB, top row first. The suffix of the target selects the format:
 
 ======================  =====================================================================================
 ``.mp4``                H.264, which every browser plays
@@ -48,7 +48,7 @@ logger = logging.getLogger("ravemj")
 
 _FRAMES_BETWEEN_THREADS = 4
 _LOWEST_FPS = 0.01
-_FOLDER = ""  # the suffix that stands for a folder of PNG files
+_FOLDER = ""  # the suffix for a folder of PNG files
 _FILES_OF_FOLDER = "frame_*.png"
 _MPG_FPS = 30
 _BT709, _SRGB = 1, 13  # ITU-T H.273
@@ -106,7 +106,7 @@ def check_picture(path: AnyPath) -> None:
         ArgumentError: The suffix is none of ``.png``, ``.jpg``, ``.jpeg`` and ``.webp``.
         OutputError: The folder around it is missing or cannot be written, or something is in the way.
     """
-    known_suffix(path, _STILL_FORMATS)
+    known_suffix(path, STILL_FORMATS)
     check_file(path)
 
 
@@ -119,11 +119,11 @@ def write_picture(path: AnyPath, frame: Frame) -> Path:
         ArgumentError: Unknown suffix, or the frame has a wrong type or shape.
         OutputError: The target cannot be written.
     """
-    suffix = known_suffix(path, _STILL_FORMATS)
+    suffix = known_suffix(path, STILL_FORMATS)
     (picture,) = _checked([frame])
     with new_file(path) as temporary:
         try:
-            _imwrite(temporary, picture, extension=suffix, **_STILL_FORMATS[suffix])
+            _imwrite(temporary, picture, extension=suffix, **STILL_FORMATS[suffix])
         except Exception as error:
             raise output_error(path, error) from error
     return Path(path)
@@ -132,7 +132,7 @@ def write_picture(path: AnyPath, frame: Frame) -> Path:
 def picture_bytes(frame: Frame, suffix: str = ".png") -> bytes:
     """Return the content of the file of a picture, uint8 of shape (height, width, 3); suffixes as ``write_picture``."""
     content = io.BytesIO()
-    _imwrite(content, frame, extension=suffix, **_STILL_FORMATS[suffix])
+    _imwrite(content, frame, extension=suffix, **STILL_FORMATS[suffix])
     return content.getvalue()
 
 
@@ -175,7 +175,7 @@ def _write_video(frames: Iterator[Frame], temporary: Path, rate: Fraction, kind:
 
 
 def _write_mpg(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
-    """MPEG-2 allows few frame rates, so the video has the most usual one."""
+    """Write MPEG-2 at its most common frame rate, repeating frames, since it allows few rates."""
 
     def repeated() -> Iterator[Frame]:
         for number, frame in enumerate(frames):
@@ -198,7 +198,7 @@ def _write_webp(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> Non
 
 
 def _images(frames: Iterator[Frame], rate: Fraction, grain: int) -> "Iterator[Image]":
-    """Yield the frames as images that know their delay, a multiple of the grain [ms]; the sum keeps the time."""
+    """Yield frames as images with their delays, multiples of ``grain`` [ms] whose sum keeps the time."""
     from PIL import Image  # noqa: PLC0415 - slow to import
 
     pixels = 0
@@ -228,8 +228,8 @@ VIDEO_FORMATS: dict[str, tuple[_Encoder, int]] = {
     ".webp": (_write_webp, 90),
     _FOLDER: (_write_png_folder, 1000),
 }
-"""How files of a suffix are written, and the highest number of frames in a second; no suffix: a folder."""
-_STILL_FORMATS: dict[str, dict[str, str | int]] = {  # with the encoder's options
+"""Encoder and highest frame rate of each suffix; the empty one is a folder."""
+STILL_FORMATS: dict[str, dict[str, str | int]] = {  # with the encoder's options
     ".png": {},
     ".jpg": {"quality": 95},
     ".jpeg": {"quality": 95},
@@ -242,7 +242,7 @@ class _Stopped(Exception):  # noqa: N818 - no error of its own: it ends an encod
 
 
 def _arriving(handed_over: "Handover[Frame | None]", stopped: Flag) -> Iterator[Frame]:
-    """Yield what the thread that draws hands over, until None comes."""
+    """Yield the frames from the drawing thread until None arrives."""
     while (frame := handed_over.get()) is not None and not stopped.is_set():
         yield frame
     if stopped.is_set():
@@ -252,7 +252,7 @@ def _arriving(handed_over: "Handover[Frame | None]", stopped: Flag) -> Iterator[
 def _overlap(
     frames: Iterable[Frame], encode: Callable[[Iterator[Frame]], None], on_frame: Callable[[int], None] | None
 ) -> None:
-    """Encode in a second thread what this thread draws; an exception of either ends both."""
+    """Encode in a second thread while this one draws; an exception of either ends both."""
     handed_over = Handover["Frame | None"](_FRAMES_BETWEEN_THREADS)
     ended, stopped = Flag(), Flag()
     errors: list[BaseException] = []
@@ -263,7 +263,7 @@ def _overlap(
         except BaseException as error:
             errors.append(error)
         ended.set()
-        handed_over.give_room()  # else the thread that draws may wait for ever
+        handed_over.give_room()  # else the drawing thread could wait for ever
 
     # No executor: a process waits for the threads of these before its main thread counts as ended, which tells those
     # who hand in frames that there will be no more.
@@ -293,12 +293,12 @@ def _encode(encoder: _Encoder, frames: Iterator[Frame], temporary: Path, rate: F
         encoder(frames, temporary, rate)
     except _Stopped:
         raise
-    except Exception as error:  # FFmpeg and Pillow raise a dozen kinds, for a full disk as for an impossible size
+    except Exception as error:  # FFmpeg and Pillow raise many types of exceptions
         raise output_error(path, error) from error
 
 
 def _checked(frames: Iterable[Frame]) -> Iterator[Frame]:
-    """Yield copies of the frames; all have one size, and there is one at least."""
+    """Yield copies of the frames; check that there is at least one and that all have one size."""
     shape: tuple[int, ...] = ()
     for number, frame in enumerate(frames):
         copy = np.array(frame, order="C")
@@ -316,7 +316,7 @@ def known_suffix(path: AnyPath, known: Iterable[str]) -> str:
     """Return the suffix of a file to write, in lower case; empty for a folder.
 
     Raises:
-        ArgumentError: It is none of those that are known.
+        ArgumentError: It is not a known one.
     """
     text = os.fspath(path)
     suffix = _FOLDER if text.endswith(("/", os.sep)) else Path(text).suffix.lower()
@@ -328,7 +328,7 @@ def known_suffix(path: AnyPath, known: Iterable[str]) -> str:
 
 
 def frame_rate(fps: float, highest: int) -> Fraction:
-    """Return a number of frames in a second as the fraction that a video gets.
+    """Return a frame rate as the fraction stored in a video.
 
     Raises:
         ArgumentError: It is unusable, or higher than the format allows.

@@ -1,3 +1,3 @@
-"""Viewers: mouse and keys, windows, pages in a browser."""
+"""Viewers: pointer and keyboard interaction, windows, and pages in a browser."""
 
 import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco

@@ -1,4 +1,4 @@
-"""From a manipulator of a scene to a chain: the only module here that knows scenes."""
+"""Conversion of a scene's manipulator to a chain; the only module of ``ik`` that uses scenes."""
 
 from collections.abc import Sequence
 from copy import copy
@@ -19,14 +19,14 @@ from ravemj.model.scene import Axis, Joint, KinBody, Manipulator
 
 
 def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
-    """Return the joints from the base of a manipulator to its tool; their order is that of ``arm_dofs``.
+    """Return the joints from the base of a manipulator to its tool, in the order of ``arm_dofs``.
 
-    Passive joints that follow nothing stay as they were loaded. A joint that limits of equal values lock later is still
-    one of the arm.
+    Passive joints without mimic equation keep their loaded values. Joints locked later by equal limits still belong to
+    the arm.
 
     Raises:
-        ValueError: there is no base, no effector or no joint between them, or one of these follows others or is
-            spherical; the message names it.
+        ValueError: the base, the end effector or joints between them are missing, or such a joint is a mimic or
+            spherical joint; the message names it.
     """
     name = f"manipulator '{manipulator.name}' of '{body.name}'"
     if manipulator.base is None or manipulator.effector is None:
@@ -47,20 +47,20 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
             moving += _axes(name, joint, T_base_link)
             T_base_link = T_base_link @ relative_pose(joint, [0.0] * len(joint.axes))
     axes = [axis for _, axis, _, _ in moving]
-    return Chain.of(
+    chain = Chain.of(
         [direction for _, _, direction, _ in moving],
         [point for _, _, _, point in moving],
         prismatic=[slides for slides, _, _, _ in moving],
-        lower=[axis.lower for axis in axes],
-        upper=[axis.upper for axis in axes],
         circular=[axis.circular for axis in axes],
         T_base_tool=np.array((T_base_link @ manipulator.T_effector_tool).matrix()),
         direction=manipulator.direction,
     )
+    lower, upper = np.array([(axis.lower, axis.upper) for axis in axes], dtype=float).T
+    return replace(chain, lower=lower, upper=upper)  # unchecked: between limits that scripts crossed is no solution
 
 
 def _axes(name: str, joint: Joint, T_base_parent: Pose) -> list[tuple[bool, Axis, Vec3, Vec3]]:
-    """Return for each axis of a joint whether it slides, itself, its direction and a point, in the base at 0."""
+    """Return for each joint axis whether it is prismatic, the axis, its direction and a point, in the base frame."""
     if joint.mimic is not None or joint.kind == "spherical":
         what = "follows other joints" if joint.mimic is not None else "is spherical"
         raise ValueError(f"joint '{joint.name}' in {name} {what}: inverse kinematics needs joints of one value each")
@@ -73,11 +73,11 @@ def _axes(name: str, joint: Joint, T_base_parent: Pose) -> list[tuple[bool, Axis
 
 
 class ArmSolver:
-    """The solver of an arm, which is derived when it is first asked for, and again when the arm has changed.
+    """Solver cache of an arm: derives the solver on first use, and again if the arm has changed.
 
     Attributes:
-        task: What is asked for.
-        free: Joints of the chain to sample; None: as few as have to be.
+        task: The constrained components of the tool pose.
+        free: Joints of the chain to sample; None means as few as necessary.
     """
 
     def __init__(self, task: Task, free: Sequence[int] | None = None) -> None:
@@ -85,11 +85,11 @@ class ArmSolver:
         self._of: tuple[object, ...] = ()
         self._solver: ArmSolutions | None = None
 
-    def of(self, body: KinBody, manipulator: Manipulator) -> ArmSolutions:
-        """Return the solver, up to date; a change of limits needs no new one.
+    def solver_for(self, body: KinBody, manipulator: Manipulator) -> ArmSolutions:
+        """Return the solver for the present arm; changed limits do not require a new derivation.
 
         Raises:
-            ValueError: the arm is none that can be solved; the message says why.
+            ValueError: the arm cannot be solved; the message says why.
         """
         now = body.joints, body.passive_joints, manipulator
         if self._solver is None or any(old is not new for old, new in zip(self._of, now, strict=True)):
@@ -99,7 +99,7 @@ class ArmSolver:
         return self._solver
 
     def copy(self) -> "ArmSolver":
-        """Return another one for arms like this, which another thread may ask at the same time."""
+        """Return a copy that another thread can use for similar arms at the same time."""
         other = ArmSolver(self.task, self.free)
         if self._solver is not None:
             other._of = self._of
@@ -112,12 +112,12 @@ class ArmSolver:
             usual = default_free(chain, self.task.value, self.task.dof)
         solver = make_solver(chain, self.task, free=usual)
         if solver.closed is None and usual != self.free:
-            solver = make_solver(chain, self.task)  # other free joints may leave a family
+            solver = make_solver(chain, self.task)  # the arm with other free joints may belong to a family
         return replace(solver, steps=default_steps(chain, solver.free))
 
 
 def _with_limits(solver: ArmSolutions | None, chain: Chain) -> ArmSolutions | None:
-    """Return a solver with the limits of a chain; None if the chain differs in more than these."""
+    """Return a solver with the limits of a chain; None if other properties of the chain differ."""
     if solver is None or solver.chain.reach != chain.reach or solver.chain.dof != chain.dof:
         return None
     for part in ("axes", "points", "prismatic", "T_base_tool", "direction"):

@@ -1,7 +1,7 @@
-"""Chains: the joints of an arm as axes and points, its limits, and where its tool is.
+"""Kinematic chains: the joints of an arm as axes and points, its limits, and its tool.
 
-All is given in the frame of the base, where every joint value is 0 (the product of exponentials: R. W. Brockett, 1983).
-A chain knows no links and no file format.
+All quantities are in the base frame, at joint values of 0 (the product of exponentials: R. W. Brockett, 1983). A chain
+is independent of links and file formats.
 """
 
 import itertools
@@ -12,28 +12,30 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.caching import cached_property
-from ravemj.ik.vectors import Bools, Floats, skew
+from ravemj.ik.vectors import Bools, Floats, cross, skew
 
 Turns = Sequence[Floats] | Floats
-"""For each joint cosines and sines, shape (2, …), or distances, (1, …); one array where all joints are revolute."""
+"""Cosines and sines, shape (2, …), or distances, (1, …), of each joint; one array if all joints are revolute."""
 _IDENTITY = np.eye(3)
+_EXACT, _NEARLY = 1e-12, 1e-3
+"""Deviations of a rotation that are rounding errors, and that are small enough to correct."""
 _FEW = 128
-"""Number of configurations up to which calls of numpy take longer than its arithmetic."""
+"""Number of configurations up to which the overhead of numpy calls dominates."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Chain:
-    """Joints in series, from the base to the tool. Made by ``Chain.of``, which checks.
+    """Serial chain of joints from the base to the tool. ``Chain.of`` makes and checks it.
 
     Attributes:
-        axes: Unit vectors that the joints turn about or move along, shape (n, 3).
-        points: A point on each axis [m], shape (n, 3); those of prismatic joints mean nothing.
-        prismatic: Which joints move along their axis instead of turning about it, shape (n,).
+        axes: Unit vectors along the joint axes, shape (n, 3).
+        points: A point on each axis [m], shape (n, 3); arbitrary for prismatic joints.
+        prismatic: Whether each joint is prismatic, shape (n,).
         lower: Lower limits [rad or m], shape (n,).
         upper: Upper limits, shape (n,).
-        circular: Which joints turn without end, whatever their limits say, shape (n,).
+        circular: Whether each joint rotates without limits, shape (n,).
         T_base_tool: Pose of the tool, shape (4, 4).
-        direction: Unit vector that the tool points along, in its own frame, shape (3,).
+        direction: Direction of the tool, a unit vector in its own frame, shape (3,).
     """
 
     axes: Floats
@@ -58,13 +60,13 @@ class Chain:
         T_base_tool: ArrayLike | None = None,
         direction: ArrayLike = (0.0, 0.0, 1.0),
     ) -> "Chain":
-        """Make a chain of plain numbers; axes and the direction need not be unit vectors.
+        """Make a chain from arrays; axes and the direction need not be unit vectors.
 
-        Without limits, joints turn by ±pi or move by ±1 m.
+        Default limits are ±pi or ±1 m.
 
         Raises:
             ValueError: wrong shapes, numbers that are not finite, an axis of length 0, a lower limit above the upper
-                one, or a tool pose that is no rigid transform.
+                one, or a tool pose that is not a rigid transform.
         """
         directions = np.array(axes, dtype=float).reshape(-1, 3)
         count = len(directions)
@@ -107,24 +109,24 @@ class Chain:
 
     @cached_property
     def turning(self) -> Bools:
-        """Which joints turn, shape (n,)."""
+        """Mask of the revolute joints, shape (n,)."""
         return ~self.prismatic
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Limits, both of shape (n,), which circular joints do not have."""
+        """Limits, both of shape (n,); infinite for circular joints."""
         return np.where(self.circular, -np.inf, self.lower), np.where(self.circular, np.inf, self.upper)
 
     @cached_property
     def wide(self) -> list[int]:
-        """Joints with limits that can show a configuration in several turns."""
+        """Joints whose limits admit several turns of the same configuration."""
         span = self.upper - self.lower
         several = self.turning & ~self.circular & np.isfinite(span) & (span >= 2 * np.pi - 1e-9)
         return np.nonzero(several)[0].tolist()
 
     @cached_property
     def reach(self) -> float:
-        """Length of the chain [m]: the sum of distances from point to point and on to the tool; never 0."""
+        """Length of the chain [m]: the sum of distances between consecutive points and to the tool; never 0."""
         points = np.vstack([self.points[~self.prismatic], self.T_base_tool[:3, 3]])
         length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
         sliding = np.abs(np.stack([self.lower, self.upper]))[:, self.prismatic]
@@ -132,7 +134,7 @@ class Chain:
 
     @cached_property
     def _steps(self) -> list[Floats]:
-        """From the frame of each joint, whose z is its axis, to the next, transposed; the first starts at the base."""
+        """Transposed rotations between consecutive joint frames, whose z are the axes; the first starts at the base."""
         frames = [np.eye(4)]
         for axis, point in zip(self.axes, self.points, strict=True):
             side = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
@@ -145,7 +147,7 @@ class Chain:
         return [np.array(step.T, dtype=float, order="C") for step in steps]
 
     def _frames(self, turns: Turns) -> list[Floats]:
-        """Return the frames of the joints before their motions, and the tool: x, y, z and origin (4, 3, M)."""
+        """Return the joint frames before their motions, and the tool frame: x, y, z and origin (4, 3, M)."""
         count = turns[0].shape[-1] if len(turns) else 1
         frame = np.repeat(self._steps[0][:, :3, None], count, axis=2)
         frames = [frame]
@@ -165,7 +167,7 @@ class Chain:
 
     @cached_property
     def _motions(self) -> Floats:
-        """For each joint its motion as matrices times 1, cosine and sine, or 1, value and 0, shape (n, 3, 16)."""
+        """Joint motions as matrices that multiply 1, cosine and sine, or 1, value and 0, shape (n, 3, 16)."""
         motions = np.zeros((self.dof, 3, 4, 4))
         for motion, axis, point, sliding in zip(motions, self.axes, self.points, self.prismatic.tolist(), strict=True):
             motion[0, 3, 3] = 1
@@ -179,7 +181,7 @@ class Chain:
         return motions.reshape(self.dof, 3, 16)
 
     def _few_tool_columns(self, turns: Turns) -> Floats:
-        """As ``tool_columns``, in fewer calls of numpy, with more arithmetic."""
+        """Same as ``tool_columns``, with fewer numpy calls and more arithmetic."""
         count = turns[0].shape[-1]
         factors = np.zeros((self.dof, 3, count))
         factors[:, 0] = 1
@@ -219,28 +221,34 @@ class Chain:
     def forward_and_jacobian(self, values: Floats) -> tuple[Floats, Floats]:
         """Return tool columns (4, 3, M) and Jacobians (M, 6, n) for joint values (M, n).
 
-        A Jacobian's first rows are the velocity of the tool's origin, its last the angular velocity, in base axes.
+        The first three rows of a Jacobian are the linear velocity of the tool's origin, the others the angular
+        velocity, in base axes.
         """
         frames = self._frames(self.turns(values))
-        tool = frames[-1]
-        jacobians = np.zeros((len(values), 6, self.dof))
-        for joint, sliding in enumerate(self.prismatic.tolist()):
-            axis = frames[joint][2]
-            if sliding:
-                jacobians[:, :3, joint] = axis.T
-            else:
-                arm = tool[3] - frames[joint][3]
-                jacobians[:, :3, joint] = np.cross(axis, arm, axis=0).T
-                jacobians[:, 3:, joint] = axis.T
+        tool, jacobians = frames[-1], np.zeros((len(values), 6, self.dof))
+        if self.dof:
+            placed, turning = np.array(frames[:-1]).transpose(1, 2, 0, 3), ~self.prismatic[:, None]
+            axes = placed[2]  # shape (3, n, M)
+            arms = tool[3][:, None] - placed[3]
+            jacobians[:, :3] = np.where(turning, cross(axes, arms), axes).transpose(2, 0, 1)
+            jacobians[:, 3:] = np.where(turning, axes, 0.0).transpose(2, 0, 1)
         return tool, jacobians
 
     def placed_axes(self, values: Floats) -> tuple[Floats, Floats]:
-        """Return the axes and a point on each, both (n, M, 3), in the configurations of joint values (M, n)."""
+        """Return the axes and a point on each, both (n, M, 3), at joint values (M, n)."""
         frames = np.array(self._frames(self.turns(values))[:-1])
         return frames[:, 2].transpose(0, 2, 1), frames[:, 3].transpose(0, 2, 1)
 
+    def differences(self, values: Floats, others: Floats) -> Floats:
+        """Return the largest joint difference between configurations (..., n), shape (...), regardless of turns.
+
+        Revolute joints are measured by a chord of the unit circle, prismatic ones in units of the reach.
+        """
+        away = values - others
+        return np.abs(np.where(self.prismatic, away / self.reach, 2 * np.sin(away / 2))).max(axis=-1, initial=0.0)
+
     def locked(self, joint: int, value: float) -> "Chain":
-        """Return the chain without a joint, which stays at a value."""
+        """Return the chain with one joint fixed at a value and removed."""
         motion = self.motion(joint, value)
         rest = np.arange(self.dof) != joint
         beyond = np.arange(self.dof) > joint
@@ -259,7 +267,7 @@ class Chain:
         )
 
     def motion(self, joint: int, value: float) -> Floats:
-        """Return the rigid motion, shape (4, 4), that a joint makes (O. Rodrigues' formula)."""
+        """Return the rigid motion of a joint, shape (4, 4) (O. Rodrigues' formula)."""
         motion = np.eye(4)
         axis, point = self.axes[joint], self.points[joint]
         if self.prismatic[joint]:
@@ -271,17 +279,49 @@ class Chain:
         return motion
 
 
-def check_poses(poses: Floats) -> None:
-    """Check that poses, shape (..., 4, 4), are rigid transforms.
+def rigid_poses(poses: Floats) -> Floats:
+    """Return poses, shape (..., 4, 4), with slightly inaccurate rotations replaced by the nearest rotations.
+
+    The nearest rotation is the orthogonal factor of the polar decomposition (N. J. Higham, 1986).
 
     Raises:
-        ValueError: wrong shape, numbers that are not finite, a rotation off by more than 1e-6, or a mirror.
+        ValueError: wrong shape, numbers that are not finite, a rotation R with |R^T R - I| above 1e-3, or a reflection.
+    """
+    error = check_poses(poses, _NEARLY)
+    if error <= _EXACT:
+        return poses
+    left, _, right = np.linalg.svd(poses[..., :3, :3])
+    rigid = poses.copy()
+    rigid[..., :3, :3] = left @ right
+    return rigid
+
+
+def check_poses(poses: Floats, most: float = 1e-6) -> float:
+    """Check that poses, shape (..., 4, 4), are rigid transforms, and return their error.
+
+    Args:
+        poses: The poses.
+        most: Maximum entry of R^T R - I of a rotation R.
+
+    Returns:
+        The largest such entry.
+
+    Raises:
+        ValueError: wrong shape, numbers that are not finite, a rotation with a larger error, or a reflection.
     """
     if poses.shape[-2:] != (4, 4):
         raise ValueError(f"poses of shape {poses.shape}: expected (..., 4, 4)")
     if not np.isfinite(poses).all():
         raise ValueError("a pose is not finite")
     rotations = poses[..., :3, :3]
-    error = np.abs(np.swapaxes(rotations, -1, -2) @ rotations - _IDENTITY).max(initial=0.0)
-    if error > 1e-6 or (np.linalg.det(rotations) < 0).any() or (poses[..., 3, :] != (0.0, 0.0, 0.0, 1.0)).any():
-        raise ValueError("a pose is not a rigid transform: its rotation has scale, shear or a mirror in it")
+    error = float(np.abs(np.swapaxes(rotations, -1, -2) @ rotations - _IDENTITY).max(initial=0.0))
+    wrong = ""
+    if (poses[..., 3, :] != (0.0, 0.0, 0.0, 1.0)).any():
+        wrong = "its last row is not 0 0 0 1"
+    elif (np.linalg.det(rotations) < 0).any():
+        wrong = "its rotation has a mirror in it"
+    elif error > most:
+        wrong = f"its rotation has scale or shear in it: R^T R differs from I by {error:.2g}, more than {most:g}"
+    if wrong:
+        raise ValueError(f"a pose is not a rigid transform: {wrong}")
+    return error

@@ -1,5 +1,6 @@
-"""Closed-form solvers: a family's answers, checked by forward kinematics of the true arm, and refined."""
+"""Closed-form solvers: solutions of a family, checked by forward kinematics of the true arm, and refined."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 from string import ascii_lowercase
@@ -15,57 +16,79 @@ from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Bools, Floats, Ints, Transform, cross, tile
 
 EXACT = 1e-10
-"""A solution with a larger error is refined by Newton's method."""
+"""Error above which a solution is refined by Newton's method."""
 ACCURATE = 1e-9
-"""What has a larger error after that is no solution."""
+"""Error above which a refined candidate is rejected."""
 _CHUNK = 1536
-"""So many poses at once: few enough that the arrays stay in the processor's cache."""
+"""Maximum number of poses per batch, so that the arrays fit into the processor's cache."""
 _MARGIN = 0.05
+"""Largest excess of an unrefined solution over the limits [rad or m]; refinement moves solutions less than that."""
 _SAME = 1e-5
-"""Solutions whose values differ by less are one."""
+"""Tolerance of equal solutions."""
 _STEPS = 12
+"""Maximum number of Newton steps."""
+_SETTLED, _SLOWEST = 3, 0.5
+"""Steps after which each must reduce the error by this factor; at double roots Newton reaches a quarter."""
 
 
 @dataclass(frozen=True, eq=False)
 class Solutions:
-    """Solutions for many poses.
+    """Solutions of many poses.
 
     Attributes:
-        values: Joint values, shape (N, B, n), angles in [-pi, pi]; rows that are no solutions have any numbers.
-        valid: Which rows are solutions, shape (N, B).
-        merged: For which poses equal solutions were made one, shape (N,): those of singular configurations.
+        values: Joint values, shape (N, B, n), angles in [-pi, pi]; invalid rows have arbitrary values.
+        valid: Whether each row is a solution, shape (N, B).
+        merged: Whether equal solutions of a pose were merged, shape (N,), as in singular configurations.
+        errors: Error of each branch before its refinement [units of the reach, and rad], shape (N, B).
     """
 
     values: Floats
     valid: Bools
     merged: Bools
+    errors: Floats
 
     def __len__(self) -> int:
         return len(self.values)
 
     def of(self, pose: int) -> Floats:
-        """Return the solutions for one of the poses, shape (K, n)."""
+        """Return the solutions of one pose, shape (K, n)."""
         return self.values[pose][self.valid[pose]]
+
+    def only(self, pose: int) -> "Solutions":
+        """Return the solutions for one of the poses as those for a single pose."""
+        one = slice(pose, pose + 1)
+        return Solutions(self.values[one], self.valid[one], self.merged[one], self.errors[one])
+
+    @classmethod
+    def joined(cls, parts: Sequence["Solutions"]) -> "Solutions":
+        """Concatenate the solutions of several batches of poses."""
+        return cls(
+            np.concatenate([part.values for part in parts]),
+            np.concatenate([part.valid for part in parts]),
+            np.concatenate([part.merged for part in parts]),
+            np.concatenate([part.errors for part in parts]),
+        )
 
     @property
     def rows(self) -> tuple[Floats, Ints, Ints]:
-        """All solutions, shape (K, n), with the index of the pose and that of the branch, shape (K,)."""
+        """All solutions, shape (K, n), with their pose and branch indices, shape (K,)."""
         pose, branch = np.nonzero(self.valid)
         return self.values[pose, branch], pose, branch
 
 
 class ClosedForm:
-    """A solver by a family; locked joints have values that come with each goal.
+    """Closed-form solver of a family; the values of locked joints are given with each goal.
 
     Attributes:
         chain: The true arm.
-        task: What of the pose counts.
+        task: The constrained components of the pose.
         family: The family.
-        near: The greatest error with which what the family says is worth a refinement.
+        near: Maximum error of the family's solutions that are refined.
     """
 
     def __init__(self, chain: Chain, task: Task, family: Family, *, snapped: bool) -> None:
         self.chain, self.task, self.family = chain, task, family
+        # snapped geometry and quartics give inaccurate solutions, other families only rounding errors
         self.near = 0.03 if snapped or family.coupled else 1e-4
         self._tool = np.linalg.inv(chain.T_base_tool)
         joints = family.arm.joints
@@ -74,18 +97,19 @@ class ClosedForm:
         self._scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
         self._rows = np.array(task.rows)
         places = [(row in task.rows) / chain.reach**2 for row in range(3)]
+        # half of the squared differences of three axes is the squared angle; positions alone leave rotations out
         self._counts = np.array([0.5 * (max(task.rows) > 2)] * 9 + places)
         self._order = [index for index, _ in sorted(self._answers, key=lambda answer: answer[1])]
-        self._one_pose = OnePose.of(family)
+        self._one_pose = OnePose.for_family(family)
 
     @property
     def locked(self) -> list[int]:
-        """The joints whose values are given."""
+        """The locked joints, whose values are given."""
         return sorted(self._locked)
 
     @cached_property
     def branch_names(self) -> list[str]:
-        """A name for each branch: for every choice the joint, counted from 1, and which of its solutions."""
+        """A name for each branch: for each choice the joint, counted from 1, and the number of its solution."""
         names = [""]
         for place, count in self.family.names():
             joint = self.family.arm.joints[place]
@@ -96,27 +120,30 @@ class ClosedForm:
         return names
 
     def solve(self, poses: Floats, locked: Floats | None = None, *, limits: bool = False) -> Solutions:
-        """Return all solutions, whatever the limits, or at least those within them.
+        """Return all solutions; with ``limits``, some outside of the limits may be omitted.
 
         Args:
             poses: Poses of the tool in the base, shape (N, 4, 4).
             locked: Values of the locked joints, shape (N, k).
-            limits: Whether solutions far from the limits may be left out, where they would have to be refined.
+            limits: Whether to omit solutions far outside the limits instead of refining them.
         """
         given = np.zeros((len(poses), 0)) if locked is None else locked
         branches = len(self.branch_names)
         values = np.zeros((self.chain.dof, branches, len(poses)))
         valid = np.zeros((branches, len(poses)), dtype=bool)
-        merged = np.zeros(len(poses), dtype=bool)
+        merged, errors = np.zeros(len(poses), dtype=bool), np.zeros(valid.shape)
         with np.errstate(all="ignore"):
             for first in range(0, len(poses), _CHUNK):
                 part = slice(first, first + _CHUNK)
                 turns = self._turns(poses[part], given[part], valid[:, part].shape)
-                self._check(poses[part], turns, values[..., part], valid[:, part], merged[part], limits=limits)
-        return Solutions(values.transpose(2, 1, 0), valid.T, merged)
+                parts = values[..., part], valid[:, part], merged[part]
+                errors[:, part] = self._check(poses[part], turns, *parts, limits=limits)
+        return Solutions(values.transpose(2, 1, 0), valid.T, merged, errors.T)
 
-    def _check(self, poses: Floats, turns: Turns, values: Floats, valid: Bools, merged: Bools, *, limits: bool) -> None:
-        """Fill in values, and which of them are solutions, for what the family says."""
+    def _check(
+        self, poses: Floats, turns: Turns, values: Floats, valid: Bools, merged: Bools, *, limits: bool
+    ) -> Floats:
+        """Fill in values and validity of the family's solutions; return their errors."""
         if isinstance(turns, np.ndarray):
             np.arctan2(turns[:, 1], turns[:, 0], out=values)
         else:
@@ -133,14 +160,15 @@ class ClosedForm:
             self._refine(doubtful, goal, values, valid)
             turns = self.chain_turns(values)
         _merge(np.concatenate(turns), valid, merged)
+        return error
 
     def chain_turns(self, values: Floats) -> list[Floats]:
-        """Return values of shape (n, B, N) as turns (2, B, N) and distances (1, B, N)."""
+        """Convert joint values of shape (n, B, N) to turns (2, B, N) and distances (1, B, N)."""
         flat = self.chain.turns(values.reshape(len(values), -1).T)
         return [turn.reshape(len(turn), *values.shape[1:]) for turn in flat]
 
     def _turns(self, poses: Floats, locked: Floats, shape: tuple[int, ...]) -> Turns:
-        """Return what the family says for each joint of the chain, turns (2, B, N) or distances (1, B, N)."""
+        """Return the family's solution for each joint of the chain, turns (2, B, N) or distances (1, B, N)."""
         if self._one_pose is not None and len(poses) == 1:
             return self._turns_of_one(poses[0], self._one_pose)
         reach = self.chain.reach
@@ -159,7 +187,7 @@ class ClosedForm:
         return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
 
     def _turns_of_one(self, pose: Floats, solver: OnePose) -> Floats:
-        """Return what the family says for one pose, found by another way of computing it, shape (6, 2, B, 1)."""
+        """Return the family's solution of a single pose, computed in plain floats, shape (6, 2, B, 1)."""
         motion = pose @ self._tool
         motion[:3, 3] /= self.chain.reach
         x, y, z, _ = motion.tolist()
@@ -169,7 +197,7 @@ class ClosedForm:
         return turns[:, self._order].transpose(1, 2, 0)[..., None]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
-        """Return the motion that the joints have to make, or the place where the tool has to be, in units of reach."""
+        """Return the required motion of the joints, or the required tool position, in units of the reach."""
         whole = self.task in (Task.TRANSFORM, Task.PLANAR)
         motion = poses @ self._tool if whole else poses
         rotation = np.ascontiguousarray(motion[:, :3, :3].transpose(1, 2, 0))[:, :, None]
@@ -177,30 +205,30 @@ class ClosedForm:
         return self.family.arm.trimmed(transform, locked) if whole and locked else transform
 
     def _error(self, tool: Floats, goal: Floats) -> Floats:
-        """Return the error of tool columns: the length of the differences, in units of the reach and in radians."""
+        """Return the error of tool columns: the norm of the differences [units of the reach, and rad]."""
         away = tool - goal
         away *= away
         return np.sqrt((self._counts @ away.reshape(12, -1)).reshape(away.shape[2:]))
 
     def errors(self, values: Floats, poses: Floats) -> Floats:
-        """Return the errors of values (M, n) for poses (M, 4, 4), in units of the reach and in radians."""
+        """Return the errors of values (M, n) for poses (M, 4, 4) [units of the reach, and rad]."""
         tool = self.chain.tool_columns(self.chain.turns(values))
         return self._error(tool, poses[:, :3].transpose(2, 1, 0))
 
     def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> None:
-        """Refine solutions with Newton's method, and say which reach their pose."""
+        """Refine solutions with Newton's method, and mark those that reach their pose as valid."""
         branch, pose = np.nonzero(doubtful)
         start = values[:, branch, pose].T
         refined, error = self.refine(start, goal[:, :, pose])
-        near = np.abs(refined - start).max(axis=1) < 0.5
+        near = np.abs(refined - start).max(axis=1) < 0.5  # farther ones are solutions of other branches
         good = (error <= ACCURATE) & near
         values[:, branch[good], pose[good]] = refined[good].T
         valid[branch[good], pose[good]] = True
 
     def refine(self, values: Floats, goal: Floats) -> tuple[Floats, Floats]:
-        """Improve values (M, n) for tool columns (4, 3, M) by damped Newton steps; return them and their errors (M,).
+        """Refine values (M, n) for tool columns (4, 3, M) by damped Newton steps; return them and their errors (M,).
 
-        Locked joints stay.
+        Locked joints keep their values.
         """
         chain, free = self.chain, [joint for joint in range(self.chain.dof) if joint not in self._locked]
         values = values.copy()
@@ -208,9 +236,11 @@ class ClosedForm:
         active = np.arange(len(values))
         for step in range(_STEPS):
             tool, jacobians = chain.forward_and_jacobian(values[active])
-            target = goal[:, :, active]
+            target, before = goal[:, :, active], errors[active]
             errors[active] = self._error(tool, target)
             active_again = errors[active] > EXACT / 10
+            if step >= _SETTLED:
+                active_again &= errors[active] < _SLOWEST * before
             if step == _STEPS - 1 or not active_again.any():
                 break
             turned = cross(tool[0], target[0]) + cross(tool[1], target[1]) + cross(tool[2], target[2])
@@ -218,6 +248,7 @@ class ClosedForm:
             jacobians = jacobians * self._scale[:, None]
             part = jacobians[active_again][:, self._rows][:, :, free]
             square: Floats = part.swapaxes(1, 2) @ part
+            # damping that keeps singular systems solvable, too small to slow the convergence of others
             square += 1e-13 * np.eye(len(free)) * (1 + np.trace(square, axis1=1, axis2=2)[:, None, None])
             pull: Floats = part.swapaxes(1, 2) @ missing[active_again][:, self._rows, None]
             active = active[active_again]
@@ -229,7 +260,7 @@ class ClosedForm:
 
 
 def _flat(turns: Turns) -> Turns:
-    """Return turns and distances with branches and poses as one axis."""
+    """Flatten branches and poses of turns and distances into one axis."""
     if isinstance(turns, np.ndarray):
         return turns.reshape(*turns.shape[:2], -1)
     return [turn.reshape(len(turn), -1) for turn in turns]
@@ -240,7 +271,7 @@ def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
 
 
 def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
-    """Keep one of equal solutions, where two axes or two branches fall together.
+    """Merge equal solutions, where two axes or two branches coincide.
 
     ``parts`` are cosines, sines and distances of all joints, shape (K, B, N); ``valid`` (B, N) and ``merged`` (N,) are
     changed. Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.

@@ -1,4 +1,4 @@
-"""From a chain to a solver in closed form that has proved itself, or to the reasons why there is none."""
+"""Derivation of a validated closed-form solver from a chain, or of the reasons why there is none."""
 
 import itertools
 from collections.abc import Sequence
@@ -14,21 +14,21 @@ from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats
 
 SAMPLES = 64
-"""Configurations of a certificate."""
+"""Number of configurations in a validation."""
 _FEW = 8
 _SOLVED = (Task.TRANSFORM, Task.PLACE, Task.PLACE_XY, Task.PLANAR)
-"""What families solve; ``reductions`` leads other tasks to these."""
+"""Tasks that families solve; ``reductions`` reduces other tasks to these."""
 _TRIED = 32
-"""Families that are tried, at most, for one choice of locked joints."""
+"""Maximum number of families tried for one choice of locked joints."""
 
 
 @dataclass(frozen=True)
-class Certificate:
-    """What a solver did with random configurations.
+class Validation:
+    """Result of validating a solver on random configurations.
 
     Attributes:
-        configurations: How many there were.
-        found: In how many cases the configuration was among the solutions.
+        configurations: Number of configurations.
+        found: Number of configurations found among the solutions.
         error: The worst error of a solution, in units of the reach and in radians.
         solutions: The mean number of solutions.
     """
@@ -40,14 +40,14 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """Whether nothing was missed."""
+        """Whether all configurations were found accurately."""
         return self.found == self.configurations and self.error <= 1e-9
 
 
-def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Certificate:
-    """Ask a solver for the poses of random configurations, and look for these among its answers.
+def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Validation:
+    """Validate a solver: solve the poses of random configurations, and look for these among the solutions.
 
-    Joints turn by up to ±pi whatever their limits, as a solver in closed form knows none.
+    Angles are in ±pi regardless of limits, since closed-form solvers ignore limits.
     """
     chain = solver.chain
     values = random_values(chain, count, np.random.default_rng(seed))
@@ -58,11 +58,11 @@ def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Cert
     near = (np.abs(away).max(axis=2, initial=0.0) < 1e-5) & solutions.valid
     rows, pose, _ = solutions.rows
     error = solver.errors(rows, poses[pose]).max(initial=0.0)
-    return Certificate(count, int(near.any(axis=1).sum()), float(error), len(rows) / count)
+    return Validation(count, int(near.any(axis=1).sum()), float(error), len(rows) / count)
 
 
 def random_values(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
-    """Return joint values, shape (count, n): any angle, and distances within the limits."""
+    """Return random joint values, shape (count, n): any angle, and distances within the limits."""
     bound = np.where(chain.prismatic, chain.reach, np.pi)
     low = np.where(chain.prismatic & np.isfinite(chain.lower), np.maximum(chain.lower, -bound), -bound)
     high = np.where(chain.prismatic & np.isfinite(chain.upper), np.minimum(chain.upper, bound), bound)
@@ -71,17 +71,17 @@ def random_values(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
 
 def derive(
     chain: Chain, task: Task = Task.TRANSFORM, locked: Sequence[int] = (), *, general: bool = False
-) -> tuple[ClosedForm, Certificate] | None:
-    """Find a solver in closed form, and prove it.
+) -> tuple[ClosedForm, Validation] | None:
+    """Find and validate a closed-form solver.
 
     Args:
         chain: The arm.
-        task: What is asked for.
-        locked: Joints whose values will be given; as many others are left as the task fixes, or fewer.
-        general: Whether to try the eigenvalue problem of general arms, instead of the families of special ones.
+        task: The constrained components of the tool pose.
+        locked: Joints whose values will be given; at most as many others remain as the task constrains.
+        general: Whether to try the eigenvalue problem of general arms, instead of the special families.
 
     Returns:
-        The solver and its certificate; None where no family fits.
+        The solver and its certificate; None if no family fits.
     """
     free = [joint for joint in range(chain.dof) if joint not in locked]
     if task not in _SOLVED:
@@ -101,19 +101,19 @@ def derive(
     return None
 
 
-def _prove(solver: ClosedForm) -> Certificate | None:
-    """Return a certificate that holds, if there is one; a few configurations are asked for first."""
+def _prove(solver: ClosedForm) -> Validation | None:
+    """Return a successful certificate, or None; a few configurations are tested first."""
     try:
         if certify(solver, count=_FEW).holds:
             certificate = certify(solver)
             return certificate if certificate.holds else None
-    except np.linalg.LinAlgError:  # nothing but singular matrices
+    except np.linalg.LinAlgError:  # only singular matrices
         pass
     return None
 
 
 def _regular(chain: Chain, task: Task, free: Sequence[int]) -> bool:
-    """Return whether the joints move the tool independently: solutions are then finite in number."""
+    """Return whether the joints move the tool independently, so that the number of solutions is finite."""
     values = random_values(chain, 4, np.random.default_rng(4))
     _, jacobians = chain.forward_and_jacobian(values)
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -123,13 +123,13 @@ def _regular(chain: Chain, task: Task, free: Sequence[int]) -> bool:
 
 
 def _is_planar(chain: Chain, free: Sequence[int]) -> bool:
-    """Return whether the joints move a plane of x and y in itself; locked sliders may lift it."""
+    """Return whether the free joints keep the tool in an xy plane; locked prismatic joints may lift it."""
     upright = np.abs(chain.axes[:, 2])
     lifted = np.isin(np.arange(chain.dof), free, invert=True)
     return bool(np.where(chain.prismatic, (upright < 1e-9) | lifted, upright > 1 - 1e-12).all())
 
 
 def _sideways(exact: Chain, chain: Chain) -> float:
-    """Return how far revolute axes were moved, in units of the reach."""
+    """Return the largest displacement of revolute axes from their true positions, in units of the reach."""
     away = np.cross(exact.points - chain.points / chain.reach, exact.axes)[~chain.prismatic]
     return float(np.abs(away).max(initial=0.0))

@@ -1,4 +1,4 @@
-"""Whole turns: which angles that show the same configuration are within the limits of an arm."""
+"""Whole turns: equivalent angles within the limits of an arm."""
 
 import itertools
 from math import ceil, floor
@@ -6,25 +6,25 @@ from math import ceil, floor
 import numpy as np
 
 from ravemj.ik.chain import Chain
-from ravemj.ik.vectors import Bools, Floats
+from ravemj.ik.vectors import Bools, Floats, Ints
 
 TOLERANCE = 1e-10
-"""How far [rad or m] values may be beyond a limit; they are put onto it."""
+"""Tolerance of limits [rad or m]; values within it are clamped."""
 _TURN = 2 * np.pi
 
 
 def nearest_turns(
     chain: Chain, values: Floats, near: Floats | float = 0.0, *, tolerance: float = TOLERANCE
 ) -> tuple[Floats, Bools]:
-    """Move revolute joints by whole turns to where they are within their limits, and as near as possible to others.
+    """Shift revolute joints by whole turns into their limits, as near as possible to reference values.
 
-    Circular joints have no limits; they come to [-pi, pi], so that their distance is that of angles.
+    Circular joints have no limits; they are wrapped to [-pi, pi].
 
     Args:
         chain: The arm.
         values: Joint values, shape (..., n).
-        near: Joint values to be near to, which broadcast against them.
-        tolerance: How far values may be beyond a limit.
+        near: Reference joint values, which broadcast against them.
+        tolerance: Tolerance of limits.
 
     Returns:
         The values, and for each row whether all are within the limits, shape (...).
@@ -40,14 +40,35 @@ def nearest_turns(
     return np.minimum(np.maximum(moved, lower), upper), np.logical_and.reduce(good, axis=-1)
 
 
-def all_turns(chain: Chain, values: Floats) -> Floats:
-    """Return all rows (K, n) that show the configurations of given rows and are within the limits.
+def beyond_limits(chain: Chain, values: Floats) -> Floats:
+    """Return the largest excess over limits in rows (..., n) [rad, or units of the reach], shape (...).
 
-    A revolute joint with a range of more than a turn gives several values, circular joints one, in [-pi, pi].
+    Angles are measured to the nearer limit, regardless of turns. Values within the tolerance of ``nearest_turns`` have
+    none.
     """
     lower, upper = chain.bounds
+    below, above = lower - values, values - upper
+    with np.errstate(invalid="ignore"):
+        turned = np.minimum(np.mod(below, _TURN), np.mod(above, _TURN))
+        fits = np.ceil((below - TOLERANCE) / _TURN) <= np.floor((TOLERANCE - above) / _TURN)
+    turned = np.where(fits, 0.0, turned)
+    slid = np.maximum(np.maximum(below, above) - TOLERANCE, 0.0) / chain.reach
+    return np.where(chain.prismatic, slid, turned).max(axis=-1, initial=0.0)
+
+
+def all_turns(chain: Chain, values: Floats) -> Floats:
+    """Return all equivalents within the limits, shape (K, n), of given configurations.
+
+    A revolute joint with a range of more than a turn has several values, a circular joint one, in [-pi, pi].
+    """
+    return all_turns_with_sources(chain, values)[0]
+
+
+def all_turns_with_sources(chain: Chain, values: Floats) -> tuple[Floats, Ints]:
+    """Return the rows of ``all_turns``, and the index of the given row of each, shape (K,)."""
+    lower, upper = chain.bounds
     first, inside = nearest_turns(chain, values)
-    rows = first[inside]
+    rows, sources = first[inside], np.flatnonzero(inside)
     for joint in chain.wide:
         low, high = float(lower[joint]), float(upper[joint])
         steps = [
@@ -57,13 +78,13 @@ def all_turns(chain: Chain, values: Floats) -> Floats:
         counts = list(map(len, steps))
         if any(count > 1 for count in counts):
             turns = np.array(list(itertools.chain.from_iterable(steps)))
-            rows = np.repeat(rows, counts, axis=0)
+            rows, sources = np.repeat(rows, counts, axis=0), np.repeat(sources, counts)
             rows[:, joint] = np.minimum(np.maximum(rows[:, joint] + _TURN * turns, low), high)
-    return rows
+    return rows, sources
 
 
 def distances(chain: Chain, values: Floats, start: Floats, weights: Floats | None = None) -> Floats:
-    """Return weighted distances (...) of joint values (..., n) from others; circular joints take the shorter way."""
+    """Return weighted distances (...) of joint values (..., n) from others; circular joints take the shorter arc."""
     away = values - start
     away = np.where(chain.circular, np.mod(away + np.pi, _TURN) - np.pi, away)
     return np.sqrt((away * away * (1.0 if weights is None else weights * weights)).sum(axis=-1))

@@ -1,10 +1,9 @@
 """Numeric inverse kinematics: damped least squares within limits, from many starts.
 
-A step is that of K. Levenberg and D. Marquardt with a damping in proportion to the error that is left (T. Sugihara,
-"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). A step that would go beyond
-limits is the best one within them instead, by MuJoCo's solver of quadratic programs. One start finds a solution in 60
-to 90 of 100 cases, so starts follow each other in a sequence that fills the space of joint values evenly (M. Roberts,
-2018, after R. Kronecker).
+A step is that of K. Levenberg and D. Marquardt with damping proportional to the remaining error (T. Sugihara,
+"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). If a step would violate limits,
+MuJoCo's QP solver computes the best one within them. A start succeeds in 60 to 90 % of cases, so starts follow a
+low-discrepancy sequence in joint space (M. Roberts, 2018, after R. Kronecker).
 """
 
 import itertools
@@ -15,25 +14,27 @@ import numpy as np
 
 from ravemj.ik.chain import Chain
 from ravemj.ik.limits import nearest_turns
-from ravemj.ik.residuals import ToolMotion, residual_and_jacobian, rotation_between
-from ravemj.ik.tasks import Task
+from ravemj.ik.residuals import ToolState, component_rows, residual_and_jacobian, rotation_between
+from ravemj.ik.tasks import ANGLES, Task
 from ravemj.ik.vectors import Floats
 
 ACCURATE = 1e-9
-"""The error, in units of the reach and in radians, below which a configuration is a solution."""
+"""Error, in units of the reach and in radians, below which a configuration is a solution."""
 _STEPS = 40
 _NEAREST_STEPS = 100
-_DISTINCT = 1e-3
+_PLAIN = np.ones(6)
+DISTINCT = 1e-3
+"""Tolerance of equal solutions."""
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """The configuration that comes nearest to a pose.
+    """Configuration nearest to a pose.
 
     Attributes:
         values: Joint values, shape (n,).
-        error: The weighted error that is left, in units of the reach and in radians.
-        steps: How many steps it took.
+        error: The remaining weighted error [units of the reach, and rad].
+        steps: Number of steps.
     """
 
     values: Floats
@@ -42,12 +43,12 @@ class Nearest:
 
 
 class NumericSolver:
-    """Searches configurations for poses, one after the other.
+    """Numeric solver of single poses.
 
     Attributes:
         chain: The arm.
-        task: What of the pose counts.
-        starts: How many starts a search has at most.
+        task: The constrained components of the pose.
+        starts: Maximum number of starts of a search.
     """
 
     def __init__(
@@ -69,10 +70,10 @@ class NumericSolver:
         self._identity = np.eye(chain.dof)
 
     def descend(self, pose: Floats, start: Floats) -> Nearest:
-        """Follow the error of a pose (4, 4) from a start (n,), to a solution or to where it stays."""
+        """Reduce the error of a pose (4, 4) from a start (n,), until it is solved or stalls."""
         values = np.minimum(np.maximum(start, self._lowest), self._highest)
         best, at, stalled, step = np.inf, values, 0, 0
-        for step in range(_STEPS):  # noqa: B007 - it is in the answer
+        for step in range(_STEPS):  # noqa: B007 - it is in the result
             error, jacobian = self._residual(pose, values, self._scale)
             square = float(error @ error)
             stalled = 0 if square < best * 0.98 else stalled + 1
@@ -83,11 +84,23 @@ class NumericSolver:
             values = self._step(values, error, jacobian, 0.05 * square + 1e-12)
         return Nearest(at, float(np.sqrt(best)), step + 1)
 
+    def shortfall(self, pose: Floats, values: Floats) -> tuple[float, float]:
+        """Return the distance [m] and angle [rad] between joint values (n,) and a pose, as far as constrained."""
+        error, _ = self._residual(pose, values, _PLAIN)
+        turning = np.array(component_rows(self.task)) > 2
+        distance, turn = float(np.linalg.norm(error[~turning])), float(np.linalg.norm(error[turning]))
+        if self.task in ANGLES:
+            cosine = (pose[:3, :3] @ self.chain.direction)[ANGLES[self.task]]
+            turn = float(np.abs(np.subtract(*np.arccos(np.clip([cosine, cosine - error[turning][0]], -1, 1)))))
+        elif self.task not in (Task.TRANSFORM, Task.ROTATION, Task.PLANAR):  # chord between two directions
+            turn = 2 * float(np.arcsin(min(turn / 2, 1.0)))
+        return distance, turn
+
     def _residual(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
-        """Return the scaled error of a configuration and how it changes with the joint values."""
+        """Return the scaled error of a configuration and its Jacobian."""
         rotation, place, jacobian = self._kinematics(values)
         if self.task is not Task.TRANSFORM:
-            return residual_and_jacobian(self.chain, self.task, pose, ToolMotion(rotation, place, jacobian), scale)
+            return residual_and_jacobian(self.chain, self.task, pose, ToolState(rotation, place, jacobian), scale)
         missing = np.empty(6)
         missing[:3] = pose[:3, 3] - place
         missing[3:] = rotation_between(rotation, pose)
@@ -105,13 +118,13 @@ class NumericSolver:
         return ahead
 
     def start(self, number: int) -> Floats:
-        """Return one of the starts, shape (n,), which fill the range of joint values evenly."""
+        """Return a start by its number, shape (n,), from a low-discrepancy sequence."""
         return self._low + (self._high - self._low) * _evenly(self.chain.dof, number)
 
     def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:
-        """Return one solution within the limits, shape (n,), or None where no start finds any.
+        """Return one solution within the limits, shape (n,), or None if no start finds any.
 
-        The starts are a seed, if one is given, and others up to a number, by default as many as the solver has.
+        The first start is the seed, if given; ``starts`` defaults to the solver's number.
         """
         for number in range(self.starts if starts is None else starts):
             start = seed if seed is not None and number == 0 else self.start(number)
@@ -122,36 +135,32 @@ class NumericSolver:
         return None
 
     def solve_all(self, pose: Floats) -> Floats:
-        """Return the solutions within the limits that the starts find, shape (K, n); there may be more."""
+        """Return the solutions within the limits found from all starts, shape (K, n); it may miss some."""
         rows: list[Floats] = []
         for number in range(self.starts):
             found = self.descend(pose, self.start(number))
             if found.error < ACCURATE:
                 values, inside = nearest_turns(self.chain, found.values)
                 values = values if inside else found.values
-                if all(self._distance(values, other) > _DISTINCT for other in rows):
+                if all(self.chain.differences(values, other) > DISTINCT for other in rows):
                     rows.append(values)
         return np.array(rows).reshape(-1, self.chain.dof)
 
-    def _distance(self, one: Floats, other: Floats) -> float:
-        away = np.where(self.chain.prismatic, (one - other) / self.chain.reach, 2 * np.sin((one - other) / 2))
-        return float(np.abs(away).max())
-
     def nearest(self, pose: Floats, seed: Floats, weights: Floats | None = None) -> Nearest:
-        """Return the configuration that comes as near to a pose as it can from a seed, reachable or not.
+        """Return the configuration nearest to a pose, reachable or not, by descent from a seed.
 
-        Every step makes the error smaller, by a damping that grows until it does.
+        The damping of each step grows until the error decreases.
 
         Args:
             pose: The pose, shape (4, 4).
-            seed: Joint values to start at, shape (n,); the answer is in the same valley.
-            weights: How much errors along x, y, z and about them count, shape (6,); all the same if None.
+            seed: Joint values of the start, shape (n,); the result is a nearby local minimum.
+            weights: Weights of errors along and about x, y, z, shape (6,); by default equal.
         """
         scale = self._scale if weights is None else self._scale * weights
         values = np.minimum(np.maximum(seed, self._lowest), self._highest)
         error, jacobian = self._residual(pose, values, scale)
         square, damping, step = float(error @ error), 1e-3, 0
-        for step in range(_NEAREST_STEPS):  # noqa: B007 - it is in the answer
+        for step in range(_NEAREST_STEPS):  # noqa: B007 - it is in the result
             ahead = self._step(values, error, jacobian, damping * (1e-9 + square) + 1e-12)
             error_ahead, jacobian_ahead = self._residual(pose, ahead, scale)
             square_ahead = float(error_ahead @ error_ahead)
@@ -168,7 +177,7 @@ class NumericSolver:
 
 
 def _evenly(count: int, number: int) -> Floats:
-    """Return a point of the unit cube, of a sequence in which any first ones are spread evenly."""
+    """Return a point of a low-discrepancy sequence in the unit cube."""
     ratio = 2.0
     for _ in range(30):
         ratio = (1 + ratio) ** (1 / (count + 1))
@@ -176,7 +185,7 @@ def _evenly(count: int, number: int) -> Floats:
 
 
 class CompiledKinematics:
-    """Poses and Jacobians of one configuration by MuJoCo, for one thread; numpy is faster for many of them."""
+    """Pose and Jacobian of one configuration by MuJoCo, for one thread; for many, numpy is faster."""
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
@@ -191,7 +200,7 @@ class CompiledKinematics:
         return CompiledKinematics, (self.chain,)
 
     def __call__(self, values: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the tool's rotation (3, 3), its place (3,) and the Jacobian (6, n); the next call overwrites them."""
+        """Return the tool's rotation (3, 3), position (3,) and Jacobian (6, n); the next call overwrites them."""
         self._qpos[:] = values
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
@@ -200,7 +209,7 @@ class CompiledKinematics:
 
 
 def _mjcf(chain: Chain) -> str:
-    """Write a chain as bodies whose axes are parallel to the base's when all values are 0."""
+    """Return a chain as MJCF bodies whose axes are parallel to the base's at joint values of 0."""
     points = np.vstack([np.zeros(3), chain.points, chain.T_base_tool[:3, 3]])
     steps = [_text(step) for step in np.diff(points, axis=0)]
     kinds = ("slide" if sliding else "hinge" for sliding in chain.prismatic.tolist())

@@ -1,8 +1,8 @@
-"""Goals that leave some of the tool's pose open, as goals of longer arms that leave nothing open.
+"""Reduction of goals with free pose components to full goals of longer arms.
 
-What is open becomes *virtual joints* at the tool: one that may roll about its direction is the end of an arm with one
-joint more. Where only directions count, all axes are moved to the origin. The solutions of the longer arm, without the
-virtual joints, are those of the arm.
+Free components become *virtual joints* at the tool: a tool that may roll about its direction gets one more joint. If
+only directions matter, all axes are moved to the origin. The solutions of the longer arm, without the virtual joints,
+are those of the arm.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ import numpy as np
 
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm, Solutions
-from ravemj.ik.derive import Certificate, derive
+from ravemj.ik.derive import Validation, derive
 from ravemj.ik.families.snapping import TOLERANCE
 from ravemj.ik.tasks import ALONG, Task
 from ravemj.ik.vectors import Floats
@@ -20,13 +20,13 @@ from ravemj.ik.vectors import Floats
 
 @dataclass(frozen=True)
 class Reduction:
-    """Another arm and another task, with the same solutions.
+    """Equivalent arm and task with the same solutions.
 
     Attributes:
         chain: The arm, with virtual joints at its end.
-        task: What is asked of it.
+        task: The task of that arm.
         how: A sentence about the reduction.
-        virtual: The places of the virtual joints.
+        virtual: The positions of the virtual joints.
     """
 
     chain: Chain
@@ -36,7 +36,7 @@ class Reduction:
 
 
 def reduction(chain: Chain, task: Task) -> Reduction | None:
-    """Return how a task is reduced to others; None where there is no way."""
+    """Return the reduction of a task; None if there is none."""
     if task in (Task.ROTATION, Task.DIRECTION):
         return None if chain.prismatic.any() else _centred(chain, task)
     if task is Task.LOOK_AT:
@@ -50,7 +50,7 @@ def reduction(chain: Chain, task: Task) -> Reduction | None:
 
 
 def _centred(chain: Chain, task: Task) -> Reduction:
-    """Move all axes to the origin; a direction is a place at a distance of 1 then."""
+    """Move all axes to the origin, where a direction is a position at distance 1."""
     tool = chain.T_base_tool.copy()
     tool[:3, 3] = tool[:3, :3] @ chain.direction if task is Task.DIRECTION else 0
     centred = replace(chain, points=np.zeros_like(chain.points), T_base_tool=tool)
@@ -63,8 +63,8 @@ def _centred(chain: Chain, task: Task) -> Reduction:
 def _with_joints(chain: Chain, sliding: list[bool], task: Task, how: str) -> Reduction:
     """Add virtual joints along or about the tool's direction.
 
-    They stand before joints that turn about the same line, whose order does not matter: where such a joint is locked,
-    the others stay neighbours.
+    They are inserted before real joints about the same line, since these commute: if such a joint is locked, the others
+    stay adjacent.
     """
     axis, place = chain.T_base_tool[:3, :3] @ chain.direction, chain.T_base_tool[:3, 3]
     at = chain.dof
@@ -91,14 +91,14 @@ def _same_line(chain: Chain, joint: int, axis: Floats, place: Floats) -> bool:
 
 
 class ReducedForm:
-    """A solver in closed form, of a longer arm. It is asked as a ``ClosedForm`` is.
+    """Closed-form solver through that of a longer arm, with the interface of ``ClosedForm``.
 
     Attributes:
         chain: The arm itself.
-        task: What is asked of it.
+        task: The task of the arm.
         inner: The solver of the longer arm.
-        how: How the one follows from the other.
-        family: Its family.
+        how: A sentence about the reduction.
+        family: The family of the longer arm.
     """
 
     def __init__(self, chain: Chain, task: Task, inner: ClosedForm, way: Reduction) -> None:
@@ -109,17 +109,17 @@ class ReducedForm:
 
     @property
     def locked(self) -> list[int]:
-        """The joints whose values are given."""
+        """The locked joints, whose values are given."""
         return [self._real.index(joint) for joint in self.inner.locked]
 
     @property
     def branch_names(self) -> list[str]:
-        """A name for each branch; virtual joints are counted, too."""
+        """A name for each branch, including those of virtual joints."""
         return self.inner.branch_names
 
     def solve(self, poses: Floats, locked: Floats | None = None, *, limits: bool = False) -> Solutions:
-        """Return all solutions, whatever the limits; the arguments are those of ``ClosedForm.solve``."""
-        del limits  # they are not those of the longer arm
+        """Return all solutions, regardless of limits; the arguments are those of ``ClosedForm.solve``."""
+        del limits  # they are not limits of the longer arm
         goals = poses
         if self.task in (Task.ROTATION, Task.DIRECTION):
             goals = poses.copy()
@@ -127,16 +127,17 @@ class ReducedForm:
         found = self.inner.solve(goals, locked)
         valid = found.valid
         if self.task is Task.LOOK_AT:
-            valid = valid & (found.values[..., self._virtual[0]] >= 0)  # what is looked at is in front
+            valid = valid & (found.values[..., self._virtual[0]] >= 0)  # the look-at point is in front
         elif self.task is Task.DIRECTION:
-            valid = valid & (np.abs(found.values[..., self._virtual[0]]) < 1e-6)  # else it points backwards
-        return Solutions(found.values[..., self._real], valid, found.merged)
+            valid = valid & (np.abs(found.values[..., self._virtual[0]]) < 1e-6)  # otherwise the direction is opposite
+        errors = np.where(found.valid & ~valid, 1.0, found.errors)
+        return Solutions(found.values[..., self._real], valid, found.merged, errors)
 
 
 def derive_reduced(
     chain: Chain, task: Task, locked: Sequence[int], *, general: bool
-) -> tuple[ReducedForm, Certificate] | None:
-    """Find a solver in closed form by a reduction, and prove it; None where there is none."""
+) -> tuple[ReducedForm, Validation] | None:
+    """Derive and validate a closed-form solver by a reduction; None if there is none."""
     way = reduction(chain, task)
     if way is None:
         return None

@@ -1,6 +1,6 @@
-"""What is left open: joints that can have any value, and configurations in which two joints turn about one line.
+"""Redundancy: joints with free values, and configurations in which two joints rotate about one line.
 
-Which joints stay free by default, and how finely they are sampled, follows OpenRAVE's rules.
+The default free joints and their sampling steps follow OpenRAVE's rules.
 """
 
 import itertools
@@ -11,25 +11,25 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.blocks import common_point
 from ravemj.ik.families.snapping import TOLERANCE, nominal
-from ravemj.ik.residuals import ToolMotion, residual_and_jacobian
+from ravemj.ik.residuals import ToolState, residual_and_jacobian
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, constant
 
 ANGLE_STEP = 0.1
-"""Step of a revolute free joint [rad]."""
+"""Sampling step of a revolute free joint [rad]."""
 SLIDE_STEP = 0.01
-"""Step of a prismatic free joint, in units of the reach."""
+"""Sampling step of a prismatic free joint, in units of the reach."""
 SINGULAR_STEP = np.pi / 8
-"""Where two joints turn about one line, the first of them is shown at every such angle."""
+"""Sampling step of the first of two joints that rotate about one line [rad]."""
 MOST = 4096
-"""Samples of all free joints together, at most."""
+"""Maximum number of samples of all free joints together."""
 _COAXIAL = 1e-9
 _ALONG = 1e-6
 _CONFIGURATIONS = 4
 
 
 def rank(chain: Chain, task: Task) -> int:
-    """Return the rank of the task's Jacobian, the greatest in a few random configurations."""
+    """Return the rank of the task's Jacobian, the maximum over a few random configurations."""
     values = np.random.default_rng(7).uniform(-3, 3, (_CONFIGURATIONS, chain.dof)) * np.where(chain.prismatic, 0.1, 1.0)
     return max(int(np.linalg.matrix_rank(jacobian, tol=1e-4)) for jacobian in task_jacobians(chain, task, values))
 
@@ -37,7 +37,7 @@ def rank(chain: Chain, task: Task) -> int:
 def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
     """Return the Jacobians of a task in configurations (M, n), each of shape (k, n).
 
-    Lengths are in units of the reach. Without a goal, a pose (4, 4), it is one that the configuration reaches.
+    Lengths are in units of the reach. ``goal`` is a pose (4, 4); by default the one that the configuration reaches.
     """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -48,17 +48,17 @@ def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None
             wanted[:3, 3] += tool[:3, :3] @ chain.direction * chain.reach
         elif goal is None and task is Task.LOCAL_PLACE:
             wanted[3, :3] = 0.3, 0.2, 0.1
-        motion = ToolMotion(tool[:3, :3], tool[:3, 3], jacobian)
+        motion = ToolState(tool[:3, :3], tool[:3, 3], jacobian)
         found.append(residual_and_jacobian(chain, task, wanted, motion, scale)[1])
     return found
 
 
 def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
-    """Return sets of joints that can be left free, each as large as the redundancy of the arm.
+    """Yield sets of joints that can be free, each as large as the redundancy of the arm.
 
-    Between a spherical shoulder and a spherical wrist, the third of seven joints comes first, as in OpenRAVE. Else the
-    last joint comes first and the first one second: with these locked, the geometry of the rest does not depend on
-    their value. The others follow from the tool to the base.
+    Between a spherical shoulder and a spherical wrist, the third of seven joints comes first, as in OpenRAVE. Otherwise
+    the last joint comes first and the first one second: if these are locked, the geometry of the other joints does not
+    depend on their values. The others follow from the tool to the base.
     """
     count = chain.dof - rank(chain, task)
     order = [chain.dof - 1, 0, *range(chain.dof - 2, 0, -1)][: chain.dof]
@@ -69,7 +69,7 @@ def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
 
 
 def _is_like_a_human_arm(chain: Chain) -> bool:
-    """Return whether there are seven joints, and the axes of the first three and of the last three meet in a point."""
+    """Return whether there are seven joints, with intersecting axes of the first three and of the last three."""
     if chain.dof != 7 or chain.prismatic.any():
         return False
     exact = nominal(chain)
@@ -77,8 +77,8 @@ def _is_like_a_human_arm(chain: Chain) -> bool:
     return all(common_point(ends, TOLERANCE) is not None for ends in (screws[:3], screws[4:]))
 
 
-def _range(chain: Chain, joint: int) -> tuple[float, float]:
-    """Return where values of a free joint are sampled."""
+def free_range(chain: Chain, joint: int) -> tuple[float, float]:
+    """Return the range in which a free joint is sampled."""
     low, high = float(chain.lower[joint]), float(chain.upper[joint])
     if chain.circular[joint] or (not chain.prismatic[joint] and high - low > 2 * np.pi):
         return -np.pi, np.pi
@@ -86,10 +86,10 @@ def _range(chain: Chain, joint: int) -> tuple[float, float]:
 
 
 def affordable(chain: Chain, free: Sequence[int], steps: Sequence[float]) -> tuple[float, ...]:
-    """Return steps of free joints; of several, wider ones where there would be more than ``MOST`` samples."""
+    """Return steps of free joints, enlarged if several would have more than ``MOST`` samples."""
     if len(free) < 2:
         return tuple(steps)
-    ranges = [high - low for low, high in (_range(chain, joint) for joint in free)]
+    ranges = [high - low for low, high in (free_range(chain, joint) for joint in free)]
     wider = list(steps)
     while np.prod([span // step + 1 for span, step in zip(ranges, wider, strict=True)]) > MOST:
         wider = [1.2 * step for step in wider]
@@ -97,20 +97,20 @@ def affordable(chain: Chain, free: Sequence[int], steps: Sequence[float]) -> tup
 
 
 def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Floats | None = None) -> Floats:
-    """Return values of free joints within their limits: a start, or 0, then a step more, a step less, and so on.
+    """Return samples of free joints within their limits: the start, or 0, then one step more, one step less, and so on.
 
     Args:
         chain: The arm.
         free: The free joints, k of them.
         steps: A step for each [rad or m].
-        start: Values to start at, shape (k,).
+        start: Values of the first sample, shape (k,).
 
     Returns:
-        Values, shape (K, k); one row of no values if there is no free joint. The last of several joints changes first.
+        Values, shape (K, k); one empty row if there is no free joint. The last of several joints changes first.
     """
     columns: list[list[float]] = []
     for index, (joint, step) in enumerate(zip(free, steps, strict=True)):
-        low, high = _range(chain, joint)
+        low, high = free_range(chain, joint)
         centre = float(np.clip(0.0 if start is None else start[index], low, high))
         up = centre + step * np.arange(1, int((high - centre) / step + 1e-9) + 1)
         down = centre - step * np.arange(1, int((centre - low) / step + 1e-9) + 1)
@@ -121,9 +121,9 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
-    """Return the configurations, of rows (K, n), in which two joints turn about the same line.
+    """Return the configurations, of rows (K, n), in which two joints rotate about one line.
 
-    For each it is the row, the two joints, and 1 or -1 for the same or the opposite direction.
+    Each item is the row, the two joints, and 1 or -1 for equal or opposite directions.
     """
     axes, points = chain.placed_axes(rows)
     turning = np.nonzero(~chain.prismatic)[0].tolist()
@@ -138,9 +138,9 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 
 
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
-    """Return other configurations (K, n) with the tool's pose of a singular one, an item of ``singular_rows``.
+    """Return other configurations (K, n) with the tool pose of a singular one, an item of ``singular_rows``.
 
-    With a seed, the first of the two joints has its value there in one answer, and the second in another.
+    With a seed, one result has its value of the first of the two joints, and another that of the second.
     """
     row, first, second, sign = singular
     angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)
@@ -155,10 +155,10 @@ def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats 
 
 
 def default_free(chain: Chain, name: str, dof: int) -> list[int]:
-    """Return the joints that are left free where an arm has more than a type of goal fixes.
+    """Return the default free joints of an arm with more joints than a goal type constrains.
 
-    They go from the tip down. Of goals with a place and a direction, the last joint is free if it turns about the
-    direction, and else those at the base are.
+    They are counted from the tip. For goals with position and direction, the last joint is free if it rotates about the
+    direction; otherwise joints at the base are.
     """
     surplus = max(0, chain.dof - dof)
     joints = list(range(chain.dof))
@@ -173,10 +173,10 @@ def default_free(chain: Chain, name: str, dof: int) -> list[int]:
 def default_steps(
     chain: Chain, free: Sequence[int], angle: float = ANGLE_STEP, slide: float = SLIDE_STEP
 ) -> tuple[float, ...]:
-    """Return a step for each free joint [rad or m].
+    """Return the default step of each free joint [rad or m].
 
-    Revolute joints have an angle, prismatic ones a fraction of the length of the arm. Those of more than two joints are
-    larger where there would be too many samples.
+    Steps of prismatic joints are a fraction of the arm's length. For more than two joints, steps are enlarged if there
+    would be too many samples.
     """
     points = np.vstack([chain.points, chain.T_base_tool[:3, 3]])  # also those of prismatic joints, as in OpenRAVE
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) or 1.0

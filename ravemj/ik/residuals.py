@@ -1,6 +1,6 @@
-"""Residuals of goals and Jacobians of tasks, for every type of goal: what least squares and null spaces need.
+"""Residuals of all goal types and Jacobians of tasks, for least squares and null spaces.
 
-Places count in units of the reach, rotations and directions in radians.
+Positions are in units of the reach, rotations and directions in radians.
 """
 
 from collections.abc import Callable
@@ -13,8 +13,8 @@ from ravemj.ik.tasks import ALONG, ANGLES, Task
 from ravemj.ik.vectors import Floats, skew
 
 
-class ToolMotion(NamedTuple):
-    """Where the tool is, and how it moves.
+class ToolState(NamedTuple):
+    """Pose and Jacobian of the tool.
 
     Attributes:
         rotation: Its rotation, shape (3, 3).
@@ -28,19 +28,20 @@ class ToolMotion(NamedTuple):
 
 
 def residual_and_jacobian(
-    chain: Chain, task: Task, goal: Floats, tool: ToolMotion, scale: Floats
+    chain: Chain, task: Task, goal: Floats, tool: ToolState, scale: Floats
 ) -> tuple[Floats, Floats]:
-    """Return what the tool lacks of a goal, shape (k,), and how joint values reduce it, the task's Jacobian (k, n).
+    """Return the residual of a goal, shape (k,), and the task's Jacobian, shape (k, n).
 
-    The goal is a pose (4, 4), see ``goal_poses``; ``scale`` is what each component of velocities and angular velocities
-    counts, shape (6,).
+    The goal is a pose (4, 4), see ``goal_poses``; ``scale`` are the weights of linear and angular components, shape
+    (6,).
     """
     residual, jacobian = _RESIDUALS[task](chain, task, goal, tool)
-    counts = scale[_rows(task)]
+    counts = scale[component_rows(task)]
     return residual * counts, jacobian * counts[:, None]
 
 
-def _rows(task: Task) -> list[int]:
+def component_rows(task: Task) -> list[int]:
+    """Return the indices of a residual's components among linear and angular velocities."""
     if task in ANGLES:
         return [0, 1, 2, 3 + ANGLES[task]]
     if task in (Task.ROTATION, Task.DIRECTION, Task.LOOK_AT):
@@ -48,44 +49,48 @@ def _rows(task: Task) -> list[int]:
     return [0, 1, 2] if task is Task.LOCAL_PLACE else list(task.rows)
 
 
-def _pose(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
-    away, rows = goal[:3, 3] - tool.position, _rows(task)
+def _pose(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
+    away, rows = goal[:3, 3] - tool.position, component_rows(task)
     return np.append(away, rotation_between(tool.rotation, goal))[rows], tool.jacobian[rows]
 
 
-def _local_place(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+def _local_place(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
     arm = tool.rotation @ goal[3, :3]
     return goal[:3, 3] - tool.position - arm, tool.jacobian[:3] - skew(arm) @ tool.jacobian[3:]
 
 
-def _direction(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+def _direction(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
     pointing, wanted = tool.rotation @ chain.direction, goal[:3, :3] @ chain.direction
     return wanted - pointing, -skew(pointing) @ tool.jacobian[3:]
 
 
-def _place_direction(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+def _place_direction(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
     bent, turned = _direction(chain, task, goal, tool)
     rows = [ANGLES[task]] if task in ANGLES else [0, 1, 2]
     away = goal[:3, 3] - tool.position
     return np.append(away, bent[rows]), np.vstack([tool.jacobian[:3], turned[rows]])
 
 
-def _ray(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+def _ray(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
     residual, jacobian = _place_direction(chain, task, goal, tool)
     wanted = goal[:3, :3] @ chain.direction
     across = np.eye(3) - np.outer(wanted, wanted)
     return np.append(across @ residual[:3], residual[3:]), np.vstack([across @ jacobian[:3], jacobian[3:]])
 
 
-def _look_at(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+def _look_at(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
     away, pointing = goal[:3, 3] - tool.position, tool.rotation @ chain.direction
     distance = float(np.linalg.norm(away)) or 1e-12
     wanted, (moves, turns) = away / distance, np.split(tool.jacobian, 2)
     return wanted - pointing, (moves - np.outer(wanted, wanted @ moves)) / distance - skew(pointing) @ turns
 
 
-def _planar(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
-    """As in OpenRAVE, the angle is that of the direction in the plane, or of the tool where it points out of it."""
+def _planar(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
+    """Return the planar residual.
+
+    As in OpenRAVE, the angle is that of the direction in the plane, or of the tool if the direction is perpendicular to
+    it.
+    """
     pointing, wanted = tool.rotation @ chain.direction, goal[:3, :3] @ chain.direction
     moves, turns = np.split(tool.jacobian, 2)
     if np.abs(wanted[:2]).max() < 1e-9:
@@ -98,7 +103,7 @@ def _planar(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[F
     return np.append((goal[:3, 3] - tool.position)[:2], turn), np.vstack([moves[:2], heading])
 
 
-_RESIDUALS: dict[Task, Callable[[Chain, Task, Floats, ToolMotion], tuple[Floats, Floats]]] = {
+_RESIDUALS: dict[Task, Callable[[Chain, Task, Floats, ToolState], tuple[Floats, Floats]]] = {
     **dict.fromkeys((Task.TRANSFORM, Task.ROTATION, Task.PLACE, Task.PLACE_XY), _pose),
     **dict.fromkeys((*ALONG, *ANGLES), _place_direction),
     Task.LOCAL_PLACE: _local_place,
@@ -118,7 +123,7 @@ def rotation_between(rotation: Floats, pose: Floats) -> Floats:
         factor = float(np.arctan2(sine, cosine)) / sine
     elif cosine > 0:
         factor = 0.5
-    else:  # half a turn: the axis is in the sum of the matrix and its transpose
+    else:  # rotation by pi: the axis is in the sum of the matrix and its transpose
         square = np.array([a, e, i]) + 1
         axis = int(np.argmax(square))
         column = np.array([[2 * a + 2, b + d, c + g], [b + d, 2 * e + 2, f + h], [c + g, f + h, 2 * i + 2]])[axis]

@@ -1,4 +1,4 @@
-"""Motions of redundant arms while the goal stays reached: null spaces, paths in them, sweeps of a free joint."""
+"""Self-motion of redundant arms: null spaces, paths in them, sweeps of a free joint."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,19 +14,19 @@ from ravemj.ik.vectors import Floats
 _SINGULAR = 1e-6
 """Singular values below this, in units of the reach and in radians, are 0."""
 _JUMP = 0.5
-"""Where a joint moves more [rad or m] from one configuration to the next, that is another branch."""
+"""Largest joint step [rad or m] between consecutive configurations of one branch."""
 
 
 def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: ArrayLike | None = None) -> Floats:
-    """Return an orthonormal basis of the joint velocities of self-motion, the Jacobian's null space, shape (n, k).
+    """Return an orthonormal basis of self-motion velocities, the null space of the task Jacobian, shape (n, k).
 
-    In singular configurations it has more columns than elsewhere.
+    Singular configurations have more columns.
 
     Args:
         chain: The arm.
         values: The configuration, shape (n,).
-        task: What the tool has to do.
-        goal: A goal that the configuration reaches, for tasks such as ``LOOK_AT``, where many goals are reached.
+        task: The constrained components of the tool pose.
+        goal: A goal reached by the configuration, for tasks with many such goals, like ``LOOK_AT``.
     """
     pose = None if goal is None else goal_poses(chain, task, goal)
     jacobian = redundancy.task_jacobians(chain, task, values[None], pose)[0]
@@ -44,23 +44,23 @@ def null_space_path(
     step: float = 0.05,
     length: float = 2 * np.pi,
 ) -> Floats:
-    """Return configurations along a path that leaves a goal reached: through the null space, from a start on.
+    """Return configurations along a path through the null space that keeps a goal.
 
-    It ends at a limit, where it comes back to its start, or after a length.
+    It ends at a limit, when it returns to its start, or after a length.
 
     Args:
         solver: The solver of the arm.
         goal: The goal, which the start reaches.
         start: Joint values, shape (n,).
-        along: Joint velocities, shape (n,); the path begins with what of them is in the null space.
+        along: Joint velocities, shape (n,); the path starts along their projection onto the null space.
         step: The distance between configurations, in joint space [rad or m].
-        length: The greatest length of the path.
+        length: Maximum length of the path.
 
     Returns:
         Configurations, shape (M, n), the first of them the start.
 
     Raises:
-        ValueError: nothing of ``along`` is in the null space.
+        ValueError: the projection of ``along`` onto the null space is zero.
     """
     chain, pose = solver.chain, goal_poses(solver.chain, solver.task, goal)
     lower, upper = chain.bounds
@@ -87,17 +87,16 @@ def null_space_path(
 
 
 def sweep(solver: ArmSolutions, goal: ArrayLike, seed: Floats, *, step: float = 0.01) -> Floats:
-    """Return configurations that reach a goal and change continuously while the free joint takes its values.
+    """Return solutions of a goal that change continuously while the free joint is swept over its range.
 
     Args:
         solver: A solver in closed form, with one free joint.
         goal: The goal.
-        seed: A configuration, shape (n,); the sweep goes through the solution nearest to it.
+        seed: A configuration, shape (n,); the sweep contains the solution nearest to it.
         step: The step of the free joint [rad or m].
 
     Returns:
-        Configurations within the limits, shape (M, n), by the value of the free joint; none if the goal is out of
-            reach.
+        Configurations within the limits, shape (M, n), ordered by the free joint; empty if the goal is unreachable.
 
     Raises:
         ValueError: the solver has no free joint, or several.
@@ -115,7 +114,7 @@ def sweep(solver: ArmSolutions, goal: ArrayLike, seed: Floats, *, step: float = 
 
 
 def _followed(solver: ArmSolutions, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
-    """Return configurations for values of the free joint, each the one nearest to that before it, while there are."""
+    """Return configurations for values of the free joint, each nearest to the previous one, until there is none."""
     assert solver.closed is not None
     found = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])
     rows, last = list[Floats](), start

@@ -1,12 +1,13 @@
-"""One way to ask for inverse kinematics, whatever answers: a closed form, one with sampled joints, or a search.
+"""Common interface of IK solvers: closed form, closed form with sampled joints, or numeric search.
 
-Poses are those of the tool in the base. Limits, whole turns, free joints and singular configurations are treated as
-OpenRAVE treats them: every solution within the limits is one, further turns included; a free joint is sampled from 0 or
-from the present value outwards; where two joints turn about one line, the first is shown at every pi/8.
+Poses are ``T_base_tool``. Limits, whole turns, free joints and singular configurations are handled as in OpenRAVE: all
+turns within the limits are solutions; a free joint is sampled from 0 or from the present value outwards; if two joints
+rotate about one line, the first is sampled every pi/8. If no sample has a solution, values between the samples are
+tried (``intervals``).
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,9 +16,10 @@ from numpy.typing import ArrayLike
 from ravemj.ik import redundancy
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm, Solutions
-from ravemj.ik.derive import Certificate, derive
+from ravemj.ik.derive import Validation, derive
+from ravemj.ik.intervals import between_samples, closest
 from ravemj.ik.limits import all_turns, distances, nearest_turns
-from ravemj.ik.numeric import ACCURATE, NumericSolver
+from ravemj.ik.numeric import ACCURATE, DISTINCT, NumericSolver
 from ravemj.ik.reductions import ReducedForm, derive_reduced
 from ravemj.ik.redundancy import ANGLE_STEP, SLIDE_STEP
 from ravemj.ik.tasks import Task, goal_poses
@@ -25,40 +27,69 @@ from ravemj.ik.vectors import Floats
 
 _TRIED = 12
 _STARTS = 24
-"""Starts of a search for what is between the samples of a free joint."""
+"""Number of starts of a search between the samples of a free joint."""
 FIRST, NEXT = 12, 96
-"""So many samples of free joints are tried at once; those near the present values mostly are enough."""
+"""Batch sizes of free joint samples, the first small since samples near the present values mostly suffice."""
+
+
+_NEAREST_STARTS = 12
+"""Number of starts of a search for the nearest reachable pose."""
+_MOST_SAMPLES = 256
+_NO_ANGLE = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Reachable:
+    """Reachable configuration nearest to a goal.
+
+    Attributes:
+        values: Joint values within the limits, shape (n,).
+        T_base_tool: The pose of the tool, shape (4, 4).
+        distance: Distance to the goal [m]; 0 if the task does not constrain the position.
+        angle: Angle to the goal [rad]; 0 if the task does not constrain the orientation.
+    """
+
+    values: Floats
+    T_base_tool: Floats
+    distance: float
+    angle: float
+
+    def __str__(self) -> str:
+        """Describe how far the goal is from the nearest reachable pose."""
+        turn = f"{np.degrees(self.angle):.1f}°"
+        far = f"{self.distance:.3g} m" + (f" and {turn}" if self.angle > _NO_ANGLE else "")
+        return f"the nearest that it reaches is {far if self.distance else turn} away"
 
 
 @dataclass(frozen=True, eq=False)
 class ArmSolutions:
-    """Solves one kind of goal for one arm. Made by ``make_solver``.
+    """IK solver of one arm for one task. ``make_solver`` makes it.
 
     Attributes:
         chain: The arm.
-        task: What is asked for.
-        closed: The solver in closed form, or None where no family fits.
-        certificate: What it did with random configurations.
-        free: Joints that are sampled.
-        steps: A step for each of them [rad or m]; several free joints are sampled more coarsely where need be.
-        numeric: The search, which also answers where there is no closed form.
+        task: The constrained components of the tool pose.
+        closed: The closed-form solver, or None if no family fits.
+        certificate: The validation of ``closed`` on random configurations.
+        free: The sampled joints.
+        steps: The step of each of them [rad or m]; several free joints may be sampled more coarsely.
+        numeric: The numeric solver, used if there is no closed form.
     """
 
     chain: Chain
     task: Task
     closed: ClosedForm | ReducedForm | None
-    certificate: Certificate | None
+    certificate: Validation | None
     free: tuple[int, ...]
     steps: tuple[float, ...]
     numeric: NumericSolver
 
     @property
     def complete(self) -> bool:
-        """Whether all solutions are found; with free joints, all for each of their samples."""
+        """Whether all solutions are found; with free joints, all at each sample."""
         return self.closed is not None
 
     def describe(self) -> str:
-        """Return in a few lines how the arm is solved, why, and how good that is."""
+        """Return a few lines on the solution method, its reason and its accuracy."""
         if self.closed is None or self.certificate is None:
             return (
                 f"numeric: no closed form fits this arm of {self.chain.dof} joints for {self.task.value}\n"
@@ -79,7 +110,7 @@ class ArmSolutions:
         return "\n".join(lines)
 
     def free_samples(self, start: Floats | None = None) -> Floats:
-        """Return values of the free joints, shape (K, k), from a start or from 0 outwards."""
+        """Return samples of the free joints, shape (K, k), from a start or from 0 outwards."""
         return redundancy.samples(self.chain, self.free, self._affordable_steps(), start)
 
     def _affordable_steps(self) -> Sequence[float]:
@@ -89,15 +120,15 @@ class ArmSolutions:
         """Return all solutions of many goals, one turn of each.
 
         Args:
-            goals: Poses (N, 4, 4), or what else the task asks for, with N in front.
-            free: Values of the free joints, shape (K, k), which are all tried for every goal; None: their samples.
+            goals: Poses (N, 4, 4), or other goals of the task, with N as first axis.
+            free: Values of the free joints, shape (K, k), all tried for every goal; by default their samples.
             limits: Whether only solutions within the limits are valid; else angles are in [-pi, pi].
 
         Returns:
-            Solutions with K times as many branches as the family has; of a search with as many as the richest goal.
+            Solutions with K times the branches of the family; of a numeric search, with the maximum number per goal.
 
         Raises:
-            ValueError: goals of a wrong shape, not finite, or no rigid transforms.
+            ValueError: goals have a wrong shape, are not finite, or are not rigid transforms.
         """
         poses = goal_poses(self.chain, self.task, goals)
         if self.closed is None:
@@ -107,15 +138,16 @@ class ArmSolutions:
             values = self.free_samples() if free is None else np.asarray(free, dtype=float).reshape(-1, len(self.free))
             tries = len(values)
             poses, values = np.repeat(poses, tries, axis=0), np.tile(values, (count, 1))
-            found = self.closed.solve(poses, values, limits=limits)
+            found = _solve_alike(self.closed, poses, values, limits=limits)
         else:
-            found = self.closed.solve(poses, limits=limits)
+            found = _solve_alike(self.closed, poses, None, limits=limits)
         shape = (count, -1) if count else (0, len(self.closed.branch_names) * tries)
         rows, valid = found.values.reshape(*shape, self.chain.dof), found.valid.reshape(shape)
         if limits:
             rows, inside = nearest_turns(self.chain, rows)
             valid = valid & inside
-        return Solutions(rows, valid, np.logical_or.reduce(found.merged.reshape(count, tries), axis=1))
+        merged = np.logical_or.reduce(found.merged.reshape(count, tries), axis=1)
+        return Solutions(rows, valid, merged, found.errors.reshape(shape))
 
     def _search_all(self, poses: Floats) -> Solutions:
         rows = [self.numeric.solve_all(pose) for pose in poses]
@@ -123,41 +155,76 @@ class ArmSolutions:
         values, valid = np.zeros((len(poses), most, self.chain.dof)), np.zeros((len(poses), most), dtype=bool)
         for index, found in enumerate(rows):
             values[index, : len(found)], valid[index, : len(found)] = found, True
-        return Solutions(values, valid, np.zeros(len(poses), dtype=bool))
+        return Solutions(values, valid, np.zeros(len(poses), dtype=bool), np.zeros(valid.shape))
 
     def solve_one(self, goal: ArrayLike, *, free: Floats | None = None, limits: bool = True) -> Floats:
-        """Return all solutions of one goal, shape (K, n), with all turns within the limits, and singular ones spread.
+        """Return all solutions of a goal, shape (K, n), with all turns within the limits, and singular ones sampled.
 
-        The arguments are those of ``solve``, for one goal. Without limits, every solution comes once.
+        The arguments are those of ``solve``, for one goal. Without limits, every solution is returned once.
         """
-        found = self.solve(np.asarray(goal, dtype=float)[None], free=free, limits=False)
-        rows = self.spread(found.of(0)) if found.merged[0] else found.of(0)
+        pose = goal_poses(self.chain, self.task, goal)
+        if self.closed is None:
+            rows = self.numeric.solve_all(pose)
+            return all_turns(self.chain, rows) if limits else rows
+        given = free is not None or not self.free
+        samples = self.free_samples()
+        if free is not None and self.free:
+            samples = np.asarray(free, dtype=float).reshape(-1, len(self.free))
+        found = self.at(pose, samples, limits=False)
+        rows = found.rows[0]
+        rows = self.spread(rows) if found.merged.any() else rows
+        kept = all_turns(self.chain, rows) if limits else rows
+        if given or len(kept):
+            return kept
+        rows = next(self.between(pose, samples, found, limits=limits), rows)
         return all_turns(self.chain, rows) if limits else rows
 
+    def at(self, pose: Floats, free: Floats, *, limits: bool = True) -> Solutions:
+        """Return the closed-form solutions of one pose (4, 4) for free joint values, shape (K, k)."""
+        assert self.closed is not None
+        return self.closed.solve(np.repeat(pose[None], len(free), axis=0), free, limits=limits)
+
+    def between(
+        self, pose: Floats, samples: Floats, found: Solutions, seed: Floats | None = None, *, limits: bool = True
+    ) -> Iterator[Floats]:
+        """Yield all solutions for free joint values between their samples, each of shape (K, n).
+
+        Args:
+            pose: The pose (4, 4).
+            samples: The samples, shape (K, k).
+            found: The result of ``at`` for them.
+            seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
+            limits: Whether to enforce limits; turns are left to the caller.
+        """
+        for row, here in between_samples(self, pose, samples, found):
+            more = here if here is not None and limits else self.at(pose, row[None, list(self.free)], limits=limits)
+            others = self.spread(more.of(0), seed) if more.merged[0] else more.of(0)
+            yield np.vstack([row, others[self.chain.differences(others, row) > DISTINCT]])
+
     def spread(self, rows: Floats, at: Floats | None = None) -> Floats:
-        """Add to solutions in which two joints turn about one line other angles of these."""
+        """Add equivalent configurations to solutions in which two joints rotate about one line."""
         if self.task is not Task.TRANSFORM or not len(rows):
             return rows
         extra = [redundancy.spread(self.chain, row, at) for row in redundancy.singular_rows(self.chain, rows)]
         return np.vstack([rows, *extra]) if extra else rows
 
     def nearest(self, goal: ArrayLike, seed: Floats, *, weights: Floats | None = None) -> Floats | None:
-        """Return the solution within the limits that is nearest to a configuration.
+        """Return the solution within the limits nearest to a configuration.
 
-        Free joints come first: the value nearest to theirs in the configuration with any solution ends the search. In
-        singular configurations a closed form shows some of infinitely many solutions; there one descent from the
-        present configuration adds what it finds. Where no sample has a solution, a short search is the last word.
+        Free joints take precedence: the search ends at the nearest free joint values with a solution. In singular
+        configurations, a closed form returns some of infinitely many solutions; there a descent from the configuration
+        adds one. If no sample has a solution, values between the samples are tried, then a short numeric search.
 
         Args:
-            goal: A pose (4, 4), or what else the task asks for.
+            goal: A pose (4, 4), or another goal of the task.
             seed: The configuration, shape (n,).
-            weights: What a radian or a metre of each joint counts, shape (n,); all the same if None.
+            weights: Weight of each joint in distances, shape (n,); by default equal.
 
         Returns:
             Joint values, shape (n,), or None.
 
         Raises:
-            ValueError: a goal of a wrong shape, not finite, or no rigid transform.
+            ValueError: the goal has a wrong shape, is not finite, or is not a rigid transform.
         """
         pose = goal_poses(self.chain, self.task, goal)
         if self.closed is None:
@@ -166,31 +233,75 @@ class ArmSolutions:
             solutions = self.closed.solve(pose[None], limits=True)
             more = self.descent(pose, seed) if solutions.merged[0] or not solutions.valid.any() else None
             return self._best(solutions, 0, seed, weights, more)
-        values = self.free_samples(seed[list(self.free)])
+        values, parts = self.free_samples(seed[list(self.free)]), list[Solutions]()
         for part in np.split(values, range(FIRST, len(values), NEXT)):
-            solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part, limits=True)
+            solutions = self.at(pose, part)
             inside = nearest_turns(self.chain, solutions.values, seed)[1] | solutions.merged[:, None]
             for index in np.nonzero((inside & solutions.valid).any(axis=1))[0]:
                 best = self._best(solutions, int(index), seed, weights)
                 if best is not None:
                     return best
+            parts.append(solutions)
+        rows = all_turns(self.chain, next(self.between(pose, values, Solutions.joined(parts), seed), seed[None][:0]))
+        if len(rows):
+            return rows[np.argmin(distances(self.chain, rows, seed, weights))]
         return self.numeric.solve(pose, seed, starts=_STARTS)
 
+    def nearest_reachable(self, goal: ArrayLike, seed: Floats | None = None) -> Reachable:
+        """Return the configuration within the limits whose tool is nearest to a goal.
+
+        The measure is the root of the sum of squares of the distance, in units of the reach, and of the angle. Descents
+        from a few starts find a local minimum.
+
+        Args:
+            goal: A pose (4, 4), or another goal of the task.
+            seed: An additional start, shape (n,).
+
+        Raises:
+            ValueError: the goal has a wrong shape, is not finite, or is not a rigid transform.
+
+        Example:
+            >>> near = solver.nearest_reachable(T_base_tool)
+            >>> print(f"{near.distance:.3f} m and {near.angle:.3f} rad off")
+        """
+        pose = goal_poses(self.chain, self.task, goal)
+        starts = [] if seed is None else [seed]
+        if self.closed is not None:
+            samples = self.free_samples()
+            found = self.at(pose, samples[:: max(1, len(samples) // _MOST_SAMPLES)])
+            starts += closest(self.chain, found, _NEAREST_STARTS)
+        starts += [self.numeric.start(number) for number in range(_NEAREST_STARTS - len(starts) + 1)]
+        found = (self.numeric.nearest(pose, start) for start in starts)
+        best = min(found, key=lambda one: round(one.error, 9))  # the first of those equal up to rounding
+        distance, angle = self.numeric.shortfall(pose, best.values)
+        values = nearest_turns(self.chain, best.values, 0.0 if seed is None else seed)[0]
+        return Reachable(values, self.chain.forward(values), distance, angle)
+
     def descent(self, pose: Floats, seed: Floats) -> Floats:
-        """Return the solution below a configuration, shape (1, n), or none, shape (0, n)."""
+        """Return the solution found by descent from a configuration, shape (1, n), or none, shape (0, n)."""
         found = self.numeric.descend(pose, seed)
         return found.values[None][: int(found.error < ACCURATE)]
 
     def _best(
         self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None
     ) -> Floats | None:
-        """Return the solution for one pose, or of some more, that is nearest and within the limits."""
+        """Return the nearest solution within the limits for one pose, also among additional ones."""
         rows = solutions.of(index)
         rows = self.spread(rows, seed) if solutions.merged[index] else rows
         rows = rows if more is None else np.vstack([rows, more])
         moved, inside = nearest_turns(self.chain, rows, seed)
         moved = moved[inside]
         return moved[np.argmin(distances(self.chain, moved, seed, weights))] if len(moved) else None
+
+
+def _solve_alike(closed: ClosedForm | ReducedForm, poses: Floats, values: Floats | None, *, limits: bool) -> Solutions:
+    """Solve poses; a single one is duplicated, since solvers round single poses differently."""
+    if len(poses) != 1:
+        return closed.solve(poses, values, limits=limits)
+    both = closed.solve(
+        np.repeat(poses, 2, axis=0), None if values is None else np.repeat(values, 2, axis=0), limits=limits
+    )
+    return Solutions(both.values[:1], both.valid[:1], both.merged[:1], both.errors[:1])
 
 
 def make_solver(
@@ -200,13 +311,13 @@ def make_solver(
     free: Sequence[int] | None = None,
     steps: Sequence[float] | None = None,
 ) -> ArmSolutions:
-    """Find out how an arm is solved: by the first family that proves itself, else by a search.
+    """Make the solver of an arm: the first family that passes validation, else a numeric search.
 
     Args:
         chain: The arm.
-        task: What is asked for.
-        free: Joints to sample; None: as few as are too many, in the order of ``redundancy.choices``.
-        steps: A step for each free joint [rad or m]; 0.1 rad and a hundredth of the reach if None.
+        task: The constrained components of the tool pose.
+        free: Joints to sample; by default the redundant ones, in the order of ``redundancy.choices``.
+        steps: A step for each free joint [rad or m]; by default 0.1 rad and a hundredth of the reach.
 
     Raises:
         ValueError: a free joint that the arm does not have, or a step that is not above 0.

@@ -1,13 +1,12 @@
-"""The subproblems that inverse kinematics of arms comes down to, for many poses and branches at once.
+"""Subproblems of inverse kinematics, for many poses and branches at once.
 
 Rotations about lines that carry points to points, spheres, planes and other circles were named and solved by B. Paden
 (*Kinematics and control of robot manipulators*, 1985) and W. Kahan; A. J. Elias and J. T. Wen ("IK-Geo: Unified robot
-inverse kinematics using subproblem decomposition", 2022) count six of them, with their least-squares cases. Here they
-are few, as the rest follows: subproblem 1 is ``turn_between``; 3 (point to sphere) and 4 (point to plane) are the
-linear equation of ``solve_linear``, 2 is 4 followed by 1; 5 and 6 are the quadratic equation of ``solve_quadratic``.
+inverse kinematics using subproblem decomposition", 2022) define six of them, with their least-squares cases. Fewer
+functions suffice: subproblem 1 is ``turn_between``; 3 (point to sphere) and 4 (point to plane) are the linear equation
+of ``solve_linear``, 2 is 4 followed by 1; 5 and 6 are the quadratic equation of ``solve_quadratic``.
 
-Nothing here says that there is no solution: then the result is the turn that comes nearest, and forward kinematics
-tells.
+If there is no solution, the result is the nearest turn, and forward kinematics detects the error.
 """
 
 import numpy as np
@@ -15,12 +14,12 @@ import numpy as np
 from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
 ON_AXIS = 2e-11
-"""Unit vectors that are nearer to an axis count as being along it: any turn is exact enough."""
+"""Distance from an axis below which unit vectors are taken as parallel to it: any turn is accurate enough."""
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
 
 def normalized(turn: Floats, least: float = TINY) -> Floats:
-    """Return turns of unit length; what is shorter than the least length becomes the turn by 0."""
+    """Normalize turns to unit length; shorter ones than the minimum become the turn by 0."""
     length = np.sqrt(turn[0] * turn[0] + turn[1] * turn[1])
     if length.min(initial=np.inf) < least:
         none = length < least
@@ -32,10 +31,10 @@ def normalized(turn: Floats, least: float = TINY) -> Floats:
 def turn_between(joint: Screw, start: Floats, end: Floats) -> Floats:
     """Return the turns (2, B, N) of a joint that carry a direction (3, B, N) nearest to another (subproblem 1).
 
-    Points are relative to the joint's own. It is the turn by 0 where a vector is along the axis.
+    Directions are relative to the joint's point. If one is along the axis, the result is the turn by 0.
     """
     _, across, later = joint.split(end)
-    start = joint.across(start)  # else the rounding of what is along the axis counts, where that is most
+    start = joint.across(start)  # otherwise rounding errors of directions along the axis dominate
     return normalized(np.array([dot(start, across), -dot(start, later)]), ON_AXIS**2)
 
 
@@ -43,8 +42,8 @@ def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
     """Solve a cos(q) + b sin(q) = d (subproblems 3 and 4).
 
     Returns:
-        Both turns, shape (2, 2 B, N): the second of each pair is B branches behind. They are equal where there is none
-        and both come as near as it goes.
+        Both turns, shape (2, 2 B, N): the second of each pair is B branches later. Both are the nearest turn if there
+            is no solution.
     """
     length = np.sqrt(a * a + b * b)
     if length.min(initial=np.inf) < TINY:
@@ -60,7 +59,7 @@ def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
 
 
 def solve_parabola(a: Floats, b: Floats, d: Floats) -> Floats:
-    """Solve a x + b x² = d for both x, shape (1, 2 B, N), or the real part where there is none; b is not 0."""
+    """Solve a x + b x² = d with b != 0 for both x, shape (1, 2 B, N); without solution, return the real part."""
     half = -a / (2 * b)
     root = np.sqrt(np.maximum(half * half + d / b, 0.0))
     return np.concatenate([half + root, half - root], axis=-2)[None]
@@ -69,8 +68,8 @@ def solve_parabola(a: Floats, b: Floats, d: Floats) -> Floats:
 def solve_quadratic(k: Floats, linear: Floats, square: Floats) -> Floats:
     """Solve k + l·x + x·S x = 0 for unit vectors x = (cos(q), sin(q)) (subproblems 5 and 6).
 
-    A half-angle tangent t turns it into a quartic. The angle is counted from where the equation is far from 0 on the
-    opposite side, so that no solution is at infinity, and two Newton steps on the angle end it.
+    The half-angle tangent t gives a quartic. The origin of the angle is chosen so that the equation is far from 0 on
+    the opposite side and no solution is infinite; two Newton steps refine the angle.
 
     Args:
         k: Numbers, shape (B, N).
@@ -78,7 +77,7 @@ def solve_quadratic(k: Floats, linear: Floats, square: Floats) -> Floats:
         square: The numbers S00, S01 = S10, S11, shape (3, B, N).
 
     Returns:
-        Four turns, shape (2, 4 B, N); a complex pair gives its real part twice.
+        Four turns, shape (2, 4 B, N); a complex pair is replaced by its real part, twice.
     """
     a0, a1, b1 = k + (square[0] + square[2]) / 2, linear[0], linear[1]
     a2, b2 = (square[0] - square[2]) / 2, square[1]
@@ -100,7 +99,7 @@ def solve_quadratic(k: Floats, linear: Floats, square: Floats) -> Floats:
 
 
 def _quartic(a: Floats, b: Floats, c: Floats, d: Floats, e: Floats) -> Floats:
-    """Return the real parts of the roots of a x⁴ + b x³ + c x² + d x + e, shape (4, B, N) (L. Ferrari's way)."""
+    """Return the real parts of the roots of a x⁴ + b x³ + c x² + d x + e, shape (4, B, N) (L. Ferrari's method)."""
     a = np.where(np.abs(a) < TINY, TINY, a)
     b, c, d, e = b / a, c / a, d / a, e / a
     p = c - 3 * b * b / 8
@@ -110,7 +109,7 @@ def _quartic(a: Floats, b: Floats, c: Floats, d: Floats, e: Floats) -> Floats:
     s = np.sqrt(2 * m)
     small = s < 1e-7 * (1 + np.abs(p) + np.abs(r))
     half = q / (2 * np.where(small, 1.0, s))
-    spread = np.sqrt(np.maximum(p * p / 4 - r, 0.0))  # of the biquadratic, where q is 0
+    spread = np.sqrt(np.maximum(p * p / 4 - r, 0.0))  # of the biquadratic, if q is 0
     first = np.where(small, p / 2 - spread, p / 2 + m + half)
     second = np.where(small, p / 2 + spread, p / 2 + m - half)
     s = np.where(small, 0.0, s)
@@ -120,7 +119,7 @@ def _quartic(a: Floats, b: Floats, c: Floats, d: Floats, e: Floats) -> Floats:
 
 
 def _largest_root(a: Floats, b: Floats, c: Floats) -> Floats:
-    """Return the largest real root of x³ + a x² + b x + c (F. Viète's and G. Cardano's way)."""
+    """Return the largest real root of x³ + a x² + b x + c (F. Viète's and G. Cardano's method)."""
     q = (a * a - 3 * b) / 9
     r = (2 * a**3 - 9 * a * b + 27 * c) / 54
     rest = r * r - q**3

@@ -1,4 +1,4 @@
-"""What can be asked of an arm: OpenRAVE's types of goals."""
+"""IK tasks: OpenRAVE's goal types."""
 
 from collections.abc import Sequence
 from enum import Enum
@@ -6,31 +6,33 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.ik.chain import Chain, check_poses
+from ravemj.ik.chain import Chain, rigid_poses
 from ravemj.ik.vectors import Floats
 
 
 class Task(Enum):
-    """What of the tool's pose is asked for. The tool's *direction* is that of its manipulator, in the base.
+    """Constrained components of the tool pose.
+
+    The tool's *direction* is that of its manipulator, in the base frame.
 
     Attributes:
-        TRANSFORM: All of it. Goals: poses (..., 4, 4).
-        ROTATION: Its rotation. Goals: quaternions wxyz.
-        PLACE: The place of its origin. Goals: x, y, z.
-        DIRECTION: Its direction. Goals: unit vectors.
-        RAY: A line that its direction runs along, the origin anywhere on it. Goals: direction, point.
-        LOOK_AT: A place that its direction points to, from its origin. Goals: x, y, z.
-        PLACE_DIRECTION: The place of its origin and its direction. Goals: direction, place.
-        PLACE_XY: Where its origin is in the plane of the base's x and y. Goals: x, y.
-        PLANAR: That, and where its direction points in this plane. Goals: x, y, angle.
-        LOCAL_PLACE: The place of a point of it. Goals: the point in the tool's frame, the place.
-        PLACE_X_ANGLE: The place of its origin, and the angle between its direction and x. Goals: angle, place.
+        TRANSFORM: The full pose. Goals: poses (..., 4, 4).
+        ROTATION: The rotation. Goals: quaternions wxyz.
+        PLACE: The position of the origin. Goals: x, y, z.
+        DIRECTION: The direction. Goals: unit vectors.
+        RAY: The line along the direction, with the origin anywhere on it. Goals: direction, point.
+        LOOK_AT: A point in the direction from the origin. Goals: x, y, z.
+        PLACE_DIRECTION: The position of the origin and the direction. Goals: direction, position.
+        PLACE_XY: The position of the origin in the base's xy plane. Goals: x, y.
+        PLANAR: The same, and the angle of the direction in this plane. Goals: x, y, angle.
+        LOCAL_PLACE: The position of a point of the tool. Goals: the point in the tool frame, its position.
+        PLACE_X_ANGLE: The position of the origin, and the angle between the direction and x. Goals: angle, position.
         PLACE_Y_ANGLE: The same with y.
         PLACE_Z_ANGLE: The same with z.
-        PLACE_XY_HEADING: The place of its origin, and its direction, which is at right angles to z: the angle from x
-            about z. Goals: angle, place.
-        PLACE_YZ_HEADING: The same: at right angles to x, the angle from y about x.
-        PLACE_ZX_HEADING: The same: at right angles to y, the angle from z about y.
+        PLACE_XY_HEADING: The position of the origin, and a direction perpendicular to z: its angle from x about z.
+            Goals: angle, position.
+        PLACE_YZ_HEADING: The same: perpendicular to x, the angle from y about x.
+        PLACE_ZX_HEADING: The same: perpendicular to y, the angle from z about y.
     """
 
     TRANSFORM = "Transform6D"
@@ -52,26 +54,26 @@ class Task(Enum):
 
     @property
     def rows(self) -> Sequence[int]:
-        """Rows of a Jacobian, velocities of the tool's origin and angular velocities, that matter."""
+        """Rows of the tool Jacobian (linear, then angular velocity) that the task constrains."""
         return {Task.PLACE: (0, 1, 2), Task.PLACE_XY: (0, 1), Task.PLANAR: (0, 1, 5)}.get(self, range(6))
 
     @property
     def dof(self) -> int:
-        """How many joints fix it."""
+        """Number of constrained degrees of freedom."""
         return _DOF.get(self, len(self.rows))
 
     @property
     def size(self) -> int:
-        """How many numbers a goal has; poses are matrices."""
+        """Number of values of a goal; poses are matrices."""
         return _SIZE.get(self, 4 if self in ANGLES or self in HEADINGS else self.dof)
 
 
 ANGLES = {Task.PLACE_X_ANGLE: 0, Task.PLACE_Y_ANGLE: 1, Task.PLACE_Z_ANGLE: 2}
-"""Tasks with an angle between the direction and an axis, and the axis."""
+"""Axis of each task that constrains the angle between the direction and an axis."""
 HEADINGS = {Task.PLACE_XY_HEADING: 0, Task.PLACE_YZ_HEADING: 1, Task.PLACE_ZX_HEADING: 2}
-"""Tasks with a direction in a plane, and the axis that its angle counts from."""
+"""Origin axis of the angle of each task with a direction in a plane."""
 ALONG = frozenset({Task.PLACE_DIRECTION, *HEADINGS})
-"""Tasks that fix the place of the tool and its direction."""
+"""Tasks that constrain the position and the direction of the tool."""
 _DOF = {
     Task.ROTATION: 3,
     Task.DIRECTION: 2,
@@ -92,23 +94,23 @@ _SIZE = {
 
 
 def goal_poses(chain: Chain, task: Task, goals: ArrayLike) -> Floats:
-    """Return goals as poses of the tool in the base, shape (..., 4, 4); what the task does not ask for is anything.
+    """Return goals as tool poses in the base, shape (..., 4, 4), with arbitrary unconstrained components.
 
-    The last row of a goal of ``LOCAL_PLACE`` holds the point of the tool.
+    Rotations with errors up to 1e-3 are replaced by the nearest rotations. The last row of a ``LOCAL_PLACE`` goal
+    contains the point of the tool.
 
     Args:
         chain: The arm.
-        task: What is asked for.
-        goals: What the task says, with any axes in front.
+        task: The task.
+        goals: Goals of the task, with any leading axes.
 
     Raises:
         ValueError: wrong shapes, numbers that are not finite, directions or quaternions of length 0, or poses that are
-            no rigid transforms.
+            not rigid transforms.
     """
     numbers = np.asarray(goals, dtype=float)
     if task is Task.TRANSFORM:
-        check_poses(numbers)
-        return numbers
+        return rigid_poses(numbers)
     if numbers.shape[-1:] != (task.size,):
         raise ValueError(f"goals of shape {numbers.shape} for {task.value}: expected (..., {task.size})")
     if not np.isfinite(numbers).all():
@@ -191,7 +193,7 @@ def _units(vectors: Floats, what: str) -> Floats:
 
 
 def _pointing(chain: Chain, directions: Floats) -> Floats:
-    """Return rotations of the tool, shape (..., 3, 3), in which its direction is one of these (..., 3)."""
+    """Return tool rotations, shape (..., 3, 3), whose direction is one of these (..., 3)."""
     return _frames(directions) @ _frames(chain.direction).T
 
 

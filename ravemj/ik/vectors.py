@@ -1,8 +1,8 @@
-"""Arrays of vectors, turns and rigid transforms, for many poses and many branches of solutions at once.
+"""Arrays of vectors, turns and rigid transforms, for many poses and solution branches at once.
 
 The first axes are components, the last two are branches and poses: a vector is (3, B, N), a scalar (B, N), and B or N
-is 1 where all branches or poses share a value. A *turn* is the cosine and sine of an angle, shape (2, B, N); what
-solves for angles needs no trigonometric function before the end.
+is 1 if all branches or poses share a value. A *turn* is the cosine and sine of an angle, shape (2, B, N), which avoids
+trigonometric functions until the end.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int_]
 
 TINY = 1e-14
-"""Below this, relative to vectors of about unit length, a direction is noise."""
+"""Relative length below which the direction of a vector is noise."""
 
 
 def dot(a: Floats, b: Floats) -> Floats:
@@ -34,7 +34,7 @@ def cross(a: Floats, b: Floats) -> Floats:
 
 
 def constant(vector: Floats) -> Floats:
-    """Return a vector of shape (3,) as one for all branches and poses."""
+    """Return a vector of shape (3,) as a constant for all branches and poses."""
     return vector.reshape(3, 1, 1)
 
 
@@ -44,7 +44,7 @@ def skew(h: Floats) -> Floats:
 
 
 def perpendicular(h: Floats) -> Floats:
-    """Return a unit vector at right angles to one of shape (3,)."""
+    """Return a unit vector perpendicular to one of shape (3,)."""
     other = np.cross(h, np.eye(3)[np.argmin(np.abs(h))])
     return np.array(other / np.linalg.norm(other), dtype=float)
 
@@ -57,7 +57,7 @@ def apply_matrix(matrix: Floats, vectors: Floats) -> Floats:
 
 
 def tile(values: Floats, branches: int) -> Floats:
-    """Repeat values (..., B, N) up to a number of branches; those of one branch are broadcast as they are."""
+    """Repeat values (..., B, N) up to a number of branches; a single branch is broadcast."""
     count = values.shape[-2]
     if count in (1, branches):
         return values
@@ -101,12 +101,12 @@ class Transform(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Screw:
-    """A joint as a motion of space: a rotation about a line, or a translation along a direction.
+    """Joint as a screw motion: a rotation about a line, or a translation along a direction.
 
     Attributes:
-        axis: Unit vector, (3, 1, 1), or (3, B, N) where it differs between poses.
-        point: A point on the line, of such a shape.
-        prismatic: Whether it translates. Its values are then distances, shape (1, B, N), and else turns.
+        axis: Unit vector, (3, 1, 1), or (3, B, N) if it differs between poses.
+        point: A point on the line, of the same shape.
+        prismatic: Whether it translates. Its values are then distances, shape (1, B, N), otherwise turns.
     """
 
     axis: Floats
@@ -120,7 +120,7 @@ class Screw:
 
     @cached_property
     def parts(self) -> Floats:
-        """Matrix (9, 3[, B, N]) to the parts of a vector along the axis, across it, and that a quarter turn later."""
+        """Matrix (9, 3[, B, N]) to components along and across the axis, and across it after a quarter turn."""
         h = self.axis
         if self.shared:
             along = np.outer(h, h)
@@ -145,12 +145,12 @@ class Screw:
         return along + value[0] * across - value[1] * later
 
     def split(self, vectors: Floats) -> Floats:
-        """Return the parts of vectors along the axis, across it, and that a quarter turn later, shape (3, 3, B, N)."""
+        """Return components of vectors along and across the axis, and across it after a quarter turn, (3, 3, B, N)."""
         parts = apply_matrix(self.parts, vectors)
         return parts.reshape(3, 3, *parts.shape[1:])
 
     def across(self, vectors: Floats) -> Floats:
-        """Return the parts of vectors across the axis."""
+        """Return the components of vectors perpendicular to the axis."""
         return apply_matrix(self.parts[3:6], vectors)
 
     def moved(self, value: Floats, points: Floats) -> Floats:
@@ -166,7 +166,7 @@ class Screw:
         return self.turned_back(value, points - self.point) + self.point
 
     def carried(self, transform: Transform) -> "Screw":
-        """Return the joint seen behind a transform W: W E(axis) = E(W axis) W."""
+        """Return the joint transformed by W: W E(axis) = E(W axis) W."""
         return Screw(transform.turned(self.axis), transform.moved(self.point), self.prismatic)
 
     def transform(self, value: Floats) -> Transform:

@@ -1,4 +1,4 @@
-"""Joint values that take the tool of an arm to a goal: candidates in order, collision tests, reasons for rejection."""
+"""Search for IK solutions of an arm: candidates in order, collision checks, reasons for rejection."""
 
 from collections.abc import Generator, Iterable, Iterator
 from enum import Enum
@@ -34,14 +34,15 @@ class Reason(Enum):
 
 
 class Checks(NamedTuple):
-    """Tests of joint values that reach a goal.
+    """Tests of IK solutions.
 
     Attributes:
-        others: Whether collisions with other bodies count.
-        itself: Whether collisions of the robot with itself count.
-        limits: Whether joint limits count. Without them, every branch gives one solution, with angles in [-pi, pi].
-        end_and_others: Whether the links beyond the arm count in collisions with other bodies.
-        end_and_rest: Whether collisions of the links beyond the arm with links that the arm does not move count.
+        others: Whether to check collisions with other bodies.
+        itself: Whether to check self-collisions.
+        limits: Whether to enforce joint limits. Without them, every branch gives one solution, with angles in [-pi,
+            pi].
+        end_and_others: Whether collisions with other bodies include the links beyond the arm.
+        end_and_rest: Whether to check the links beyond the arm against links not moved by the arm.
     """
 
     others: bool = False
@@ -52,24 +53,23 @@ class Checks(NamedTuple):
 
 
 class ArmSearch:
-    """Search for joint values for one goal. It moves the robot, and restores its configuration.
+    """Search for IK solutions of one goal. It moves the robot, and restores its configuration.
 
-    Subclasses may override ``accepts`` and ``solution`` to ask functions of users, and ``reject`` to note why joint
-    values are rejected.
+    Subclasses may override ``accepts`` and ``solution`` to call user callbacks, and ``reject`` to record rejections.
 
     Args:
         body: The robot.
         arm: Its manipulator.
         solver: The solver of the arm.
-        goal: A pose in the base of the arm (4, 4), or what else the task of the solver asks for.
+        goal: A pose in the base of the arm (4, 4), or another goal of the solver's task.
         checks: The tests of joint values.
         checker: The collision checker.
         free: The values of the free joints, shape (k,); None for samples.
 
     Attributes:
-        asks_users: Whether ``accepts`` is to be called.
+        asks_users: Whether to call ``accepts``.
         explains: Whether ``reject`` gets the colliding geometries.
-        ended: Whether no further joint values are to be tried.
+        ended: Whether the search must stop.
     """
 
     def __init__(
@@ -90,16 +90,16 @@ class ArmSearch:
     # Functions of users
 
     def accepts(self, row: Floats, *, before_collisions: bool) -> bool:
-        """Return whether users accept joint values. The robot is there, before and after the collision tests."""
+        """Return whether user callbacks accept joint values. It is called before and after the collision checks."""
         del row, before_collisions
         return True
 
     def solution(self, row: Floats) -> Floats:
-        """Return what takes the place of accepted joint values."""
+        """Return the replacement of accepted joint values."""
         return row
 
     def reject(self, reason: Reason, row: Floats, findings: Findings | None) -> None:
-        """Take note that joint values are rejected; ``row`` is empty if there are none."""
+        """Record a rejection; ``row`` is empty without joint values."""
 
     @block
     def moving(self) -> Generator[None]:
@@ -112,18 +112,26 @@ class ArmSearch:
     # Candidates
 
     def nearest(self, seed: Floats | None = None) -> Floats | None:
-        """Return the first good joint values, those nearest to a configuration first, shape (n,), or None."""
+        """Return the first accepted joint values, those nearest to a configuration first, shape (n,), or None."""
         start, limits = self.present() if seed is None else seed, self.checks.limits
         if not self._is_tested and limits and self._free is None:
             return self.solver.nearest(self._goal, start, weights=self.weights)
         from ravemj.ik.candidates import nearest_first
 
-        rows = nearest_first(self.solver, self._goal, start, weights=self.weights, free=self._free, limits=limits)
+        rows = nearest_first(
+            self.solver,
+            self._goal,
+            start,
+            weights=self.weights,
+            free=self._free,
+            limits=limits,
+            fine=not self.asks_users,
+        )
         with self.moving():
             return next(self.good(rows), None)
 
     def near(self, seed: Floats, largest: float) -> Floats | None:
-        """Return the good joint values nearest to a configuration; None if a joint moves farther than ``largest``."""
+        """Return the accepted joint values nearest to a configuration; None if a joint step exceeds ``largest``."""
         rows = self.rows()
         away = np.abs(rows - seed).max(axis=1, initial=0.0)
         order = [number for number in np.argsort(away, kind="stable").tolist() if away[number] <= largest]
@@ -131,14 +139,29 @@ class ArmSearch:
             return next(self.good(rows[order]), None)
 
     def every(self) -> list[Floats]:
-        """Return all good joint values, each of shape (n,); none if a function of users ends the search."""
-        rows = self.rows()
+        """Return all accepted joint values, each of shape (n,); none if a callback ends the search."""
         with self.moving():
-            found = list(self.good(rows))
+            found = list(self.all_good())
         return [] if self.ended else found
 
+    def all_good(self) -> Iterator[Floats]:
+        """Yield all accepted joint values, each of shape (n,); points between samples only if no sample is accepted.
+
+        Use it within ``moving``.
+        """
+        from ravemj.ik.candidates import everything
+
+        accepted = False
+        limits, fine = self.checks.limits, not self.asks_users
+        for rows in everything(self.solver, self._goal, free=self._free, limits=limits, fine=fine):
+            for row in self.good(rows):
+                accepted = True
+                yield row
+            if accepted or self.ended:
+                return
+
     def rows(self) -> Floats:
-        """Return all joint values that reach the goal, good or not, shape (K, n)."""
+        """Return all joint values that reach the goal, accepted or not, shape (K, n)."""
         free = None if self._free is None else self._free[None]
         return self.solver.solve_one(self._goal, free=free, limits=self.checks.limits)
 
@@ -176,17 +199,13 @@ class ArmSearch:
         return not asks or self.accepts(row, before_collisions=False)
 
     def _collides(self, row: Floats) -> bool:
-        """Return whether the robot, which is at the joint values, collides."""
+        """Return whether the robot collides at its present joint values."""
         if not (self.checks.others or self.checks.itself):
             return False
-        with self._checker.world() as world:
-            return self._collides_in(world, row)
-
-    def _collides_in(self, world: CollisionWorld, row: Floats) -> bool:
-        checks, body, arm = self.checks, self.body, self.arm
+        checks, body, arm, world = self.checks, self.body, self.arm, self._checker.world()
         with_end = checks.end_and_others
         if checks.others and with_end and self._goal.ndim == 2:
-            # All joint values for a pose have the links beyond the arm at the same place.
+            # All solutions of a pose have the links beyond the arm at the same pose.
             pairs = arms.end_and_others(world, body, arm)
             if not self._end_is_free and self._hits(world, pairs, row, Reason.END_COLLISION):
                 self.ended = True
@@ -209,8 +228,12 @@ class ArmSearch:
             self.reject(reason, row, findings)
         return hit
 
+    def shortfall(self) -> str:
+        """Describe how far the goal is out of reach; empty if joint values within the limits reach it."""
+        return "" if len(self.rows()) else str(self.solver.nearest_reachable(self._goal, self.present()))
+
     def explain(self) -> None:
-        """Reject the goal itself: because it is out of reach, or because solutions are beyond limits that count."""
+        """Reject the goal itself: it is unreachable, or its solutions exceed enforced limits."""
         from ravemj.ik.candidates import shortfall
 
         unreached, limited = shortfall(self.solver, self._goal, self._free)

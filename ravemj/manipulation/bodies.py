@@ -1,4 +1,4 @@
-"""The bodies that a motion moves, as one configuration: its limits, and whether it is free of collisions."""
+"""Moving bodies of a planning problem as one configuration: limits and collision checks."""
 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -20,24 +20,23 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, affine_values, pose_with_values
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
-from ravemj.planning.edges import Allowed, Edges
+from ravemj.planning.edges import Allowed, Edges, Proof
 from ravemj.planning.space import Coordinates, Space
 from ravemj.trajectories.extraction import rotation_columns
 from ravemj.trajectories.groups import AFFINE, IK, JOINTS, Group, affine_parts, ik_type, joint_indices
 
 FREE, ENV_COLLISION, SELF_COLLISION, USER = 0, 1, 2, 0x8000
-"""Reason for refusing a configuration: bits of OpenRAVE's ``ConstraintFilterOptions``. ``USER`` is the bit of users'
-own functions."""
+"""Reasons for rejecting a configuration: bits of OpenRAVE's ``ConstraintFilterOptions``. ``USER`` is that of user
+callbacks."""
 
 ALL = 0xFFFF
 """All tests that a configuration of a path has to pass."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
-"""Limits of the values of a goal of inverse kinematics, and of a pose of no body. Callers have to set the limits that
-are not listed here."""
+"""Limits of the values of IK goals, and of a pose without a body. Other limits must be set by callers."""
 
 _NO_BODY = "__dummy__"
-"""The body that ``RaveGetAffineConfigurationSpecification`` names where it is given none."""
+"""Body name that ``RaveGetAffineConfigurationSpecification`` uses without a body."""
 
 _RESOLUTION = 0.02
 """OpenRAVE's default for the step in which a value is tested for collisions [rad or m]."""
@@ -45,12 +44,12 @@ _RESOLUTION = 0.02
 _ROUND = np.pi  # samples of a circular joint are drawn from [-pi, pi], since the joint has no limits of its own
 
 _FULL_TURN = 2 * np.pi
-"""Limits of rotation vectors, for samples [rad]: OpenRAVE's are 10000, where hardly a sample is near the start."""
+"""Sampling limits of rotation vectors [rad]: with OpenRAVE's 10000, hardly a sample is near the start."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """Some joints of one body, or its pose, as columns of a configuration.
+    """Joints of one body, or its pose, as columns of a configuration.
 
     Attributes:
         body: The body.
@@ -72,13 +71,14 @@ class Bodies:
 
     Args:
         simulation: The world that contains the bodies.
-        groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals move nothing, and neither do
-            poses of ``__dummy__``, which stands for no body.
+        groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals and poses of ``__dummy__``
+            do not move a body.
         checker: Returns the collision checker.
 
     Attributes:
-        parts: What moves.
-        bodies: The bodies that move.
+        parts: The moving parts.
+        bodies: The moving bodies.
+        dof: The number of values of a configuration.
 
     Raises:
         ArgumentError: a group names a body that is not in the world, or a DOF that its body does not have.
@@ -90,13 +90,13 @@ class Bodies:
         moving = [group for group in groups if group.kind in {JOINTS[0], AFFINE[0]} and not _is_unbound(group)]
         self.parts = [_part(simulation, group) for group in moving]
         self._unbound = [group for group in groups if _is_unbound(group)]
-        self._dof = max((one.columns.stop for one in (*self.parts, *self._unbound)), default=0)
+        self.dof = max((one.columns.stop for one in (*self.parts, *self._unbound)), default=0)
         self.bodies = list(dict.fromkeys(part.body for part in self.parts))
-        self._free: set[BodyState] = set()  # whose joints stay as they are, and have no self-collision
+        self._free: set[BodyState] = set()  # bodies whose joints do not move, and which need no self-collision checks
 
     def numbers(self, name: str) -> Floats:
-        """Return one setting of each joint value, a number of ``scene.Axis``, shape (n,); 0 or no limit for others."""
-        result = np.zeros(self._dof)
+        """Return a field of ``scene.Axis`` for each joint value, shape (n,); 0 or no limit for other values."""
+        result = np.zeros(self.dof)
         for part in self.parts:
             axes = part.body.scene.dof_axes
             if part.dofs:
@@ -106,8 +106,8 @@ class Bodies:
         return result
 
     def coordinates(self) -> Coordinates:
-        """Return which values of a configuration are circular angles, positions or quaternions."""
-        circular = np.zeros(self._dof, dtype=bool)
+        """Return the type of each configuration value: circular angle, position or quaternion."""
+        circular = np.zeros(self.dof, dtype=bool)
         translation: list[int] = []
         rotation: list[int] = []
         poses = [(part.columns, part.affine) for part in self.parts if not part.dofs]
@@ -131,17 +131,17 @@ class Bodies:
 
     def described(self, column: int) -> str:
         """Return the name of one value of a configuration, for error messages."""
-        part = next(part for part in self.parts if column in range(self._dof)[part.columns])
-        index, scene = range(self._dof)[part.columns].index(column), part.body.scene
+        part = next(part for part in self.parts if column in range(self.dof)[part.columns])
+        index, scene = range(self.dof)[part.columns].index(column), part.body.scene
         if part.dofs:
             return f"joint '{scene.joint_of_dof(part.dofs[index]).name}'"
         return f"value {index} of the pose of '{scene.name}'"
 
     def near_others(self, space: Space, ends: Floats) -> Space:
-        """Return a space in which a base stays where it can touch other bodies, or between starts and goals.
+        """Return a space that restricts a base to positions near other bodies, or between starts and goals.
 
-        Every path elsewhere could be moved onto the border of this box. OpenRAVE's limits of a base are 100 m, where
-        hardly a sample is near anything.
+        Paths elsewhere could be moved to the border of this box. With OpenRAVE's base limits of 100 m, hardly a sample
+        is near an obstacle.
 
         Args:
             space: The configuration space.
@@ -162,7 +162,7 @@ class Bodies:
 
     def values(self) -> Floats:
         """Return the current configuration, shape (n,)."""
-        result = np.zeros(self._dof)
+        result = np.zeros(self.dof)
         with self._simulation.lock:
             for part in self.parts:
                 if part.dofs:
@@ -185,7 +185,7 @@ class Bodies:
 
     @block
     def kept(self) -> Generator[None]:
-        """Hold the lock; on leaving, restore the configurations of all bodies and of the bodies that they hold."""
+        """Context manager that acquires the lock, and restores the configurations of bodies and grabbed bodies."""
         with self._simulation.lock:
             self._free.clear()
             held = [grab.body for state in self.bodies for grab in state.grabs]
@@ -194,26 +194,31 @@ class Bodies:
             with restoring(lambda: _restore(saved, stamps)):
                 yield
 
-    def fast_test(self) -> Callable[[Floats], bool] | None:
-        """Return a fast collision test for configurations, or None if only ``move`` and ``collision`` can tell.
+    def world(self) -> CollisionWorld | None:
+        """Return the collision world at the present poses; None if a user's checker decides about collisions."""
+        return self._simulation.collisions() if self._checker().is_plain else None
 
-        Use the test within ``kept``, and change nothing else in the world meanwhile.
+    def fast_test(self) -> Callable[[Floats], bool] | None:
+        """Return a fast collision test of configurations, or None if only ``move`` and ``collision`` can decide.
+
+        Use it within ``kept``, without other changes of the world.
         """
-        # Checkers and callbacks of the user look at the bodies themselves, so these have to be moved.
+        # User checkers and callbacks inspect the bodies, so these must be moved.
         if not self._checker().is_plain or len(self.parts) != 1 or not self.parts[0].dofs:
             return None
         return moving_test(self.parts[0].body, self.parts[0].dofs)
 
     def collision(self, told: list[Findings] | None = None) -> int:
-        """Return whether the bodies collide where they are: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``.
+        """Return the collision of the bodies at present: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``.
 
-        ``told`` gets the geometries that collide. Links that no value moves do not count, as with OpenRAVE's option
+        ``told`` receives the colliding geometries. Links not moved by any value are ignored, as with OpenRAVE's option
         ``ActiveDOFs``: the base of an arm touches the floor in every configuration.
         """
         checker = self._checker()
-        with self._simulation.lock, checker.world() as world:
+        with self._simulation.lock:
+            world = checker.world()
             for body in self.bodies:
-                moved = self._moved(body)
+                moved = self.moved(body)
                 if _hits(checker, world, body_and_others(world, body, moved), told):
                     return ENV_COLLISION
                 if body in self._free:
@@ -224,21 +229,42 @@ class Bodies:
                     self._free.add(body)
         return FREE
 
-    def _moved(self, body: BodyState) -> MovedBy | None:
-        """Return the links of a body that the values move, or None if they move all of it."""
+    def collisions(self) -> list[Findings]:
+        """Return the present collisions: of each body with itself, and with other bodies."""
+        checker, found = self._checker(), list[Findings]()
+        with self._simulation.lock:
+            world = checker.world()
+            for body in self.bodies:
+                moved = self.moved(body)
+                tests = itself(world, body, moved), body_and_others(world, body, moved)
+                found += [checker.find(world, pairs) for pairs in tests]
+        return [findings for findings in found if findings.collisions]
+
+    def beyond_limits(self, values: Floats) -> list[str]:
+        """Return the names of joints whose values exceed their limits; circular joints have none."""
+        names: list[str] = []
+        for part in self.parts:
+            for dof, value in zip(part.dofs, values[part.columns].tolist(), strict=True) if part.dofs else ():
+                axis = part.body.scene.dof_axes[dof]
+                if not (axis.circular or axis.lower <= value <= axis.upper):
+                    names.append(part.body.scene.joint_of_dof(dof).name)
+        return names
+
+    def moved(self, body: BodyState) -> MovedBy | None:
+        """Return the links of a body moved by the values, or None if all are moved."""
         parts = [part for part in self.parts if part.body is body]
         return MovedBy(tuple(dof for part in parts for dof in part.dofs)) if all(part.dofs for part in parts) else None
 
 
 def _restore(saved: Sequence[tuple[BodyState, SavedConfiguration]], stamps: Sequence[int]) -> None:
-    # The stamp tells caches that a body has moved. Nothing has, seen from outside, so it goes back as well.
+    # The stamp tells caches that a body has moved. It is restored as well, since effectively nothing has moved.
     for (state, configuration), stamp in zip(saved, stamps, strict=True):
         state.restore(configuration)
         state.stamp = stamp
 
 
 def _is_unbound(group: Group) -> bool:
-    """Return whether the values of a group move no body."""
+    """Return whether the values of a group do not move a body."""
     return group.kind == IK[0] or (group.kind == AFFINE[0] and group.body == _NO_BODY)
 
 
@@ -263,29 +289,31 @@ def _part(simulation: Simulation, group: Group) -> Part:
 
 
 Constraint = Callable[[Floats], bool]
-"""A function of a configuration that returns whether it is allowed. It is called with the bodies there."""
+"""User callback that returns whether a configuration is allowed. It is called with the bodies at the configuration."""
 
 
 @dataclass
 class Conditions:
-    """The conditions that configurations of bodies have to keep.
+    """Constraints on configurations of bodies.
 
     Attributes:
         bodies: The bodies; None if nothing collides.
-        constraints: Functions of users that return whether a configuration is allowed.
-        manifold: The configurations that keep a constraint of the tool; None: all.
+        constraints: User callbacks that return whether a configuration is allowed.
+        manifold: The manifold of a tool constraint, or None.
+        proves: Whether shortcuts of a path must be certified.
     """
 
     bodies: Bodies | None = None
     constraints: list[Constraint] = field(default_factory=lambda: [])
     manifold: Manifold | None = None
+    proves: bool = False
 
     def kept(self) -> AbstractContextManager[None]:
-        """Hold the lock; on leaving, restore the configurations of the bodies and of the bodies that they hold."""
+        """Context manager that acquires the lock, and restores the configurations of the bodies and grabbed bodies."""
         return nullcontext() if self.bodies is None else self.bodies.kept()
 
     def allowed(self) -> Allowed:
-        """Return the test of single configurations. Use it within ``bodies.kept``, since it may move the bodies."""
+        """Return the test of a configuration. Use it within ``bodies.kept``, since it may move the bodies."""
         fast, manifold = None if self.bodies is None or self.constraints else self.bodies.fast_test(), self.manifold
         if fast is None:
             return lambda values: not self.violation(values)
@@ -294,25 +322,41 @@ class Conditions:
         return lambda values: not fast(values)
 
     def near_others(self, space: Space, ends: Floats) -> Space:
-        """Return where to search for a path between starts and goals; see ``Bodies.near_others``."""
+        """Return the space in which to search for a path between starts and goals; see ``Bodies.near_others``."""
         return space if self.bodies is None or self.constraints else self.bodies.near_others(space, ends)
 
-    def edges(self, space: Space, allowed: Allowed, step: float) -> Edges:
-        """Return the test of lines, for use within ``kept``.
+    def edges(self, space: Space, allowed: Allowed, step: float, ends: Sequence[Floats]) -> Edges:
+        """Return the tests of edges, for use within ``kept``.
 
         Args:
             space: The configuration space.
             allowed: The test of single configurations.
             step: The step of trees, a weighted distance.
+            ends: The starts and goals, at which shapes may touch.
         """
+        proof = self._proof(ends)
         if self.manifold is None:
-            return Edges(space, allowed, step)
-        return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold, step)
+            return Edges(space, allowed, step, proof)
+        return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold, step, proof)
+
+    def straight_edges(self, space: Space, ends: Sequence[Floats]) -> Edges:
+        """Return the tests of straight edges, ignoring a constraint manifold; see ``edges``."""
+        return Edges(space, self.allowed(), proof=self._proof(ends))
+
+    def _proof(self, ends: Sequence[Floats]) -> Proof | None:
+        if not self.proves or self.bodies is None:
+            return None
+        from ravemj.manipulation.certification import Certifier, UncertifiableError  # noqa: PLC0415 - rarely wanted
+
+        try:
+            return Certifier(self.bodies, ends).proves
+        except UncertifiableError:
+            return None
 
     def violation(self, values: Floats, options: int = ALL, told: list[Findings] | None = None) -> int:
-        """Move the bodies to a configuration, and return the bit of the condition that it violates, or 0.
+        """Move the bodies to a configuration, and return the bit of the violated condition, or 0.
 
-        ``options`` are the bits to test; ``told`` gets the geometries that collide.
+        ``options`` are the bits to test; ``told`` receives the colliding geometries.
         """
         if self.bodies is None:
             return FREE

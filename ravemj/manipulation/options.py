@@ -1,19 +1,24 @@
-"""Options of motions: a field is a row with OpenRAVE's name, the type, the default and the effect.
+"""Options of motions: each field has OpenRAVE's name, type, default and effect.
 
-Commands of modules read their texts by the types, helpers check their keywords by them, and planning gets the rows.
+Module commands parse text by these types, helpers check keywords by them, and planning receives the options.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from ravemj.core.arrays import checked_vector, checked_whole_numbers
+from ravemj.core.arrays import checked_vector
+from ravemj.errors import ArgumentError
 from ravemj.planning.edges import STEP
 
 STEP_LENGTH = float(np.float32(STEP))
 """OpenRAVE's default step length, rounded to single precision as there."""
+
+
+Certify = bool | Literal["required"]
+"""Whether to certify that a motion is free of collisions, and whether to reject uncertified motions."""
 
 
 @dataclass(frozen=True)
@@ -25,10 +30,14 @@ class JointMotion:
     maxtries: int = 2
     """Number of calls of the planner, with other random numbers each time."""
     jitter: float = 0.04
-    """Largest change of each value of a start or goal in collision, to make it free [rad or m]. The motion between the
-    two is not tested. With a constraint, starts and goals are not changed."""
+    """Maximum change of each value of a start or goal in collision to make it free [rad or m].
+
+    The motion between the two is not tested. With a constraint, starts and goals are not changed.
+    """
     steplength: float = STEP_LENGTH
     """Step of the planner's trees, a weighted distance of configurations."""
+    certify: Certify = False
+    """Whether to certify that the motion is free of collisions; ``required`` rejects uncertified motions."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +49,9 @@ class ToolMotion(JointMotion):
     seedik: int = 8
     """Number of IK solutions that are goals from the start."""
     goalsamples: int = 40
-    """Largest number of IK solutions that are goals."""
+    """Maximum number of IK solutions that are goals."""
     goalsampleprob: float = 0.1
-    """Fraction of the iterations that ask for a further IK solution."""
+    """Probability of sampling another IK solution in an iteration."""
 
 
 @dataclass(frozen=True)
@@ -50,23 +59,23 @@ class StraightMotion:
     """Options of a motion of the tool along a straight line: ``MoveHandStraight``."""
 
     minsteps: int = 0
-    """Smallest number of steps."""
+    """Minimum number of steps."""
     maxsteps: int = 10000
-    """Largest number of steps."""
+    """Maximum number of steps."""
     stepsize: float = 0.01
     """Distance between consecutive poses of the tool [m]."""
     ignorefirstcollision: float = 0.1
-    """Length of the line, from its start, in which collisions do not count [m]."""
+    """Length of the line, from its start, in which collisions are ignored [m]."""
 
 
 @dataclass(frozen=True)
 class UnsyncMotion:
-    """Options of a motion to where other joints can move: ``MoveUnsyncJoints``."""
+    """Options of a motion to a configuration from which other joints can move: ``MoveUnsyncJoints``."""
 
     maxtries: int = 1
     """Number of attempts."""
     maxdivision: int = 10
-    """Number of steps in which the motion of the other joints is tested."""
+    """Number of steps of the test of the other joints' motion."""
     planner: str = "BasicRRT"
     """Name of the planner."""
 
@@ -76,9 +85,9 @@ class JitterMotion:
     """Options of a motion out of collision: ``JitterActive``."""
 
     maxiter: int = 5000
-    """Number of random configurations that are tested."""
+    """Maximum number of random configurations."""
     jitter: float = 0.03
-    """Largest change of each value [rad or m]."""
+    """Maximum change of each value [rad or m]."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +97,7 @@ class GraspMotion:
     seedgrasps: int = 20
     """Number of reachable grasps that are goals of one plan."""
     seeddests: int = 5
-    """Number of places that are looked for with each grasp."""
+    """Number of destinations to find for each grasp."""
     seedik: int = 0
     """Number of IK solutions of each grasp that are goals; 0 for all."""
     maxiter: int = 4000
@@ -96,7 +105,7 @@ class GraspMotion:
     randomgrasps: bool = True
     """Whether to try the grasps in random order."""
     randomdests: bool = True
-    """Whether to try the places in random order."""
+    """Whether to try the destinations in random order."""
     approachoffset: float = 0.0
     """Distance from the grasp at which the motion ends [m]."""
     steplength: float = STEP_LENGTH
@@ -107,10 +116,10 @@ Kind = TypeVar("Kind", JointMotion, ToolMotion, StraightMotion, UnsyncMotion, Ji
 
 
 def chosen(kind: type[Kind], given: Mapping[str, Any]) -> Kind:
-    """Return the options of a motion: those given that are not None, and the defaults. Other names are left out.
+    """Return the options of a motion: given values that are not None, else defaults. Other names are ignored.
 
     Raises:
-        ArgumentError: an option is no finite number, or no whole one where it should be.
+        ArgumentError: an option is not finite, or not an integer if it should be.
     """
     rows = [row for row in fields(kind) if given.get(row.name) is not None]
     return kind(**{row.name: _checked(row.name, row.type, given[row.name]) for row in rows})
@@ -118,5 +127,8 @@ def chosen(kind: type[Kind], given: Mapping[str, Any]) -> Kind:
 
 def _checked(name: str, kind: object, value: Any) -> Any:  # noqa: ANN401 - of the type of its row
     if kind is int:
-        return checked_whole_numbers([value], name).item()
+        number = checked_vector([value], 1, name).item()
+        if number % 1:
+            raise ArgumentError(f"{name}: is {value}, and should be a whole number")
+        return int(number)
     return checked_vector([value], 1, name).item() if kind is float else value

@@ -1,4 +1,4 @@
-"""Smoothers and retimers by OpenRAVE's names: they make timed motions of paths."""
+"""Smoothers and retimers by OpenRAVE's names, which turn paths into timed motions."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,9 +8,10 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges, path_is_allowed
 from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
-from ravemj.planning.retiming.segments import Interpolated, Limits, Profile, RetimingError, Timed, retime
+from ravemj.planning.retiming.segments import Interpolated, PathLimits, Profile, RetimingError, Timed, retime
+from ravemj.planning.retiming.spline import Spline
 from ravemj.planning.retiming.topp_ra import ToppRa
-from ravemj.planning.shortcuts import Piece, faster, lines, shorten
+from ravemj.planning.shortcuts import MotionSegment, faster, lines, shorten
 from ravemj.trajectories.conversion import FindBody
 from ravemj.trajectories.groups import DELTATIME, Group
 from ravemj.trajectories.layout import (
@@ -31,7 +32,7 @@ TOPP_RA = ("toppra", "toppratrajectoryretimer")
 
 
 def flag(options: Mapping[str, str], name: str, *, default: bool = False) -> bool:
-    """Return whether a parameter is on: any text but ``0`` and ``false``."""
+    """Return whether a parameter is set: any text but ``0`` and ``false``."""
     text = options.get(name, "").strip().lower()
     return default if not text else text not in {"0", "false"}
 
@@ -40,7 +41,9 @@ def _parabolic(options: Mapping[str, str]) -> Parabolic:
     return Parabolic(with_changes=flag(options, "outputaccelchanges", default=True))
 
 
-RETIMERS: Mapping[str, Callable[[Mapping[str, str]], Profile | ToppRa]] = {
+SPLINE = "splinetrajectoryretimer"
+
+RETIMERS: Mapping[str, Callable[[Mapping[str, str]], Profile | ToppRa | Spline]] = {
     "lineartrajectoryretimer": lambda options: Linear(),
     "parabolictrajectoryretimer": _parabolic,
     "parabolictrajectoryretimer2": _parabolic,
@@ -48,8 +51,9 @@ RETIMERS: Mapping[str, Callable[[Mapping[str, str]], Profile | ToppRa]] = {
     "cubictrajectoryretimer2": lambda options: JerkLimited(),
     "quintictrajectoryretimer": lambda options: Quintic(),
     **dict.fromkeys(TOPP_RA, lambda options: ToppRa()),
+    SPLINE: lambda options: Spline(),
 }
-"""The velocity profiles of the retimers, by their names in lower case."""
+"""Velocity profiles of the retimers, by lower-case name."""
 
 SMOOTHERS: Mapping[str, Callable[[], Profile]] = {
     "linearsmoother": Linear,
@@ -60,42 +64,41 @@ SMOOTHERS: Mapping[str, Callable[[], Profile]] = {
     "cubicsmoother": Cubic,
     "quinticsmoother": Quintic,
 }
-"""The velocity profiles of the results, by the names of smoothers in lower case. Only parabolic results leave the
-straight lines of the path: they round its corners."""
+"""Velocity profiles of smoother results, by lower-case name. Only parabolic results round corners of the path."""
 
 
 @dataclass(frozen=True)
 class Processor:
-    """A smoother or retimer with its parameters.
+    """Smoother or retimer with its parameters.
 
     Attributes:
         name: The name, in lower case.
         groups: The layout of a configuration.
         limits: The limits of the motion.
         options: Further parameters, as texts by their names.
-        time_step: The retimers' step: they round all times up to multiples of it [s]; 0 for none.
+        time_step: Retimers round all times up to multiples of it [s]; 0 means no rounding.
         iterations: The number of attempted shortcuts; 0 for OpenRAVE's.
         random: The random numbers.
-        edges: Returns the test of lines, for smoothers.
+        edges: Returns the tests of edges, for smoothers, given the path.
         proceed: Callback before each attempt; returning False ends them.
     """
 
     name: str
     groups: list[Group]
-    limits: Limits
+    limits: PathLimits
     options: Mapping[str, str]
     time_step: float
     iterations: int
     random: np.random.Generator
-    edges: Callable[[], Edges]
+    edges: Callable[[Floats], Edges]
     proceed: Callable[[int], bool] = lambda attempt: True
 
     def process(self, path: Waypoints, find_body: FindBody) -> Waypoints:
-        """Return a path with times. ``find_body`` finds the bodies, whose present state replaces missing joints.
+        """Return the timed path. ``find_body`` finds the bodies, whose present state supplies missing joints.
 
         Raises:
-            RetimingError: there is no such motion.
-            OutsideLimitsError: a retimer found a waypoint outside of the limits.
+            RetimingError: the path cannot be timed.
+            OutsideLimitsError: a waypoint is outside the limits.
         """
         run = self._retimed if self.name in RETIMERS else self._smoothed
         return run(path, lambda groups: path.as_layout(path.data, groups, find_body))
@@ -105,15 +108,20 @@ class Processor:
             if find_compatible(path.groups, group.name) is None:
                 raise RetimingError(f"the trajectory has no group '{group.name}'")
 
+    def _is_of_goals(self) -> bool:
+        """Return whether the path consists of tool poses, whose values OpenRAVE retimes like joint values."""
+        return all(group.name.startswith("ikparam_values") for group in self.groups)
+
     # Retimers
 
     def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> Waypoints:
-        """Give waypoints times within the velocity and acceleration limits. Collisions are ignored."""
+        """Time waypoints within the velocity and acceleration limits. Collisions are ignored."""
         profile, options, coordinates = RETIMERS[self.name](self.options), self.options, self.limits.coordinates
         wanted = options.get("interpolation", "")
         if wanted not in {"", profile.interpolation}:
             raise RetimingError(f"the interpolation is '{profile.interpolation}', and should be '{wanted}'")
-        if (coordinates.translation or coordinates.rotation) and profile.interpolation != "linear":
+        is_base = bool(coordinates.translation or coordinates.rotation) and not self._is_of_goals()
+        if is_base and profile.interpolation != "linear":
             raise RetimingError("poses of bodies can be retimed by the LinearTrajectoryRetimer only")
         self._check_layout(path)
         deltas = None
@@ -126,24 +134,25 @@ class Processor:
         return self._written(profile, self._timed(profile, rows(self.groups), deltas, velocities))
 
     def _timed(
-        self, profile: Profile | ToppRa, points: Floats, deltas: Floats | None, velocities: Floats | None
+        self, profile: Profile | ToppRa | Spline, points: Floats, deltas: Floats | None, velocities: Floats | None
     ) -> Timed:
-        if not isinstance(profile, ToppRa):
+        if not isinstance(profile, ToppRa | Spline):
             time_step = self.time_step
             return retime(profile, points, self.limits, deltas=deltas, velocities=velocities, time_step=time_step)
         if deltas is not None or velocities is not None:
-            raise RetimingError("TOPP-RA keeps neither times nor velocities")
+            name = "TOPP-RA" if isinstance(profile, ToppRa) else "a curve without stops"
+            raise RetimingError(f"{name} keeps neither times nor velocities")
         return profile.timed(points, self.limits, self.time_step)
 
     # Smoothers
 
     def _smoothed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> Waypoints:
-        """Replace parts of a path by shortcuts without collisions, and give the result times."""
+        """Replace parts of a path by collision-free shortcuts, and time the result."""
         self._check_layout(path)
-        points, coordinates, edges = rows(self.groups), self.limits.coordinates, self.edges()
+        points, coordinates = rows(self.groups), self.limits.coordinates
         if len(points) < 2:
             raise RetimingError(f"there should be two waypoints at least, and there are {len(points)}")
-        profile = SMOOTHERS[self.name]()
+        profile, edges = SMOOTHERS[self.name](), self.edges(points)
         try:
             self.limits.check(points)
             if flag(self.options, "verifyinitialpath", default=True) and not path_is_allowed(edges, points):
@@ -164,7 +173,7 @@ class Processor:
             raise RetimingError(str(error)) from None
 
     def _written(self, profile: Interpolated, timed: Timed, *, marks: bool = False) -> Waypoints:
-        """Return a timed path as waypoints; ``marks`` adds a group ``iswaypoint``."""
+        """Convert a timed path to waypoints; ``marks`` adds a group ``iswaypoint``."""
         groups = copied(self.groups)
         for group in groups:
             group.interpolation = profile.interpolation
@@ -188,8 +197,8 @@ class Processor:
         return Waypoints(result, rows)
 
 
-def _timed(motion: list[Piece], points: Floats) -> Timed:
-    """Return a motion as a timed path, which begins and ends exactly at the first and last of the given points."""
+def _timed(motion: list[MotionSegment], points: Floats) -> Timed:
+    """Return a motion as a timed path, which starts and ends exactly at the first and last of the given points."""
     rest = np.zeros_like(points[0])
     values = np.array([*(piece.values for piece in motion), points[-1]])
     values[0] = points[0]

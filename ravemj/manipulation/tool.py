@@ -1,4 +1,4 @@
-"""The tool of an arm: its pose and Jacobian, its error against a goal pose, and task-space constraints."""
+"""Tool of an arm: pose and Jacobian, error against a goal pose, and task-space constraints."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,12 +20,12 @@ from ravemj.planning.projection import Error
 
 
 class Tool(NamedTuple):
-    """The tool of a manipulator that has an effector.
+    """Tool of a manipulator with an end effector.
 
     Attributes:
         arm: The manipulator.
         T_effector_tool: The pose of the tool in the effector, shape (4, 4).
-        origin: Its last column.
+        origin: The last column of ``T_effector_tool``.
         dofs: The DOF indices of the joints, shape (n,).
     """
 
@@ -35,7 +35,7 @@ class Tool(NamedTuple):
     dofs: Ints
 
     @classmethod
-    def of(cls, arm: Manipulator) -> "Tool":
+    def for_arm(cls, arm: Manipulator) -> "Tool":
         """Return the tool of a manipulator."""
         T_effector_tool = arm.T_effector_tool.matrix()
         return cls(arm, T_effector_tool, T_effector_tool[:, 3].copy(), np.array(arm.arm_dofs, dtype=np.int_))
@@ -63,15 +63,15 @@ class Tool(NamedTuple):
 
 
 class ToolConstraint(NamedTuple):
-    """A task-space constraint of the tool.
+    """Task-space constraint of the tool.
 
     The constraint keeps ``T_task_world @ T_world_tool @ T_tool_point`` free of rotation about some axes and of
     translation along some axes.
 
     Attributes:
         T_task_world: The task frame, whose axes ``freedoms`` refers to.
-        T_tool_point: The constrained frame, relative to the tool; None for the frame that is the task frame at the
-            start, so that the tool keeps what it has there.
+        T_tool_point: The constrained frame, relative to the tool; None for the frame that coincides with the task frame
+            at the start.
         freedoms: 1 constrains, 0 leaves free: the rotations about x, y, z, then the translations along them, shape
             (6,).
         threshold: The tolerance of the constraint [m and rad].
@@ -83,10 +83,10 @@ class ToolConstraint(NamedTuple):
     threshold: float
 
     def checked(self, T_world_tool: Floats) -> tuple[Floats, Floats, Floats, float]:
-        """Return the fields, with the constrained frame filled in for a tool at a pose, and exact rotations.
+        """Return the fields with the constrained frame filled in for a tool pose, and exact rotations.
 
         Raises:
-            ArgumentError: its numbers are none of a constraint.
+            ArgumentError: the numbers are invalid.
         """
         freedoms = checked_vector(self.freedoms, 6, "constraintfreedoms")
         if (freedoms < 0).any():
@@ -101,7 +101,7 @@ class ToolConstraint(NamedTuple):
 
 @dataclass(frozen=True)
 class MovedTool:
-    """The tool of a robot that a planner moves.
+    """Tool of a robot that a planner moves.
 
     Attributes:
         tool: The tool.
@@ -114,17 +114,23 @@ class MovedTool:
     columns: Sequence[int]
 
     @classmethod
-    def of(cls, bodies: Bodies, arm: Manipulator) -> "MovedTool":
-        """Return the tool of the one body that moves.
+    def for_arm(cls, bodies: Bodies, arm: Manipulator, *, gripper: bool = False) -> "MovedTool":
+        """Return the tool of the single moving body.
+
+        Args:
+            bodies: The body.
+            arm: The manipulator.
+            gripper: Whether joints of the gripper may move as well.
 
         Raises:
-            ArgumentError: anything but the joints of its arm moves.
+            ArgumentError: other joints than those of the arm move.
         """
         dofs = [dof for part in bodies.parts for dof in part.dofs]
-        if sorted(dofs) != sorted(arm.arm_dofs) or any(not part.dofs for part in bodies.parts):
+        others = sorted(set(dofs).difference(arm.gripper_dofs if gripper else ()).union(set(dofs) & set(arm.arm_dofs)))
+        if others != sorted(arm.arm_dofs) or any(not part.dofs for part in bodies.parts):
             wanted = f"those of the arm of '{arm.name}': {list(arm.arm_dofs)}"
             raise ArgumentError(f"the DOFs are {dofs}, and should be {wanted}")
-        return cls(Tool.of(arm), bodies, [dofs.index(dof) for dof in arm.arm_dofs])
+        return cls(Tool.for_arm(arm), bodies, [dofs.index(dof) for dof in arm.arm_dofs])
 
     @property
     def body(self) -> BodyState:
@@ -134,16 +140,16 @@ class MovedTool:
     @property
     def dof(self) -> int:
         """The number of values of a configuration."""
-        return len(self.columns)
+        return self.bodies.dof
 
     def pose(self) -> Floats:
-        """Return ``T_world_tool`` where the robot is, shape (4, 4)."""
+        """Return ``T_world_tool`` at the present configuration, shape (4, 4)."""
         return self.tool.pose(self.body)
 
     def motion(self, values: Floats) -> tuple[Floats, Floats]:
         """Move the robot to a configuration (n,), and return ``T_world_tool`` and its Jacobian, shape (6, n).
 
-        In world axes, its first rows are the velocity of the origin, its last the angular velocity.
+        Its first three rows are the velocity of the origin, the others the angular velocity, in world axes.
         """
         self.bodies.move(values)
         jacobian = np.zeros((6, self.dof))
@@ -152,7 +158,7 @@ class MovedTool:
         return self.pose(), jacobian
 
     def to_pose(self, T_world_goal: Floats) -> Error:
-        """Return the error function of a goal pose (4, 4): the translation and rotation vectors that are left."""
+        """Return the error function of a goal pose (4, 4): translation and rotation vectors to the goal."""
         from ravemj.ik.residuals import rotation_between
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
@@ -163,10 +169,10 @@ class MovedTool:
         return lacking
 
     def to_constraint(self, constraint: ToolConstraint) -> Manifold:
-        """Return the configurations that keep a constraint; the tool starts where it is.
+        """Return the manifold of a constraint for a tool that starts at its present pose.
 
         Raises:
-            ArgumentError: the constraint has numbers that make no sense.
+            ArgumentError: the numbers of the constraint are invalid.
         """
         from ravemj.ik.residuals import rotation_between
 

@@ -1,1 +1,1 @@
-"""The scene, OpenRAVE's content of memory after loading, and everything that follows from it alone."""
+"""The scene, OpenRAVE's in-memory content after loading, and computations on it alone."""

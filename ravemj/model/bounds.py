@@ -10,26 +10,26 @@ from ravemj.model.scene import Bounds, Extent, Geometry, Link, Mesh
 
 
 def geometry_bounds(geometry: Geometry, T_a_link: Floats) -> Bounds:
-    """Return the exact bounds of a geometry in frame a, its link at ``T_a_link``; a point for one without a shape."""
+    """Return the exact bounds of a geometry in frame a at a link pose ``T_a_link``; a point if it is empty."""
     return geometry.shape.bounds(T_a_link @ geometry.T_link_geometry.matrix())
 
 
 def link_bounds(link: Link, T_a_link: Floats) -> Bounds | None:
-    """Return the bounds of a link's geometries in frame a; None if there is none with an extent."""
+    """Return the bounds of a link's geometries in frame a; None if they are empty."""
     return _enclosing(geometry_bounds(geometry, T_a_link) for geometry in link.geometries)
 
 
 def links_bounds(links: Iterable[Link], T_a_links: Iterable[Floats]) -> Bounds | None:
-    """Return the bounds of several links, each at its pose; None if none has an extent."""
+    """Return the bounds of several links at their poses; None if they are empty."""
     found = (link_bounds(link, T_a_link) for link, T_a_link in zip(links, T_a_links, strict=True))
     return _enclosing(bounds for bounds in found if bounds is not None)
 
 
 class BodyBounds:
-    """The bounding box of the geometries of a body's links, ready for many poses."""
+    """Bounding box of a body's geometries, prepared for many poses."""
 
     def __init__(self, links: Sequence[Link]) -> None:
-        """Take the geometries of links."""
+        """Collect the geometries of links."""
         extents: list[tuple[int, Geometry, Extent]] = []
         self._corners: list[tuple[int, Floats]] = []  # by link, vertices in its frame, shape (4, n)
         for index, geometry in [(index, one) for index, link in enumerate(links) for one in link.geometries]:
@@ -47,7 +47,7 @@ class BodyBounds:
         self._radii = np.array([(extent.disk, extent.ball) for _, _, extent in extents]).reshape(-1, 2)
 
     def at(self, T_a_links: Floats, chosen: Sequence[bool]) -> Bounds | None:
-        """Return the exact bounds in frame a of the links that are chosen; None if nothing has an extent.
+        """Return the exact bounds in frame a of the chosen links; None if they are empty.
 
         ``T_a_links`` are the poses of all links, shape (links, 4, 4).
         """
@@ -70,13 +70,13 @@ def _enclosing(parts: Iterable[Bounds]) -> Bounds | None:
 
 
 def enclosing_box(bounds: Bounds | None, T_a_origin: Floats) -> AABB:
-    """Return bounds as OpenRAVE's box; None is a point at the origin of a frame."""
+    """Return bounds as OpenRAVE's box; None becomes a point at the origin of a frame."""
     low, high = bounds or (T_a_origin[:3, 3], T_a_origin[:3, 3])
     return AABB((low + high) / 2, (high - low) / 2)
 
 
 def links_triangles(links: Iterable[Link], T_a_links: Iterable[Floats]) -> Mesh:
-    """Return the geometries of links, each link at its pose, as triangles in frame a."""
+    """Return the geometries of links at their poses as triangles in frame a."""
     return Mesh.merged(
         geometry.triangulated().moved(T_a_link @ geometry.T_link_geometry.matrix())
         for link, T_a_link in zip(links, T_a_links, strict=True)

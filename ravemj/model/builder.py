@@ -1,8 +1,8 @@
-"""The mutable body that readers fill in document order, and that becomes a frozen ``scene.KinBody``.
+"""Mutable body that readers fill in document order, and that becomes a frozen ``scene.KinBody``.
 
-OpenRAVE re-opens links by name, moves and renames what was read before, and merges nested bodies; only the end
-of a body's outermost element settles it. ``BodyBuilder.freeze`` then decides parents, measures the joint values
-from the poses of the links, and places the links by them, as OpenRAVE does.
+OpenRAVE re-opens links by name, moves and renames parts read before, and merges nested bodies, so a body is final only
+at the end of its outermost element. ``BodyBuilder.freeze`` then determines parent links, computes joint values from the
+link poses, and sets the link poses by forward kinematics, as OpenRAVE does.
 """
 
 import math
@@ -23,12 +23,12 @@ _ROUNDING = 1e-9  # of values that were degrees
 _Z: Vec3 = (0.0, 0.0, 1.0)
 
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
-"""A link without mass properties weighs 1 kg, like a unit sphere."""
+"""Mass properties of a link without any: 1 kg, like a unit sphere."""
 
 
 @dataclass(slots=True)
 class LinkBuilder:
-    """A link in the making; ``pose`` is in the frame of the element that is open."""
+    """Link under construction; ``pose`` is in the frame of the open element."""
 
     name: str
     source: Source
@@ -50,10 +50,11 @@ class LinkBuilder:
 
 @dataclass(slots=True, kw_only=True)
 class JointBuilder:
-    """A joint as listed: anchor and axis directions are in the frame of the first listed link.
+    """Joint under construction; anchor and axis directions are in the frame of the first listed link.
 
     Attributes:
-        weld_turn: What turns the axes of a weld into those that OpenRAVE reports; None: the second link's rotation.
+        weld_turn: Rotation from the axes of a weld to those that OpenRAVE reports; None means the second link's
+            rotation.
     """
 
     name: str
@@ -70,19 +71,19 @@ class JointBuilder:
 
     @property
     def active(self) -> bool:
-        """True where it has DOFs."""
+        """Whether it has DOFs."""
         return self.enabled and self.equations is None
 
     @property
     def fixed(self) -> bool:
-        """True for a weld."""
+        """Whether it is a weld."""
         return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
 
 
 class SensorBuilder(NamedTuple):
-    """An attached sensor; a name of its link stands for the first link that has it in the end.
+    """Attached sensor; its link name refers to the first such link of the finished body.
 
-    In a robot that OpenRAVE refuses, the sensor stays on the link that it has here.
+    In a robot that OpenRAVE rejects, the sensor stays on the link given here.
     """
 
     sensor: scene.AttachedSensor
@@ -90,7 +91,7 @@ class SensorBuilder(NamedTuple):
 
 
 class GrabBuilder(NamedTuple):
-    """A held body, by its name, and the link that holds it; links get their indices in the end."""
+    """Grabbed body by name, and the grabbing link; link indices are determined at the end."""
 
     body: str
     link: LinkBuilder
@@ -100,11 +101,11 @@ class GrabBuilder(NamedTuple):
 
 @dataclass(slots=True)
 class BodyBuilder:
-    """A body in the making.
+    """Body under construction.
 
     Attributes:
-        joint_values: Values of all DOFs that the file asks for, or None.
-        refusal: Why OpenRAVE ends its reading behind this body, though the body is there; or None.
+        joint_values: Values of all DOFs given in the file, or None.
+        refusal: Reason why OpenRAVE stops reading after this body, although the body exists; or None.
     """
 
     is_robot: bool
@@ -119,25 +120,26 @@ class BodyBuilder:
     grabs: list[GrabBuilder] = field(default_factory=lambda: [])
     joint_values: list[float] | None = None
     description: str = ""
+    element: str = ""
     configurations: list[scene.NamedConfiguration] = field(default_factory=lambda: [])
     refusal: SourceError | None = None
-    _first: dict[str, int] = field(default_factory=dict[str, int])  # link of each name, for those before ``_indexed``
+    _first: dict[str, int] = field(default_factory=dict[str, int])  # link of each name, for links before ``_indexed``
     _first_any_case: dict[str, int] = field(default_factory=dict[str, int])
     _indexed: int = 0
 
     def parts(self) -> "BodyParts":
-        """Return what it consists of at this moment."""
+        """Return the present parts."""
         return BodyParts(
             self.name, [*self.links], [*self.joints], [*self.adjacent], [*self.manipulators], [*self.sensors]
         )
 
     def set_parts(self, parts: "BodyParts") -> None:
-        """Let it consist of what it consisted of before."""
+        """Restore earlier parts."""
         self.forget_names()
         self.name, self.links, self.joints, self.adjacent, self.manipulators, self.sensors = parts
 
     def check_joint_names(self) -> None:
-        """Refuse two joints of one name, unless both have no DOF."""
+        """Raise an error for two joints of the same name, unless both have no DOF."""
         seen: dict[str, bool] = {}
         for joint in self.joints:
             if joint.name in seen and (joint.active or seen[joint.name]):
@@ -165,7 +167,7 @@ class BodyBuilder:
         self._indexed = len(self.links)
 
     def forget_names(self, first: int = 0) -> None:
-        """Forget the names of the links from an index on, because they will be renamed, moved or removed."""
+        """Forget the names of the links from an index on, which will be renamed, moved or removed."""
         for link in self.links[first : self._indexed]:
             for names, name in ((self._first, link.name), (self._first_any_case, link.name.lower())):
                 if names.get(name, -1) >= first:
@@ -173,7 +175,7 @@ class BodyBuilder:
         self._indexed = min(self._indexed, first)
 
     def freeze(self, diagnostics: Diagnostics) -> scene.KinBody:
-        """Settle the body, with a warning for every value that is moved into its limits.
+        """Return the finished body, with a warning for every value that is clamped to its limits.
 
         Raises:
             SourceError: a number is not finite.
@@ -199,7 +201,7 @@ class BodyBuilder:
         body = self._frozen(poses, joints, sum(built.active for built in listed))
         manipulators = self._frozen_manipulators(body, diagnostics)
         if self.refusal is not None:
-            if self.joint_values is not None:  # OpenRAVE does not come to setting them
+            if self.joint_values is not None:  # OpenRAVE does not reach setting them
                 self.joint_values = None
                 return self.freeze(Diagnostics())
             sensors = tuple(self._sensor(built) for built in self.sensors)
@@ -207,7 +209,7 @@ class BodyBuilder:
         return replace(body, manipulators=manipulators) if manipulators else body
 
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
-        """Return the arms. One that is impossible has no gripper, and those behind it have no links."""
+        """Return the manipulators. An invalid one has no gripper, and later ones have no links."""
         frozen: list[scene.Manipulator] = []
         names: set[str] = set()
         for built in self.manipulators:
@@ -228,7 +230,7 @@ class BodyBuilder:
         return (*frozen, *(freeze_manipulator(built, body, Diagnostics()) for built in unfinished))
 
     def _frozen(self, poses: Sequence[Pose], joints: Sequence[scene.Joint], active: int) -> scene.KinBody:
-        """Return the body with its links at the given poses, and without its manipulators."""
+        """Return the body with given link poses, without manipulators."""
         return scene.KinBody(
             name=self.name,
             is_robot=self.is_robot,
@@ -240,12 +242,12 @@ class BodyBuilder:
             sensors=tuple(self._sensor(built) for built in self.sensors),
             grabs=tuple(self._grabs()),
             description=self.description,
+            element=self.element,
             configurations=tuple(self.configurations),
             source=self.source,
         )
 
     def _grabs(self) -> Iterator[scene.Grab]:
-        """Yield what it holds, with those links that are there in the end."""
         index_of = {id(link): index for index, link in enumerate(self.links)}
         for built in self.grabs:
             if id(built.link) in index_of:
@@ -258,7 +260,7 @@ class BodyBuilder:
         return sensor if name is None or self.refusal is not None else replace(sensor, link=self.find_link(name))
 
     def _in_order(self) -> list[JointBuilder]:
-        """Return the active joints, then the disabled ones, then the followers."""
+        """Return the active joints, then the disabled ones, then the mimic joints."""
         active = [joint for joint in self.joints if joint.active]
         disabled = [joint for joint in self.joints if not joint.enabled]
         return active + disabled + [joint for joint in self.joints if joint.enabled and not joint.active]
@@ -275,7 +277,7 @@ class BodyBuilder:
     def _settled(
         self, joints: Sequence[scene.Joint], poses: Sequence[Pose], diagnostics: Diagnostics
     ) -> list[scene.Joint]:
-        """Return the joints with their values: measured, or as the file asks, moved into the limits."""
+        """Return the joints with their values: measured, or from the file, clamped to the limits."""
         values = [list(measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])) for joint in joints]
         findings = diagnostics if self.joint_values is None else Diagnostics()
         values = _limited(joints, values, findings)
@@ -296,7 +298,7 @@ class BodyBuilder:
     def _asked(
         self, active: Sequence[scene.Joint], values: list[list[float]], diagnostics: Diagnostics
     ) -> list[list[float]]:
-        """Put the values that ``<jointvalues>`` asks for in place of the measured ones."""
+        """Replace measured values by those of ``<jointvalues>``."""
         if self.joint_values is None:
             return values
         dof = sum(len(joint.axes) for joint in active)
@@ -310,7 +312,7 @@ class BodyBuilder:
 
 
 class BodyParts(NamedTuple):
-    """What a body in the making consists of; see ``BodyBuilder``."""
+    """Mutable parts of a body under construction; see ``BodyBuilder``."""
 
     name: str
     links: list[LinkBuilder]
@@ -321,7 +323,7 @@ class BodyParts(NamedTuple):
 
 
 def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool) -> scene.Joint:
-    """Return the joint with parent and child decided; swapping turns its axes round."""
+    """Return the joint with parent and child determined; swapping reverses its axes."""
     parent, child = joint.links
     T_parent_child, anchor, axes = joint.T_first_second, joint.anchor, joint.axes
     if swap:
@@ -347,21 +349,21 @@ def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, pla
 
 
 def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -> scene.Joint:
-    """Return a weld as OpenRAVE reports it: at the value 0, with the frame of its child, and limits of 0."""
+    """Return a weld as OpenRAVE reports it: at value 0, with the frame of its child, and limits of 0."""
     T_parent_child = displaced_pose(joint, [0.0] * len(joint.axes))
     if any(axis.lower for axis in joint.axes):
         message = "a joint between whose limits there is nothing does not move; OpenRAVE moves the limits to 0"
         diagnostics.warn("openrave-bug", message, joint.source)
     turn = T_parent_child.wxyz if built.weld_turn is None else built.weld_turn
-    is_z = joint.kind == "hinge" and built.weld_turn is None  # whatever the file says
+    is_z = joint.kind == "hinge"  # regardless of the file
     axes = (replace(axis, direction=rotate(turn, _Z if is_z else axis.direction)) for axis in joint.axes)
     axes = tuple(replace(axis, lower=0.0, upper=0.0, reference=0.0) for axis in axes)
     return replace(joint, T_parent_child=T_parent_child, anchor=T_parent_child.position, axes=axes)
 
 
 def _at_values(joint: scene.Joint, values: Sequence[float]) -> scene.Joint:
-    """Return the joint with other values, one for each axis."""
-    if [axis.value for axis in joint.axes] == values:  # as in most files; copies are slow to make
+    """Return the joint with new values, one for each axis."""
+    if [axis.value for axis in joint.axes] == values:  # unchanged in most files; copies are slow
         return joint
     return replace(
         joint, axes=tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
@@ -371,7 +373,7 @@ def _at_values(joint: scene.Joint, values: Sequence[float]) -> scene.Joint:
 def _limited(
     joints: Sequence[scene.Joint], values: Sequence[list[float]], diagnostics: Diagnostics
 ) -> list[list[float]]:
-    """Return the values moved into the joints' limits, with a warning for each that moves."""
+    """Return the values clamped to the joints' limits, with a warning for each change."""
     limited: list[list[float]] = []
     for joint, joint_values in zip(joints, values, strict=True):
         if joint.mimic is not None:  # its value will be computed

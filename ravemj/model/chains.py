@@ -1,6 +1,6 @@
-"""The graph of links and joints of a body: chains, loops, rigid parts, adjacent links.
+"""Graph of a body's links and joints: chains, loops, rigid parts, adjacent links.
 
-Joints are counted as in a body's list: active ones, then passive ones.
+Joint indices count active joints, then passive ones.
 """
 
 import itertools
@@ -11,7 +11,7 @@ from ravemj.model.scene import KinBody, Manipulator
 
 
 class Connections:
-    """Tables of how joints connect links, made once, because scripts look them up in loops.
+    """Tables of the connections of links by joints, cached because scripts look them up in loops.
 
     Attributes:
         joints: The joints.
@@ -20,7 +20,7 @@ class Connections:
 
     def __init__(self, body: KinBody) -> None:
         self.joints = body.all_joints
-        self._joined_by = body.joints, body.passive_joints  # kept, so that no others get their ``id``
+        self._joined_by = body.joints, body.passive_joints  # stored, so that their ``id`` is not reused
         self._count = len(body.links)
         ends = list(itertools.accumulate((len(joint.axes) for joint in body.joints), initial=0))
         self.dofs = [tuple(range(*pair)) for pair in itertools.pairwise(ends)]
@@ -35,33 +35,33 @@ class Connections:
 
     @cached_property
     def paths(self) -> ShortestPaths:
-        """The shortest ways between all links."""
+        """Shortest paths between all links."""
         return ShortestPaths(self._count, self.ends)
 
     @cached_property
     def close_pairs(self) -> frozenset[Pair]:
-        """Pairs of links that a joint joins, or between which at most one joint moves on the shortest path."""
+        """Pairs of links that are connected by a joint, or by a shortest path with at most one moving joint."""
         near = self.paths.light_pairs([not joint.static for joint in self.joints])
         return frozenset(itertools.starmap(ordered_pair, self.ends)).union(near)
 
     @cached_property
     def parts(self) -> list[int]:
-        """For each link the first one of those that joints connect it with, directly or not."""
+        """First link of the connected component of each link."""
         return connected_components(self._count, self.ends)
 
     @cached_property
     def _placing(self) -> dict[int, int]:
-        """For each link that a joint places this joint."""
+        """Joint that places each link placed by a joint."""
         return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
 
     def between(self, link: int) -> set[int]:
-        """Return the links on simple paths of joints from link 0 to a link."""
+        """Return the links on simple paths from link 0 to a link."""
         if link not in self._between:
             self._between[link] = nodes_between(self.ends, self._count, 0, link)
         return self._between[link]
 
     def above(self, link: int) -> tuple[int, ...]:
-        """Return the joints that place a link and the links that it hangs on, the nearest first."""
+        """Return the joints that place a link and its ancestors, the nearest first."""
         if link not in self._above:
             above: list[int] = []
             at = link
@@ -72,7 +72,7 @@ class Connections:
         return self._above[link]
 
     def moving(self, link: int) -> frozenset[int]:
-        """Return the DOFs that move a link, also through joints that follow them."""
+        """Return the DOFs that move a link, also through mimic joints."""
         if link not in self._moving:
             dofs: set[int] = set()
             for index in self.above(link):
@@ -87,11 +87,11 @@ class Connections:
 
 _MOST_BODIES = 16
 _known: dict[tuple[int, int, int], Connections] = {}
-"""By the identity of the joints; only those of the last bodies, since it keeps them alive."""
+"""Cache by the identity of the joints, limited to recent bodies, since it keeps them alive."""
 
 
 def connections(body: KinBody) -> Connections:
-    """Return how the joints of a body connect its links; the same object as long as these are the same."""
+    """Return the connections of a body's links, cached as long as the joints are the same."""
     key = id(body.joints), id(body.passive_joints), len(body.links)
     found = _known.get(key)
     if found is None:
@@ -107,22 +107,23 @@ def joint_dofs(body: KinBody, joint: int) -> tuple[int, ...]:
 
 
 def parents(body: KinBody, link: int) -> list[int]:
-    """Return the links that joints hang a link on."""
+    """Return the parent links of a link."""
     return list(dict.fromkeys(joint.parent for joint in body.all_joints if joint.child == link))
 
 
 def rigidly_attached(body: KinBody, link: int) -> list[int]:
-    """Return a link and those that welds fix to it; the link is the first."""
+    """Return a link, then the links connected to it by welds."""
     welds = ((joint.parent, joint.child) for joint in body.all_joints if joint.static)
     parts = connected_components(len(body.links), welds)
     return [link, *(other for other, part in enumerate(parts) if part == parts[link] and other != link)]
 
 
 def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
-    """Return the shortest way from one link to another.
+    """Return the shortest path from one link to another.
 
     Returns:
-        The links on it, both ends included, and the joints between them; none where there is no way, or no need of one.
+        The links on it, including both ends, and the joints between them; empty if there is no path, or the links are
+        equal.
     """
     ends, joints = connections(body).ends, connections(body).paths.path(first, last)
     links = [first]
@@ -132,17 +133,17 @@ def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
 
 
 def joints_above(body: KinBody, link: int) -> tuple[int, ...]:
-    """Return the joints that place a link and the links that it hangs on, the nearest first."""
+    """Return the joints that place a link and its ancestors, the nearest first."""
     return connections(body).above(link)
 
 
 def dofs_moving(body: KinBody, link: int) -> frozenset[int]:
-    """Return the DOFs that move a link, also through joints that follow them."""
+    """Return the DOFs that move a link, also through mimic joints."""
     return connections(body).moving(link)
 
 
 def dependency_order(body: KinBody) -> list[int]:
-    """Return the active joints, each behind those that move the links at it; else those nearer to the root first."""
+    """Return the active joints, each after those that move its links, otherwise from the root outwards."""
 
     def depth(index: int) -> tuple[int, int, int]:
         joint = body.joints[index]
@@ -153,25 +154,25 @@ def dependency_order(body: KinBody) -> list[int]:
 
 
 def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
-    """Return for each joint that closes a loop the loop: links, each with the joint that leads on from it."""
+    """Return the loop of each joint that closes one: links, each with the joint to the next."""
     joints, loops = body.all_joints, list[list[tuple[int, int]]]()
     for index, joint in enumerate(joints):
         if joint.places_child:
             continue
         up, down = list(joints_above(body, joint.child)), list(joints_above(body, joint.parent))
-        while up and down and up[-1] == down[-1]:  # above the link where the ways from both ends meet
+        while up and down and up[-1] == down[-1]:  # above the lowest common ancestor
             del up[-1], down[-1]
         links = [joint.child, *(joints[one].parent for one in up)]
-        if links[-1] == (joints[down[-1]].parent if down else joint.parent):  # else both hang on different roots
+        if links[-1] == (joints[down[-1]].parent if down else joint.parent):  # otherwise both have different roots
             links += [joints[one].child for one in reversed(down)]
             loops.append(list(zip(links, [*up, *reversed(down), index], strict=True)))
     return loops
 
 
 def links_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
-    """Return the effector of a manipulator, what is fixed to it, what hangs on these, and what moves with it.
+    """Return the end effector of a manipulator, links fixed to it, their descendants, and links that move with it.
 
-    A link moves with the effector if all DOFs that move the effector move it, also through joints that follow them.
+    A link moves with the effector if all DOFs that move the effector also move it, possibly through mimic joints.
     """
     if manipulator.effector is None:
         return []
@@ -198,13 +199,13 @@ def joints_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
 
 
 def independent_links(body: KinBody, manipulator: Manipulator) -> list[int]:
-    """Return the links that neither the arm nor the gripper of a manipulator moves."""
+    """Return the links that are moved neither by the arm nor by the gripper."""
     own = {*manipulator.arm_dofs, *manipulator.gripper_dofs}
     return [link for link in range(len(body.links)) if not dofs_moving(body, link) & own]
 
 
 def separate_pairs(body: KinBody) -> list[Pair]:
-    """Return the pairs of links that are not adjacent, sorted, the smaller index first; see ``adjacent_pairs``."""
+    """Return the sorted pairs of links that are not adjacent, the smaller index first; see ``adjacent_pairs``."""
     known = connections(body)
     groups: dict[int, list[int]] = {}
     for link, one in enumerate(body.links):
@@ -216,11 +217,10 @@ def separate_pairs(body: KinBody) -> list[Pair]:
 
 
 def adjacent_pairs(body: KinBody) -> frozenset[Pair]:
-    """Return the pairs of adjacent links, which OpenRAVE's self-collision test leaves out.
+    """Return the pairs of adjacent links, which OpenRAVE's self-collision check ignores.
 
-    These are pairs that a joint joins, or whose shortest path of joints has at most one that moves, pairs that no chain
-    of joints connects, pairs that ``<adjacent>`` names, and pairs with a link without shapes. A body can do without the
-    first three.
+    These are pairs connected by a joint, or by a shortest path with at most one moving joint, unconnected pairs, pairs
+    declared by ``<adjacent>``, and pairs with a link without shapes. A body can disable the first three.
 
     Returns:
         Pairs of link indices, the smaller one first.

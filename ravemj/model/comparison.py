@@ -1,4 +1,4 @@
-"""Comparison of bodies by their numbers: names, order, poses, masses, joints, shapes, manipulators."""
+"""Comparison of bodies: names, order, poses, masses, joints, shapes, manipulators."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -29,26 +29,26 @@ from ravemj.model.scene import (
 )
 
 TOLERANCE = 1e-9
-"""Of numbers, relative to the largest above 1."""
+"""Tolerance of numbers, relative to the largest above 1."""
 MESH_TOLERANCE = 1e-6
-"""Of the corners of triangles, which files keep in single precision."""
+"""Tolerance of mesh vertices, which files store in single precision."""
 CONFIGURATIONS = 5
-"""How many random configurations are compared."""
+"""Number of random configurations to compare."""
 
-_FARTHEST = 10.0  # [rad or m], of random values of joints without limits
+_FARTHEST = 10.0  # range of random values of joints without limits [rad or m]
 _AXIS_FIELDS = tuple(one.name for one in fields(Axis) if one.name not in {"direction", "reference"})
-"""All but the direction, which not every joint has, and the reference, which follows from poses and values."""
+"""Compared fields of axes: all but the direction, which not every joint has, and the derived reference."""
 
 
 class Difference(NamedTuple):
-    """A difference between two models.
+    """Difference between two models.
 
     Attributes:
         part: The body, link, joint or shape, in words.
-        quantity: What differs about it.
-        first: What the first model has.
-        second: What the second model has.
-        error: The largest difference of two numbers, relative to the largest above 1; None for what is no number.
+        quantity: The quantity that differs.
+        first: Its value in the first model.
+        second: Its value in the second model.
+        error: The largest difference of two numbers, relative to the largest above 1; None for other values.
     """
 
     part: str
@@ -59,7 +59,7 @@ class Difference(NamedTuple):
 
 
 def compare(first: Scene, second: Scene, tolerance: float = TOLERANCE) -> list[Difference]:
-    """Compare two scenes body by body, in their order; the tolerance of numbers is relative to those above 1."""
+    """Compare two scenes body by body, in order; the tolerance is relative to the largest number above 1."""
     return list(_Comparison(tolerance).scenes(first, second))
 
 
@@ -68,7 +68,7 @@ class _Comparison:
     tolerance: float
 
     def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
-        """Compare the bodies and the loose sensors; gravity, view and description where both scenes have one."""
+        """Compare the bodies and the sensors without robots; gravity, view and description if both scenes have them."""
         part = "the scene"
         yield from self._same(part, "bodies", _names(first.bodies), _names(second.bodies))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
@@ -119,7 +119,6 @@ class _Comparison:
                 yield from self._same(f"{part} joint '{joint.name}'", quantity, one.get(quantity), other.get(quantity))
 
     def _attached(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
-        """Compare manipulators, sensors and what is held."""
         yield from self._same(part, "manipulators", _names(first.manipulators), _names(second.manipulators))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
         for one, other in zip(first.manipulators, second.manipulators, strict=False):
@@ -217,7 +216,7 @@ class _Comparison:
             yield from self._near(part, quantity, first, second)
 
     def _configurations(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
-        """Compare the poses of all links in random configurations; report the one that is farthest off."""
+        """Compare the poses of all links in random configurations; report the largest difference."""
         random = np.random.default_rng(0)
         found: list[Difference] = []
         for _ in range(CONFIGURATIONS if first.joints else 0):
@@ -267,7 +266,7 @@ class _Comparison:
 
 
 def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
-    """Return the poses of the links of a body at joint values [rad or m], its root links being where they are."""
+    """Return the link poses of a body at joint values [rad or m], with its root links unchanged."""
     rest = iter(dof_values)
     values = [[next(rest) for _ in joint.axes] for joint in body.joints]
     values += [[axis.value for axis in joint.axes] for joint in body.passive_joints]
@@ -277,7 +276,7 @@ def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
 
 
 def _random_value(axis: Axis, random: np.random.Generator) -> float:
-    """Return a value within the limits, and not far from 0 if they allow it."""
+    """Return a random value within the limits, and near 0 if they allow it."""
     low, high = (min(max(end, axis.lower), axis.upper) for end in (-_FARTHEST, _FARTHEST))
     return float(random.uniform(low, high))
 
@@ -291,13 +290,13 @@ def _types(geometries: Sequence[Geometry]) -> list[str]:
 
 
 def _kind(sensor: AttachedSensor) -> str | None:
-    """Return the kind of a sensor; formats spell it in several ways."""
+    """Return the canonical name of a sensor type, which formats spell differently."""
     kind = sensor_kind(sensor.type or "")
     return sensor.type if kind is None else kind.name
 
 
 def _colours(geometry: Geometry) -> list[tuple[Rgb, float]]:
-    """Return colour and transparency of each drawn surface."""
+    """Return colour and transparency of each visible surface."""
     return [(surface.diffuse, surface.transparency) for surface in geometry.display or ()]
 
 
@@ -308,7 +307,7 @@ def _drawn(geometry: Geometry) -> Mesh:
 
 
 def _corners(mesh: Mesh) -> Floats:
-    """Return the corners of the triangles of a mesh that have an area in single precision, shape (n, 3, 3)."""
+    """Return the vertices of triangles with a nonzero area in single precision, shape (n, 3, 3)."""
     corners = mesh.vertices[mesh.triangles]
     a, b, c = (corners[:, i].astype(np.float32) for i in range(3))
     return corners[~((a == b).all(1) | (b == c).all(1) | (c == a).all(1))]

@@ -1,8 +1,8 @@
-"""Drawings that scripts add to a scene: points, lines and triangles over arrays, without a renderer.
+"""Drawings that scripts add to a scene: arrays of points, lines and triangles, independent of renderers.
 
-Each drawing call of OpenRAVE's (arrow, box, plane, mesh) becomes primitives of four kinds, the only ones that renderers
-know: points, spheres, lines and triangles. ``Drawings`` holds them. Adding, changing and removing one is a single
-operation on a dict, so any thread may do it at any time without a lock, garbage collection included.
+OpenRAVE's drawing calls (arrow, box, plane, mesh) become primitives of four kinds: points, spheres, lines and
+triangles. ``Drawings`` stores them. Adding, changing and removing one is a single operation on a dict, so any thread
+and the garbage collector may do it without a lock.
 """
 
 import itertools
@@ -15,15 +15,15 @@ import numpy as np
 from ravemj.core.transforms import Floats, Ints
 
 _TIP_OF_ARROW = 0.1
-"""Length of an arrow's tip as a part of the whole, as in OpenRAVE."""
+"""Length of an arrow's tip as a fraction of its length, as in OpenRAVE."""
 
 _SIDES_OF_ARROW = 12
 _SIDES_OF_CYLINDER = 32
 _SHADES = 16
-"""Pieces of a line along which a colour goes from 0 to 1."""
+"""Number of pieces of a line per unit of colour difference."""
 
 _TEXTURE_CELLS = 64
-"""Most cells along a side of a plane; finer textures are averaged."""
+"""Maximum number of cells along a side of a plane; finer textures are averaged."""
 
 _BOX_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
 _BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
@@ -43,7 +43,7 @@ class PrimitiveBatch(NamedTuple):
     rgba: Floats
 
     def placed(self, transform: Floats) -> "PrimitiveBatch":
-        """Return the primitives moved by a 4x4 transform."""
+        """Return the primitives transformed by a 4x4 matrix."""
         return self._replace(corners=self.corners @ transform[:3, :3].T + transform[:3, 3])
 
 
@@ -53,13 +53,13 @@ def _empty(corners: int) -> PrimitiveBatch:
 
 @dataclass(frozen=True, eq=False)
 class Primitives:
-    """Graphics primitives by kind, as renderers take them. Two are equal only if they are the same object.
+    """Graphics primitives by kind, as input of renderers. They compare by identity.
 
     Attributes:
-        points: Squares that face the camera, in their own colour; OpenGL's points.
+        points: OpenGL points: squares that face the camera, unlit.
         spheres: Spheres, lit.
-        lines: Segments of constant width on the screen, in their own colour.
-        triangles: Flat and lit, seen from both sides.
+        lines: Segments of constant width on the screen, unlit.
+        triangles: Flat triangles, lit and visible from both sides.
     """
 
     points: PrimitiveBatch = field(default_factory=lambda: _empty(1))
@@ -76,18 +76,18 @@ class Primitives:
         return sum(len(batch.sizes) for batch in self.batches)
 
     def placed(self, transform: Floats) -> "Primitives":
-        """Return the primitives moved by a 4x4 transform."""
+        """Return the primitives transformed by a 4x4 matrix."""
         return Primitives(*(batch.placed(transform) for batch in self.batches))
 
     def widened(self, factor: float) -> "Primitives":
-        """Return them with so many times the widths on the screen, for pictures with as many times the pixels."""
+        """Return the primitives with scaled screen widths, for pictures of higher resolution."""
         points, lines = (
             batch._replace(sizes=factor * np.maximum(batch.sizes, 1)) for batch in (self.points, self.lines)
         )
         return replace(self, points=points, lines=lines)
 
     def bounding_sphere(self) -> tuple[Floats, float]:
-        """Return centre (3,) and radius [m] of a sphere around all of them; there has to be one."""
+        """Return the centre (3,) and radius [m] of a bounding sphere; there must be at least one primitive."""
         corners = np.concatenate([batch.corners.reshape(-1, 3) for batch in self.batches])
         center = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         largest = self.spheres.sizes.max(initial=0.0)
@@ -108,18 +108,18 @@ def spheres(positions: Floats, radius: float, rgba: Floats) -> Primitives:
 
 
 def line_strip(positions: Floats, width: float, rgba: Floats) -> Primitives:
-    """Return the line through positions (N, 3); colours (N, 4) run from one to the next."""
+    """Return the polyline through positions (N, 3); colours (N, 4) are interpolated."""
     first = np.arange(len(positions) - 1)
     return _lines(positions, width, rgba, np.stack([first, first + 1], axis=1))
 
 
 def line_list(positions: Floats, width: float, rgba: Floats) -> Primitives:
-    """Return a line between each pair of positions (N, 3); a last one that is alone is left out."""
+    """Return a line between each pair of positions (N, 3); an odd last position is ignored."""
     return _lines(positions, width, rgba, np.arange(len(positions) // 2 * 2).reshape(-1, 2))
 
 
 def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Primitives:
-    """Cut lines whose ends differ in colour into pieces of one colour."""
+    """Divide lines whose end colours differ into pieces of one colour."""
     pieces = max(1, int(np.ceil(_SHADES * np.abs(np.diff(rgba[ends], axis=1)).max(initial=0))))
     cuts = np.arange(pieces + 1) / pieces
     at = positions[ends[:, 0], None] + cuts[:, None] * np.diff(positions[ends], axis=1)
@@ -130,7 +130,7 @@ def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Primiti
 
 
 def mesh(positions: Floats, triangles: Ints, rgba: Floats) -> Primitives:
-    """Return triangles (M, 3) of positions (N, 3); each has the mean colour of its corners' (N, 4)."""
+    """Return triangles (M, 3) of positions (N, 3); each has the mean colour (N, 4) of its vertices."""
     return _triangles(positions[triangles], rgba[triangles].mean(axis=1))
 
 
@@ -139,7 +139,7 @@ def _triangles(corners: Floats, rgba: Floats) -> Primitives:
 
 
 def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Primitives:
-    """Return an arrow: a shaft of that radius [m] and a tip twice as wide; nothing where it has no length."""
+    """Return an arrow: a shaft of a radius [m] and a tip twice as wide; nothing for zero length."""
     along = end - start
     if not along.any():
         return NOTHING
@@ -166,7 +166,7 @@ def _skin(rings: list[Floats], rgba: Floats) -> Primitives:
 
 
 def _quads(ring: Floats, other: Floats) -> Floats:
-    """Return the triangles between two closed rings of points (N, 3), without those that have no area."""
+    """Return the triangles between two closed rings of points (N, 3), without degenerate ones."""
     following, other_following = np.roll(ring, -1, axis=0), np.roll(other, -1, axis=0)
     corners = np.concatenate(
         [np.stack([ring, other, other_following], axis=1), np.stack([ring, other_following, following], axis=1)]
@@ -179,17 +179,17 @@ def _normals(corners: Floats) -> Floats:
 
 
 def box(center: Floats, extents: Floats, rgba: Floats) -> Primitives:
-    """Return a box along the axes; extents (3,) are half of its sides [m]."""
+    """Return an axis-aligned box with half extents (3,) [m]."""
     faces = np.array(_BOX_FACES)[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
     return _triangles((center + _BOX_CORNERS * extents)[faces], np.tile(rgba, (len(faces), 1)))
 
 
 def plane(transform: Floats, extents: Floats, texture: Floats) -> Primitives:
-    """Return an image on a rectangle in the plane of x and y of a frame, its centre in the origin.
+    """Return an image on a rectangle centred in the xy plane of a frame.
 
     Args:
         transform: Pose of the frame, shape (4, 4).
-        extents: Half of the sides along x and y [m], shape (2,).
+        extents: Half extents along x and y [m], shape (2,).
         texture: Colours (H, W, 4) in 0..1. Columns run along +x, rows along +y.
     """
     cells = _averaged(_averaged(texture, 0), 1)
@@ -204,7 +204,7 @@ def plane(transform: Floats, extents: Floats, texture: Floats) -> Primitives:
 
 
 def _averaged(texture: Floats, axis: int) -> Floats:
-    """Return a texture with at most so many cells along an axis as are drawn, each the mean of the pixels in it."""
+    """Average a texture along an axis to at most the maximum number of cells."""
     count = texture.shape[axis]
     cells = min(count, _TEXTURE_CELLS)
     edges: Ints = np.arange(cells, dtype=np.int_) * count // cells
@@ -213,11 +213,11 @@ def _averaged(texture: Floats, axis: int) -> Floats:
 
 
 class Drawing:
-    """A drawing that can be moved and hidden.
+    """Drawing that can be moved and hidden.
 
     Attributes:
-        state: Its primitives in the world; None while it is hidden. Replaced as a whole, so readers need no lock.
-        text: A text that viewers show at its first point; empty for none.
+        state: Its primitives in the world; None while it is hidden. It is replaced as a whole, so readers need no lock.
+        text: A label that viewers show at the first point, or empty.
     """
 
     def __init__(self, primitives: Primitives, text: str = "") -> None:
@@ -228,7 +228,7 @@ class Drawing:
         self.state: Primitives | None = primitives
 
     def place(self, transform: Floats) -> None:
-        """Set the pose of the drawing: a 4x4 transform of its primitives as they were drawn."""
+        """Set the pose of the drawing: a 4x4 transform of its original primitives."""
         self._transform = transform
         self._update()
 
@@ -250,13 +250,13 @@ class Drawings:
         self._merged: tuple[tuple[Primitives, ...], Primitives] = ((), NOTHING)
 
     def add(self, primitives: Primitives, text: str = "") -> tuple[int, Drawing]:
-        """Add a drawing, with a text at its first point; return the key that removes it, and the drawing."""
+        """Add a drawing with a label; return its key for ``remove``, and the drawing."""
         key, drawing = next(self._keys), Drawing(primitives, text)
         self._drawn[key] = drawing
         return key, drawing
 
     def remove(self, key: int) -> None:
-        """Remove a drawing, if it is still there. Takes no lock, so finalizers may call it."""
+        """Remove a drawing, if it still exists. Takes no lock, so finalizers may call it."""
         self._drawn.pop(key, None)
 
     def clear(self) -> None:
@@ -264,7 +264,7 @@ class Drawings:
         self._drawn.clear()
 
     def primitives(self) -> Primitives:
-        """Return the primitives of all visible drawings; the same object for as long as nothing changes."""
+        """Return the primitives of all visible drawings, cached until one changes."""
         states = [drawing.state for drawing in self._drawn.copy().values()]
         visible = tuple(state for state in states if state is not None)
         before, merged = self._merged
@@ -274,13 +274,13 @@ class Drawings:
         return merged
 
     def texts(self) -> list[tuple[Floats, str]]:
-        """Return where the texts of visible drawings are, shape (3,) each, and the texts."""
+        """Return the positions of the labels of visible drawings, shape (3,) each, and the labels."""
         labels = [(drawing.state, drawing.text) for drawing in self._drawn.copy().values() if drawing.text]
         return [(state.points.corners[0, 0], text) for state, text in labels if state is not None]
 
 
 def merge(parts: Iterable[Primitives]) -> Primitives:
-    """Return several sets of primitives as one."""
+    """Concatenate several sets of primitives."""
     by_kind = zip(NOTHING.batches, *(part.batches for part in parts), strict=True)
     return Primitives(
         *(PrimitiveBatch(*(np.concatenate(arrays) for arrays in zip(*kind, strict=True))) for kind in by_kind)

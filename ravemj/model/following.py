@@ -1,4 +1,4 @@
-"""Joints that begin or cease to follow others."""
+"""Changes of joints to mimic joints and back."""
 
 from dataclasses import replace
 
@@ -9,13 +9,13 @@ from ravemj.model.scene import KinBody, Manipulator
 
 
 def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[KinBody, list[int]]:
-    """Return a body where one joint follows by other equations, and for each of its joints the index that it had.
+    """Return a body with new mimic equations of one joint, and the previous index of each of its joints.
 
-    As in OpenRAVE (gap-15), an active joint that follows becomes the last passive one, and one that ceases to follow,
-    since no position is given, becomes the last active one. So DOFs are numbered anew.
+    As in OpenRAVE (gap-15), an active joint that becomes a mimic joint is the last passive one, and one that ceases to
+    be one (an empty position) is the last active one. So DOFs are renumbered.
 
     Raises:
-        ArgumentError: these equations cannot be used.
+        ArgumentError: the equations are invalid.
     """
     active, passive = list(range(len(body.joints))), list(range(len(body.joints), len(body.all_joints)))
     if equations.position and index in active:
@@ -45,7 +45,7 @@ def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Kin
 
 
 def _found_again(arm: Manipulator, before: KinBody, body: KinBody) -> Manipulator:
-    """Return a manipulator with the DOFs that its joints have now; what has none is no part of it."""
+    """Return a manipulator with the new DOF indices of its joints; joints without DOF are removed."""
     signs = dict(zip(arm.gripper_dofs, arm.chucking_direction, strict=True))
     dofs = {joint.name: sign for dof, sign in signs.items() for joint in [before.joint_of_dof(dof)]}
     kept = [name for name in dofs if any(joint.name == name for joint in body.joints)]
@@ -59,5 +59,6 @@ def _found_again(arm: Manipulator, before: KinBody, body: KinBody) -> Manipulato
         gripper_joints=kept,
         closing_direction=[dofs[name] for name in kept],
         gripper_name=arm.gripper_name,
+        ik_solver=arm.ik_solver,
     )
     return freeze_manipulator(built, body, Diagnostics())

@@ -1,4 +1,4 @@
-"""Hashes of the structure of bodies: independent of names, poses in the world and limits."""
+"""Hashes of body structures, independent of names, world poses and limits."""
 
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
@@ -10,7 +10,7 @@ from ravemj.model.manipulators import chain
 from ravemj.model.scene import Geometry, Joint, KinBody, Manipulator, Mesh
 
 DIGITS = 8
-"""Decimals that count, so that rounding does not."""
+"""Number of decimals in hashes, so that rounding errors have no effect."""
 
 
 def of_body(body: KinBody) -> str:
@@ -19,7 +19,7 @@ def of_body(body: KinBody) -> str:
 
 
 def text_of_body(body: KinBody) -> str:
-    """Return the text that ``of_body`` is the hash of."""
+    """Return the text that ``of_body`` hashes."""
     return repr(_plain(_structure(body)))
 
 
@@ -39,16 +39,16 @@ def of_arm(body: KinBody, arm: Manipulator) -> str:
 
 
 def of_inverse_kinematics(body: KinBody, arm: Manipulator, kind: str, *, tool: bool, direction: bool) -> str:
-    """Return the hash of what a solver of inverse kinematics for a type of goal depends on.
+    """Return the hash of all inputs of an IK solver for a goal type.
 
-    ``tool`` and ``direction`` say whether the tool in the effector and the direction of the tool count.
+    ``tool`` and ``direction`` select whether the tool pose in the effector and the tool direction are included.
     """
     placed = (arm.T_effector_tool,) if tool else ()
     return _digest(kind, _way(body, arm), placed, (arm.direction,) if direction else ())
 
 
 def of_manipulator(body: KinBody, arm: Manipulator) -> str:
-    """Return the hash of a manipulator, gripper included."""
+    """Return the hash of a manipulator, including the gripper."""
     return _digest(of_arm(body, arm), [body.joints[index].kind for index in arm.gripper_joints], arm.chucking_direction)
 
 
@@ -65,7 +65,7 @@ def _tool(arm: Manipulator) -> tuple[object, ...]:
 
 
 def _links(body: KinBody) -> list[object]:
-    """Return the shapes of all links, and where those are that no joint places."""
+    """Return the shapes of all links, and the poses of links that no joint places."""
     placed = {joint.child for joint in body.all_joints if joint.places_child}
     found: list[object] = []
     for index, link in enumerate(body.links):
@@ -101,7 +101,7 @@ def _digest(*parts: object) -> str:
 
 
 def _plain(part: object) -> object:
-    """Return a part with its numbers rounded, and without what differs between equal ones."""
+    """Return a part with rounded numbers, and without fields that may differ between equal parts."""
     if isinstance(part, float):
         return round(part, DIGITS) + 0.0  # no negative zero
     if isinstance(part, Mesh):

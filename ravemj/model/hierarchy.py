@@ -1,9 +1,9 @@
-"""Which link of a joint is its parent, and which joint places which link.
+"""Parent links of joints, and the joint that places each link.
 
-OpenRAVE decides both from a joint graph without direction. The rules, measured on OpenRAVE 0.149: link 0 and static
-links have depth 0, and depths grow along paths from link 0; the shallower link of a joint is its parent; joints act
-in order of depth, and the first one to reach a link places it. Later ones close a loop and are not satisfied, except
-that a fixed joint always places its child.
+OpenRAVE determines both from an undirected joint graph. The rules, measured on OpenRAVE 0.149: link 0 and static links
+have depth 0, and depths grow along paths from link 0; the shallower link of a joint is its parent; joints act in order
+of depth, and the first one to reach a link places it. Later ones close a loop and are not satisfied, except that a
+fixed joint always places its child.
 """
 
 import bisect
@@ -16,20 +16,20 @@ from typing import NamedTuple
 from ravemj.core.graphs import depth_first, topological_order
 
 _UNREACHED = -1
-"""The depth of a link that no path joins to link 0; OpenRAVE compares it with others."""
+"""Depth of a link that no path connects to link 0, as OpenRAVE compares it with others."""
 
 
 _HIGHEST = (sys.maxsize, sys.maxsize)
 
 
 class Edge(NamedTuple):
-    """A joint as an edge of the graph.
+    """Joint as an edge of the graph.
 
     Attributes:
         links: Indices of its two links, in the order in which the file lists them.
-        fixed: True for a weld.
-        active: True where it has a DOF.
-        follows: Indices of the passive joints that it follows.
+        fixed: Whether it is a weld.
+        active: Whether it has a DOF.
+        follows: Indices of the passive joints that it mimics.
     """
 
     links: tuple[int, int]
@@ -39,11 +39,11 @@ class Edge(NamedTuple):
 
 
 class Hierarchy(NamedTuple):
-    """The directed joints.
+    """Directed joints.
 
     Attributes:
-        swapped: For each joint, True where its second listed link is the parent.
-        order: Indices of the joints that place a link, in the order in which they act.
+        swapped: For each joint, whether its second listed link is the parent.
+        order: Indices of the joints that place a link, in their order of evaluation.
     """
 
     swapped: tuple[bool, ...]
@@ -54,7 +54,7 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
     """Direct the joints of a body: active ones in DOF order, then passive ones."""
     if not edges:
         return Hierarchy((), ())
-    has_dofs = any(edge.active for edge in edges)  # without any, OpenRAVE makes no depths
+    has_dofs = any(edge.active for edge in edges)  # without static links, OpenRAVE assigns no depths
     depths = _depths(static_links, edges) if has_dofs else [_UNREACHED] * len(static_links)
     swapped = tuple(_is_swapped(edge.links, static_links, depths, has_dofs=has_dofs) for edge in edges)
     ends = [tuple(reversed(edge.links)) if swap else edge.links for edge, swap in zip(edges, swapped, strict=True)]
@@ -73,11 +73,11 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
 
 
 def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -> list[int]:
-    """Return the joints in the order in which OpenRAVE lets them act.
+    """Return the joints in the order in which OpenRAVE evaluates them.
 
     The level of a joint is the depths of its links, the smaller one first. A joint waits for all joints on lower
-    levels, but one at a static link not for others at static links. Those that wait no longer queue up in the order of
-    the file.
+    levels, except that one at a static link does not wait for others at static links. Ready joints are queued in the
+    order of the file.
     """
     by_level = sorted(range(len(levels)), key=lambda index: levels[index])
     unfinished, free = deque(by_level), deque(index for index in by_level if not grounded[index])
@@ -99,7 +99,7 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
-    """Sort the joints that place a link so that each comes behind the one that places its parent."""
+    """Sort the joints that place a link so that each follows the one that places its parent."""
     placed_by = {ends[index][1]: index for index in placing}
 
     def carrying(index: int) -> list[int]:
@@ -110,10 +110,10 @@ def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Se
 
 
 def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
-    """Return the depth of each link: one more than the least depth that is known of its parents.
+    """Return the depth of each link: one more than the smallest known depth of its parents.
 
-    A parent is the link before on a path from link 0 that meets no link twice. So a static link passes its depth on
-    only to what lies behind it as seen from link 0.
+    A parent is the previous link on a simple path from link 0. So a static link propagates its depth only away from
+    link 0.
     """
     neighbours: list[list[int]] = [[] for _ in static_links]
     for edge in edges:
@@ -126,7 +126,7 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
     for link, found in enumerate(parents):
         for parent in found:
             children[parent].append(link)
-    # Round after round, each link in the order of the file gets its depth once that of a parent is known.
+    # In each round, links get their depths in the order of the file, once that of a parent is known.
     turns = [(1, child) for link, depth in enumerate(depths) if depth != _UNREACHED for child in children[link]]
     heapq.heapify(turns)
     while turns:
@@ -139,10 +139,10 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
 
 
 def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Return for each link the neighbours that a path from link 0 reaches without that link.
+    """Return for each link the neighbours that a path from link 0 reaches without passing that link.
 
-    In the tree of a depth-first search from link 0, neighbours are above or below a link. Those above are reached
-    without it, and those below if it does not cut their branch off.
+    In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. Ancestors are reached
+    without it, and descendants if it is not an articulation point of their branch.
     """
     number, above, highest = depth_first(neighbours, 0)
     branches: list[list[int]] = [[] for _ in neighbours]
@@ -161,9 +161,9 @@ def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int], *, has_dofs: bool) -> bool:
-    """Return True where the second listed link is the parent; link 0 is never a child (gap-05, gap-06, gap-07)."""
+    """Return whether the second listed link is the parent; link 0 is never a child (gap-05, gap-06, gap-07)."""
     first, second = links
-    if static_links[second]:  # in bodies without DOFs, too
+    if static_links[second]:  # also in bodies without DOFs
         return not static_links[first] and first != 0
     if static_links[first]:
         return has_dofs and second == 0
@@ -173,7 +173,7 @@ def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Se
 def _hangs_on(
     link: int, other: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]], carriers: set[int]
 ) -> bool:
-    """Return whether a link is another one or hangs on it, given the links that carry others."""
+    """Return whether a link is another one or its descendant, given the links that have children."""
     while link != other and other in carriers and link in placed_by:
         link = ends[placed_by[link]][0]
     return link == other

@@ -1,4 +1,4 @@
-"""Mass properties: of several links as arrays, and from a tensor to principal axes and back."""
+"""Mass properties: arrays for several links, and conversion between tensors and principal axes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from ravemj.model.scene import Inertial, Link
 
 @dataclass(frozen=True, slots=True)
 class Inertias:
-    """Mass properties of the links.
+    """Mass properties of several links.
 
     Attributes:
         masses: Masses [kg], shape (links,).
@@ -24,8 +24,8 @@ class Inertias:
     tensors: Floats
 
     @classmethod
-    def of(cls, links: Sequence[Link]) -> "Inertias":
-        """Return those of the links of a scene."""
+    def from_links(cls, links: Sequence[Link]) -> "Inertias":
+        """Return the mass properties of links as arrays."""
         count = len(links)
         return cls(
             np.array([link.inertial.mass for link in links], dtype=np.float64),
@@ -34,7 +34,7 @@ class Inertias:
         )
 
     def center_of_mass(self, T_a_links: Floats) -> Floats:
-        """Return the common centre of mass of links [m] in frame a, shape (3,); NaN where nothing has a mass.
+        """Return the total centre of mass of links [m] in frame a, shape (3,); NaN if the mass is 0.
 
         ``T_a_links`` are their poses, shape (links, 4, 4).
         """
@@ -44,11 +44,11 @@ class Inertias:
 
 
 _ROUNDING = 1e-12
-"""What is left of the zeros in a tensor, relative to its moments, when its axes were turned by quarters."""
+"""Relative residue of zeros in a tensor after rotations of its axes by quarter turns."""
 
 
 def principal_frame(inertial: Inertial) -> Pose:
-    """Return the frame of the principal axes at the centre of mass, in the link."""
+    """Return the frame of the principal axes at the centre of mass, in the link frame."""
     return Pose(inertial.com, _axes(inertial))
 
 
@@ -66,11 +66,26 @@ def inertial_about(mass: float, T_link_mass: Pose, moments: Floats) -> Inertial:
     return Inertial(mass, T_link_mass.position, rows, T_link_mass.wxyz)
 
 
+def joined_inertial(parts: Sequence[tuple[Pose, Inertial]]) -> Inertial:
+    """Return the mass properties of rigidly connected parts, each at its pose ``T_link_part`` in a common frame."""
+    masses = np.array([inertial.mass for _, inertial in parts])
+    coms = np.array([pose.apply(inertial.com) for pose, inertial in parts])
+    com = masses @ coms / masses.sum() if masses.sum() else coms[0]
+    total = np.zeros((3, 3))
+    for mass, arm, (pose, inertial) in zip(masses, coms - com, parts, strict=True):
+        rotation = np.array(rows_from_wxyz(pose.wxyz))
+        total += rotation @ np.array(inertial.inertia) @ rotation.T
+        total += mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # Steiner's theorem
+    xx, xy, xz, _, yy, yz, _, _, zz = total.ravel().tolist()
+    x, y, z = com.tolist()
+    return Inertial(float(masses.sum()), (x, y, z), ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+
+
 def _axes(inertial: Inertial) -> Wxyz:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
     if inertial.axes is not None:
         return inertial.axes
-    if not np.isfinite(inertial.inertia).all():  # of enormous shapes; no axes are better than others
+    if not np.isfinite(inertial.inertia).all():  # of huge shapes, whose axes are arbitrary
         return UNIT_WXYZ
     if max(abs(xy), abs(xz), abs(yz)) <= _ROUNDING * max(abs(xx), abs(yy), abs(zz)):
         return UNIT_WXYZ  # a cylinder's axes in XML, turned a quarter, are those of its link but for rounding

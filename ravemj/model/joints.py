@@ -1,4 +1,4 @@
-"""Joint kinematics: poses from joint values, and back; differences of joint values; another zero of them."""
+"""Joint kinematics: poses from joint values and vice versa, value differences, changes of the zero configuration."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -26,8 +26,10 @@ from ravemj.core.transforms import (
 from ravemj.model.scene import Joint, KinBody
 
 _X = (1.0, 0.0, 0.0)
+_Z = (0.0, 0.0, 1.0)
+_NEAR = 1e-9  # tolerance of unit vectors
 ROUNDING = 1e-12
-"""A measured joint value [rad or m] below this is rounding of the poses, not a displacement."""
+"""Measured joint value [rad or m] below which it is a rounding error of the poses."""
 
 
 def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Sequence[float]]) -> None:
@@ -40,7 +42,7 @@ def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Seq
 
 
 def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
-    """Return the poses of all links, with the root links where they are.
+    """Return the poses of all links, with the root links unchanged.
 
     ``values`` are those of each joint's axes [rad or m], active joints and then passive ones.
     """
@@ -55,11 +57,16 @@ def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
 
 
 def rests(body: KinBody, index: int) -> bool:
-    """Return whether a joint of a body stays where it is: it neither has DOFs nor follows others."""
+    """Return whether a joint is fixed: it has no DOFs and is not a mimic joint."""
     if index < len(body.joints):
         return False
     mimic = body.passive_joints[index - len(body.joints)].mimic
     return mimic is None or mimic.expression is None
+
+
+def turns_about_z_of_child(joint: Joint) -> bool:
+    """Return whether a hinge's axis is the z axis of its child at value 0."""
+    return math.dist(joint.axes[0].direction, rotate(joint.T_parent_child.wxyz, _Z)) < _NEAR
 
 
 def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
@@ -68,7 +75,7 @@ def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
 
 
 def displaced_pose(joint: Joint, values: Sequence[float]) -> Pose:
-    """Return the pose of a joint's child in its parent at the given values [rad or m], also of a weld."""
+    """Return the pose of a joint's child in its parent at values [rad or m], which may be nonzero for welds."""
     if joint.kind == "spherical":
         return about(joint.anchor, wxyz_from_rotation_vector((values[0], values[1], values[2]))) @ joint.T_parent_child
     displaced = joint.T_parent_child
@@ -78,7 +85,7 @@ def displaced_pose(joint: Joint, values: Sequence[float]) -> Pose:
 
 
 def _motion(joint: Joint, index: int, value: float) -> Pose:
-    """Return the displacement by one axis of a joint."""
+    """Return the displacement caused by one axis of a joint."""
     axis = joint.axes[index]
     way = value - axis.reference
     if joint.slides(index):
@@ -87,7 +94,7 @@ def _motion(joint: Joint, index: int, value: float) -> Pose:
 
 
 def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
-    """Return the directions of a joint's axes in its parent at given values; the second one turns with the first."""
+    """Return the axis directions of a joint in its parent at given values; the second one rotates with the first."""
     directions = [axis.direction for axis in joint.axes]
     if joint.kind in {"hinge2", "pr"}:
         first = joint.axes[0]
@@ -96,15 +103,15 @@ def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
 
 
 def moving_direction(joint: Joint, axis: int) -> Vec3:
-    """Return the direction in the parent that a joint slides along or turns about; a ball has none.
+    """Return the direction of an axis in the parent; a ball joint has none.
 
-    A spherical joint that follows others has one value, the first of its rotation vector (random-xml-41, -102).
+    A spherical mimic joint has one value, the first of its rotation vector (random-xml-41, -102).
     """
     return _X if joint.kind == "spherical" else joint.axes[axis].direction
 
 
 def reported_anchor(joint: Joint) -> Vec3:
-    """Return the anchor that OpenRAVE reports, in the joint's parent: for sliders that of the value 0."""
+    """Return the anchor reported by OpenRAVE, in the joint's parent; for sliders that of value 0."""
     if joint.kind != "slider":
         return joint.anchor
     return add(joint.anchor, scale(joint.axes[0].direction, -joint.axes[0].reference))
@@ -116,9 +123,9 @@ def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
 
 
 def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
-    """Return the values [rad or m] of a joint's axes that follow from the pose ``now`` of its child in its parent.
+    """Return the values [rad or m] of a joint's axes from the pose ``now`` of its child in its parent.
 
-    An angle is at most half a turn; a joint with two axes counts as unmoved.
+    Angles are at most half a turn; a joint with two axes is assumed not to have moved.
     """
     if joint.static:
         return tuple(0.0 for _ in joint.axes)
@@ -143,7 +150,7 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
 
 
 def wxyz_from_rotation_vector(vector: Vec3) -> Wxyz:
-    """Return the rotation about a vector by its length [rad]."""
+    """Return the rotation about a vector by its norm [rad]."""
     return wxyz_from_axis_angle(vector, math.sqrt(dot(vector, vector)))
 
 
@@ -156,29 +163,30 @@ def rotation_vector(wxyz: Wxyz) -> Vec3:
 
 
 def subtracts_in_turns(body: KinBody, joint: Joint) -> bool:
-    """Return whether differences of a circular joint's values go the shorter way round.
+    """Return whether differences of a circular joint's values take the shorter arc.
 
-    As in OpenRAVE, they do not where a static link carries the joint (gap-13: not static, random-api-102: static).
+    As in OpenRAVE, they do not if the parent link is static (gap-13: not static, random-api-102: static).
     """
     return not body.links[joint.parent].static
 
 
 def value_differences(body: KinBody, dofs: Iterable[int], values: Floats, others: Floats) -> Floats:
-    """Return ``values - others`` [rad or m], one for each of some DOFs; circular joints go the shorter way round."""
+    """Return ``values - others`` [rad or m] for some DOFs; circular joints take the shorter arc."""
     turns = [axis.circular and subtracts_in_turns(body, joint) for joint in body.joints for axis in joint.axes]
     differences = values - others
     return np.where([turns[dof] for dof in dofs], wrapped_angle(differences), differences)
 
 
 def wrapped_angle(angle: ArrayLike) -> Floats:
-    """Return angles with full turns added so that they lie in (-pi, pi], shape as given."""
+    """Wrap angles to (-pi, pi]."""
     return np.pi - (np.pi - np.asarray(angle, dtype=np.float64)) % (2 * np.pi)
 
 
 def rezeroed(body: KinBody, T_world_links: Floats, values: Sequence[float]) -> KinBody:
-    """Return a body whose DOFs are 0 where its links stand; limits keep their numbers, and passive joints their zero.
+    """Return a body whose present configuration is its zero configuration; limits keep their numbers.
 
-    ``T_world_links`` says where these are, shape (links, 4, 4), and ``values`` what the DOFs have there [rad or m].
+    ``T_world_links`` are the present link poses, shape (links, 4, 4), and ``values`` the DOF values [rad or m]. The
+    zero of passive joints does not change.
     """
     poses = [pose_of(transform) for transform in T_world_links]
     links = tuple(replace(link, T_world_link=pose) for link, pose in zip(body.links, poses, strict=True))

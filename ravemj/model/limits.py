@@ -1,4 +1,4 @@
-"""Limits of joint values: the one place where values are compared with them and moved into them."""
+"""Limits of joint values: comparison and clamping."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,15 +11,15 @@ from ravemj.model.scene import Axis
 
 LARGEST = float(np.finfo(np.float64).max)
 
-_FEW = 12  # up to so many values a loop over plain floats is faster than numpy
+_FEW = 12  # number of values up to which a loop over floats is faster than numpy
 
 
 class Limits:
-    """The limits of several axes; circular ones allow every finite number.
+    """Limits of several axes; circular ones allow every finite number.
 
     Attributes:
-        lower: Least values [rad or m], shape (axes,).
-        upper: Greatest values, shape (axes,).
+        lower: Lower limits [rad or m], shape (axes,).
+        upper: Upper limits, shape (axes,).
     """
 
     def __init__(self, axes: Sequence[Axis]) -> None:
@@ -27,12 +27,12 @@ class Limits:
         self.upper = np.array([LARGEST if axis.circular else axis.upper for axis in axes])
         self._plain_limits = self.lower.tolist(), self.upper.tolist()
         self._few = range(len(axes)) if len(axes) <= _FEW else None
-        self._contained = np.ones(len(axes), dtype=bool)  # written anew by each comparison
+        self._contained = np.ones(len(axes), dtype=bool)  # buffer for each comparison
         self._all = self._contained.tobytes()
 
     def contain(self, values: Floats) -> bool:
         """Return whether all values, shape (axes,), are finite numbers within the limits."""
-        if self._few is None:  # comparing bytes is faster than ``all``
+        if self._few is None:  # comparison of bytes is faster than ``all``
             contained, every = self._contained, self._all
             above = np.greater_equal(values, self.lower, contained).tobytes() == every
             return above and np.less_equal(values, self.upper, contained).tobytes() == every
@@ -43,17 +43,20 @@ class Limits:
         return True
 
     def clamp(self, values: Floats) -> Floats:
-        """Return values, shape (..., axes), moved into the limits; NaN stays."""
-        return np.clip(values, self.lower, self.upper)
+        """Return values, shape (..., axes), moved into the limits; NaN stays.
+
+        If a lower limit is above the upper one, values below the lower limit move to it, as in OpenRAVE.
+        """
+        return np.where(values < self.lower, self.lower, np.minimum(values, self.upper))
 
 
 def clamp(axis: Axis, value: float) -> float:
     """Return a value [rad or m] moved into the limits of an axis, which a circular one does not have; NaN stays."""
-    return value if axis.circular else min(max(value, axis.lower), axis.upper)
+    return value if axis.circular else axis.lower if value < axis.lower else min(value, axis.upper)
 
 
 def with_fields(axes: Sequence[Axis], indices: Sequence[int], fields: Mapping[str, Sequence[float]]) -> list[Axis]:
-    """Return axes, those at some indices with other fields: by the name of a field, its value for each index."""
+    """Return axes with changed fields at some indices: by field name, a value for each index."""
     changed = list(axes)
     for place, index in enumerate(indices):
         changes: dict[str, Any] = {name: values[place] for name, values in fields.items()}

@@ -1,7 +1,7 @@
-"""The look of pictures, as numbers: lights, background and floor.
+"""Appearance of pictures: lights, background and floor.
 
-All renderers and the MJCF take them from here, so that their pictures look alike. Light is in parts of a surface's own
-colour: where the lights on a surface add up to 1, it is drawn in its colour.
+All renderers and the MJCF use these values, so that their pictures look alike. Light is relative to a surface's colour:
+if the lights on a surface add up to 1, it is drawn in its own colour.
 """
 
 from typing import NamedTuple
@@ -14,15 +14,15 @@ Rgb = tuple[float, float, float]
 
 
 class Light(NamedTuple):
-    """A directional light.
+    """Directional light.
 
     Attributes:
         direction: Direction in which the light travels, in its frame; need not be of unit length.
-        diffuse: Light on a surface that faces the light.
-        ambient: Light on every surface.
-        specular: Light of highlights.
-        in_camera: Whether the frame is the camera's (x right, y down, z forward); else it is the world.
-        casts_shadows: Whether bodies keep the light off others.
+        diffuse: Intensity on a surface that faces the light.
+        ambient: Intensity on every surface.
+        specular: Intensity of highlights.
+        in_camera: Whether the frame is the camera's (x right, y down, z forward); else it is the world frame.
+        casts_shadows: Whether bodies cast shadows in this light.
     """
 
     direction: tuple[float, float, float]
@@ -33,7 +33,7 @@ class Light(NamedTuple):
     casts_shadows: bool = False
 
     def direction_in_world(self, R_world_camera: Floats) -> Floats:
-        """Return the unit vector along which the light travels in the world, for a camera's rotation.
+        """Return the unit direction of the light in the world, for a camera's rotation.
 
         A light that casts shadows comes from above, wherever the camera is: its shadows fall onto the floor.
         """
@@ -50,79 +50,79 @@ class Light(NamedTuple):
 
 
 LIGHTS = ("studio", "model", "both")
-"""Choices of lights: these, those of a model, or both."""
+"""Choices of lights: studio lights, those of a model, or both."""
 
 FLOORS = ("auto", "on", "off")
-"""Choices of the floor; ``auto``: where nothing sets a background."""
+"""Choices of the floor; ``auto`` draws it if no background is set."""
 
 AZIMUTH, ELEVATION = 40.0, 25.0
-"""From where pictures are taken if nothing says another camera: from the front left corner and above [degrees]."""
+"""Default view direction: from the front left and above [degrees]."""
 
 STEEPNESS = 0.6
-"""Sine of the least elevation of a light that casts shadows."""
+"""Minimum sine of the elevation of a light that casts shadows."""
 
 KEY = Light((0.45, 0.22, 1.0), diffuse=0.33, specular=0.1, in_camera=True, casts_shadows=True)
-"""The main light, over the camera's left shoulder."""
+"""Key light, over the camera's left shoulder."""
 
 FILL = Light((0.0, 0.0, 1.0), diffuse=0.08, ambient=0.58, in_camera=True)
-"""A soft light from the camera; MuJoCo calls it the headlight."""
+"""Fill light from the camera; MuJoCo's headlight."""
 
 SKY = Light((0.0, 0.0, -1.0), diffuse=0.04)
-"""A little light from above."""
+"""Weak light from above."""
 
 STUDIO = (FILL, KEY, SKY)
-"""The lights of pictures: a surface that faces the camera's left shoulder is drawn in its own colour."""
+"""Default lights of pictures: a surface that faces the camera's left shoulder is drawn in its own colour."""
 
 STUDIO_PREFIX = "studio_"
-"""Begins the names that these lights have in MJCF files; lights of other names are a model's own."""
+"""Name prefix of these lights in MJCF files; other lights belong to a model."""
 
 SOFTNESS = 0.008
-"""Angular radius of the main light [rad], which makes the edges of its shadows soft."""
+"""Angular radius of the key light [rad], which softens the edges of its shadows."""
 
 SENSOR = (
     Light((0.0, 0.0, 1.0), diffuse=0.26, ambient=0.34, specular=0.05, in_camera=True),
     Light((-0.4, 0.4, -1.0), diffuse=0.4),
 )
-"""The lights of images of simulated cameras, which do not depend on the look of pictures."""
+"""Lights in images of simulated cameras, independent of the appearance of pictures."""
 
 LONE = Light((0.0, 0.0, 1.0), diffuse=0.6, ambient=0.4, specular=0.2, in_camera=True)
-"""The headlight of a model that has no lights of its own and is drawn without those of a studio."""
+"""Headlight of a model without lights that is drawn without studio lights."""
 
 WHITE: Rgb = (1.0, 1.0, 1.0)
 
 ZENITH: Rgb = (0.66, 0.75, 0.86)
 HORIZON: Rgb = (0.91, 0.93, 0.95)
 NADIR: Rgb = (0.74, 0.77, 0.80)
-"""Colours of the background straight up, level and straight down, where nothing sets a background."""
+"""Default background colours straight up, at the horizon and straight down."""
 
 FLOOR: Rgb = (0.79, 0.81, 0.83)
-"""Colour of the floor near the bodies; it fades into the horizon's with the distance."""
+"""Floor colour near the bodies; it fades to the horizon's colour with distance."""
 
 LINES = 0.88
-"""Brightness of the lines on the floor, as a part of the floor's."""
+"""Brightness of the grid lines relative to the floor."""
 
 LINE_WIDTH = 1 / 64
-"""Width of the lines, as a part of the distance between them."""
+"""Width of the grid lines relative to their distance."""
 
 FADE_START, FADE_END = 1.0, 10.0
-"""Distances beyond the bodies at which the floor begins to fade and has faded [radii of the scene]."""
+"""Distances beyond the bodies at which the floor starts to fade and has faded [radii of the scene]."""
 
 FLOOR_REACH = 3.0
 """Far end of the floor, as a multiple of the depth at which it has faded."""
 
 CELLS = 2.0
-"""Least number of cells of the floor's grid along the radius of the scene."""
+"""Minimum number of grid cells along the radius of the scene."""
 
 
 def cell_size(radius: float) -> float:
-    """Return the distance between lines of the floor for a scene of a radius [m]: 1, 2 or 5 times a power of ten."""
+    """Return the distance of grid lines for a scene radius [m]: 1, 2 or 5 times a power of ten."""
     largest = max(radius, 1e-6) / CELLS
     power = 10.0 ** np.floor(np.log10(largest))
     return float(power * max(step for step in (1, 2, 5) if step * power <= largest * (1 + 1e-9)))
 
 
 def first_rotation() -> Floats:
-    """Return ``R_world_camera`` of pictures for which nothing sets a camera, shape (3, 3)."""
+    """Return the default ``R_world_camera`` of pictures, shape (3, 3)."""
     azimuth, elevation = np.radians((AZIMUTH, ELEVATION))
     level = -np.cos(elevation)
     return rotation_along((level * np.cos(azimuth), level * np.sin(azimuth), -np.sin(elevation)), (0.0, 0.0, 1.0))
@@ -133,7 +133,7 @@ def rotation_along(forward: tuple[float, float, float], up: tuple[float, float, 
 
     Args:
         forward: The viewing direction in the world.
-        up: What is up in the picture, as far as it is across the viewing direction.
+        up: Up direction in the world; its component perpendicular to the viewing direction is up in the picture.
     """
     z = np.array(forward)
     x = np.cross(z, up)

@@ -1,17 +1,17 @@
-"""Manipulators: the links, joints and DOFs that a file names."""
+"""Manipulators: resolution of the links, joints and DOFs named in a file."""
 
 import math
 from dataclasses import dataclass, field
 
 from ravemj.core.transforms import Pose, Vec3, dot, scale
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Diagnostics, ManipulatorError, Source
 from ravemj.model import chains, scene
 from ravemj.model.chains import joint_dofs
 
 
 @dataclass(slots=True)
 class ManipulatorBuilder:
-    """A manipulator as written; links and joints by name. A name that is missing is empty."""
+    """Manipulator as written, with names of links and joints; missing names are empty."""
 
     name: str
     source: Source
@@ -22,10 +22,11 @@ class ManipulatorBuilder:
     gripper_joints: list[str] = field(default_factory=list[str])
     closing_direction: list[float] = field(default_factory=list[float])
     gripper_name: str = ""
+    ik_solver: str = ""
 
 
 def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnostics: Diagnostics) -> scene.Manipulator:
-    """Find the links and joints that a manipulator names."""
+    """Resolve the links and joints named by a manipulator."""
     base, effector = (
         next((index for index, link in enumerate(body.links) if name and link.name == name), None)
         for name in (built.base, built.effector)
@@ -48,11 +49,12 @@ def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnosti
         chucking_direction=tuple(sign for signs in gripper.values() for sign in signs),
         source=built.source,
         gripper_name=built.gripper_name,
+        ik_solver=built.ik_solver,
     )
 
 
 def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
-    """Return the joints from one link up the tree to another, in that order; None if there is no such way.
+    """Return the joints from one link up the tree to another, in that order; None if there is no path.
 
     Joints are counted as the active ones followed by the passive ones.
     """
@@ -62,10 +64,10 @@ def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
 
 
 def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
-    """Check that the joints of an arm move its effector: each lies on a path from link 0 to it, or one that follows it.
+    """Check that each joint of an arm moves its effector, directly or through mimic joints.
 
     Raises:
-        SourceError: one does not; OpenRAVE refuses the robot (gap-10, gap-39).
+        ManipulatorError: a joint does not; OpenRAVE rejects the robot (gap-10, gap-39).
     """
     effector = manipulator.effector
     if effector is None:
@@ -83,7 +85,7 @@ def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
             hint = f"name as base a link between '{body.links[0].name}' and '{link}'"
             if effector == 0:
                 hint = "the first link of a body moves by no joint: exchange base and effector"
-            raise SourceError(f"{message} '{link}'", manipulator.source, hint)
+            raise ManipulatorError(f"{message} '{link}'", manipulator.source, hint)
 
 
 def _arm_dofs(body: scene.KinBody, base: int, effector: int) -> tuple[int, ...]:
@@ -103,9 +105,9 @@ def _arm_dofs(body: scene.KinBody, base: int, effector: int) -> tuple[int, ...]:
 def _gripper(
     built: ManipulatorBuilder, body: scene.KinBody, arm: tuple[int, ...], diagnostics: Diagnostics
 ) -> dict[int, list[float]]:
-    """Return the joints of the gripper, each with the signs of closing of its DOFs.
+    """Return the gripper joints, each with the closing signs of its DOFs.
 
-    The signs are dealt out to the names in turn; joints of the arm get none.
+    The signs are assigned to the names in order; joints of the arm get none.
     """
     found: dict[int, list[float]] = {}
     signs = iter([math.copysign(1.0, value) if value else 0.0 for value in built.closing_direction])

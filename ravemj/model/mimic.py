@@ -1,4 +1,4 @@
-"""Mimic joints: from the equations of a file to expressions over the joints of a body, and their values."""
+"""Mimic joints: equations as expressions over a body's joints, and their evaluation."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Equations(NamedTuple):
-    """The equations of a mimic joint as written, with the names of other joints; ``position`` may be empty."""
+    """Mimic equations as written, with names of other joints; ``position`` may be empty."""
 
     position: str = ""
     velocity: str = ""
@@ -25,13 +25,13 @@ class Equations(NamedTuple):
 
 
 class NamedJoint(NamedTuple):
-    """A joint as equations refer to it.
+    """Joint as equations refer to it.
 
     Attributes:
-        name: Its name.
-        dof: How many DOFs it has; 0 for a passive joint.
-        equations: How it follows others, or None.
-        source: Where it stands.
+        name: The name.
+        dof: Number of DOFs; 0 for a passive joint.
+        equations: Its mimic equations, or None.
+        source: Its position in a file.
     """
 
     name: str
@@ -41,9 +41,9 @@ class NamedJoint(NamedTuple):
 
 
 def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int, Mimic]:
-    """Return how each mimic joint follows the others, by its index; nothing where any equation is wrong.
+    """Return the mimic relation of each mimic joint by index; empty if any equation is invalid, as in OpenRAVE.
 
-    OpenRAVE then drops all of them. Joints are active ones in DOF order, then passive ones.
+    Joints are active ones in DOF order, then passive ones.
     """
     if not any(joint.equations for joint in joints):
         return {}
@@ -91,7 +91,7 @@ def leaders(expression: "Expression") -> tuple[int, ...]:
 
 
 def _followed(index: int, mimics: "dict[int, Expression]") -> set[int]:
-    """Return the joints that a mimic joint follows, directly or through others."""
+    """Return the joints that a mimic joint depends on, directly or indirectly."""
     pending, followed = [index], set[int]()
     while pending:
         current = pending.pop()
@@ -102,18 +102,18 @@ def _followed(index: int, mimics: "dict[int, Expression]") -> set[int]:
 
 
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
-    """Return the mimic joints, each behind those that it depends on; those that follow in a circle are left out."""
+    """Return the mimic joints in order of evaluation, without those in cycles."""
     moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
     return topological_order(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])
 
 
 class Multiple(NamedTuple):
-    """The equation ``slope * x + offset`` within limits, which nearly all mimic joints have.
+    """Equation ``slope * x + offset`` within limits, the form of nearly all mimic joints.
 
     Attributes:
         leader: The joint whose first value is x.
-        slope: What it is multiplied by.
-        offset: What is added.
+        slope: The factor of x.
+        offset: The constant term.
         lower: Lower limit of the result [rad or m].
         upper: Upper limit of the result [rad or m].
     """
@@ -138,15 +138,15 @@ class Multiple(NamedTuple):
 
 
 class MimicJoint(NamedTuple):
-    """A joint whose value is a function of the values of others.
+    """Joint whose value is a function of other joint values.
 
     Attributes:
-        joint: Its index among the active joints followed by the passive ones.
+        joint: Its index in the list of active, then passive joints.
         expression: The function, of ``joint0``, ``joint1``, …
-        multiple: The same as a multiple of one joint's value, if it is that.
-        evaluate: The value of any other equation, from the first values of all joints.
+        multiple: The affine form of ``expression`` in one joint, or None.
+        evaluate: The evaluation of other equations, from the first values of all joints.
         lower: Its lower limit [rad or m].
-        upper: Its upper limit; a circular joint has none.
+        upper: Its upper limit; circular joints have none.
     """
 
     joint: int
@@ -158,19 +158,19 @@ class MimicJoint(NamedTuple):
 
 
 class MimicJoints:
-    """The mimic joints of a body, ready to be evaluated.
+    """Mimic joints of a body, prepared for evaluation.
 
     Attributes:
-        joints: Each behind those that it depends on.
+        joints: The mimic joints in order of evaluation.
     """
 
     def __init__(self, joints: Sequence[Joint]) -> None:
-        """Prepare the mimic joints among the active joints followed by the passive ones."""
+        """Prepare the mimic joints in the list of active, then passive joints."""
         mimics = {i: joint.mimic for i, joint in enumerate(joints) if joint.mimic is not None and not joint.static}
         self.joints = [_prepared(index, joints) for index in evaluation_order(mimics)]
 
     def evaluate(self, values: list[float], *, clamp: bool = True) -> None:
-        """Compute the values of the mimic joints from those of the others, in place, within limits if ``clamp``.
+        """Compute the values of the mimic joints from the others in place, within limits if ``clamp``.
 
         ``values`` are the first ones of each joint [rad or m], active joints and then passive ones.
         """
@@ -182,7 +182,7 @@ class MimicJoints:
                 values[index] = min(max(value, lower), upper) if clamp else value
 
     def evaluate_many(self, values: list[Floats]) -> None:
-        """Do the same for many configurations: an array of shape (N,) for each joint."""
+        """Do the same for many configurations, with arrays of shape (N,) for each joint."""
         for joint, expression, _, _, lower, upper in self.joints:
             named = {f"joint{leader}": values[leader] for leader in leaders(expression)}
             found = np.broadcast_to(expression.evaluate_many(named), np.shape(values[joint]))

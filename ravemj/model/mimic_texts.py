@@ -1,4 +1,4 @@
-"""The equations of mimic joints as texts that do not depend on how a file spells them."""
+"""Mimic equations in a canonical text form, independent of the spelling in a file."""
 
 from collections.abc import Mapping
 
@@ -7,9 +7,9 @@ from ravemj.model.scene import KinBody
 
 
 def mimic_texts(body: KinBody) -> list[dict[str, str]]:
-    """Return for each joint, active ones first, its equation and partial derivatives by what they are.
+    """Return for each joint, active ones first, its equation and partial derivatives by type.
 
-    A joint that follows none has none.
+    Joints that are not mimic joints have none.
     """
     names = joint_variables([joint.name for joint in body.all_joints])
     found: list[dict[str, str]] = [{} for _ in body.all_joints]
@@ -23,7 +23,7 @@ def mimic_texts(body: KinBody) -> list[dict[str, str]]:
 
 
 def _partials(text: str) -> dict[str, str]:
-    """Return the partial derivatives in a text by what they are with; of what is none, the text."""
+    """Return the partial derivatives in a text by variable; if it is invalid, the text."""
     try:
         return partials(text)
     except ExpressionError:
@@ -31,7 +31,7 @@ def _partials(text: str) -> dict[str, str]:
 
 
 def _respelled(equation: str, names: Mapping[str, str]) -> str:
-    """Return an equation as its tree is spelled; of what is none, the text."""
+    """Return an equation in canonical spelling; if it is invalid, the text."""
     try:
         return str(parse(substitute(equation, names), set(names.values())))
     except ExpressionError:

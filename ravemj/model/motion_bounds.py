@@ -1,6 +1,6 @@
-"""Motion bounds: the greatest displacement of any point of a body per unit of each DOF.
+"""Motion bounds: maximum displacement of any point of a body per unit of each DOF.
 
-Adaptive collision checking along a path needs such bounds; OpenRAVE's weights and resolutions are made from them.
+They are used in adaptive collision checking, and to compute OpenRAVE's weights and resolutions.
 """
 
 import math
@@ -14,13 +14,13 @@ from ravemj.model.mimic import evaluation_order, leaders
 from ravemj.model.scene import Joint, KinBody
 
 _SAMPLES = 1000
-"""Sampled values of the leaders, at which the derivative of a mimic joint's equation is evaluated."""
+"""Number of leader values at which the derivative of a mimic equation is sampled."""
 
 
 def motion_bounds(body: KinBody) -> Floats:
-    """Return for each DOF the greatest displacement of a point of the body's shapes, at any values within the limits.
+    """Return for each DOF the maximum displacement rate of a point of the body's shapes, over all configurations.
 
-    The bounds are conservative: a chain of links counts as stretched in every configuration.
+    The bounds are conservative: chains of links are assumed to be stretched.
 
     Returns:
         Metres per radian, for sliders per metre, shape (dof,); 0 for a DOF that moves no shape.
@@ -36,12 +36,12 @@ def motion_bounds(body: KinBody) -> Floats:
 
 
 def reach(body: KinBody) -> float:
-    """Return the greatest distance [m] of a body's shapes from the origin of its first link, at any joint values."""
+    """Return the maximum distance [m] of a body's shapes from the origin of its first link, over all configurations."""
     return _farthest(body, 0, np.zeros(3), np.zeros(3))
 
 
 def _joint_reach(body: KinBody, joint: Joint) -> Floats:
-    """Return for each axis of a joint the greatest distance of the shapes that it moves; for one that slides 1."""
+    """Return for each axis of a joint the maximum distance of moved shapes from it; 1 for prismatic axes."""
     if joint.kind == "slider":
         return np.ones(1)
     if joint.static or not joint.places_child:
@@ -53,7 +53,7 @@ def _joint_reach(body: KinBody, joint: Joint) -> Floats:
 
 
 def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
-    """Return the greatest distance of the shapes of a link and its descendants from a point, perpendicular to an axis.
+    """Return the maximum distance of the shapes of a link and its descendants from a point, perpendicular to an axis.
 
     Point and axis, a unit vector or zero for none, are fixed to the link and in its frame.
     """
@@ -79,7 +79,7 @@ def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
 
 
 def _stroke(joint: Joint) -> float:
-    """Return the greatest displacement by the axes that slide from ``T_parent_child``; 0 for a weld."""
+    """Return the maximum displacement of prismatic axes from ``T_parent_child``; 0 for a weld."""
     if joint.static:
         return 0.0
     sliding = (axis for index, axis in enumerate(joint.axes) if joint.slides(index))
@@ -87,13 +87,13 @@ def _stroke(joint: Joint) -> float:
 
 
 def _point_in_child(joint: Joint, point: Floats) -> Floats:
-    """Return a point of a joint's parent in the frame of the child, at the joint's reference."""
+    """Return a point in a joint's parent frame in the frame of the child, at the joint's reference."""
     T_child_parent = joint.T_parent_child.inverse().matrix()
     return T_child_parent[:3, :3] @ point + T_child_parent[:3, 3]
 
 
 def _direction_in_child(joint: Joint, direction: Floats) -> Floats:
-    """Return a direction in a joint's parent in the frame of the child, at the joint's reference."""
+    """Return a direction in a joint's parent frame in the frame of the child, at the joint's reference."""
     return joint.T_parent_child.inverse().matrix()[:3, :3] @ direction
 
 

@@ -1,8 +1,8 @@
-"""Motions without collisions, and times for them.
+"""Collision-free motions and their timing.
 
-``space`` says what a configuration is: limits, distances, ways round. ``edges`` tests straight lines and finds what is
-allowed nearby, ``trees``, ``rrt`` and ``randomized_astar`` find paths of lines, ``shortcuts`` shortens them;
-``ompl_search`` asks OMPL. ``retiming`` gives paths times, ``ramps`` and ``ramp_shortcuts`` make motions of constant
-accelerations faster, and ``verification`` looks at every moment of the result. Arrays and functions in, arrays out:
-what collides is asked of a function.
+``space`` defines configurations: limits, distances, circular values. ``edges`` tests straight lines and finds allowed
+configurations nearby; ``rrt`` and ``randomized_astar`` find paths of straight lines, and ``shortcuts`` shortens them;
+``ompl_search`` runs OMPL. ``retiming`` times paths, ``ramps`` and ``shortcuts`` make motions of constant accelerations
+faster, and ``verification`` checks the result at all times. Input and output are arrays and functions; a function tests
+collisions.
 """

@@ -1,9 +1,10 @@
-"""Lines on a constraint: the configurations between two others are projected onto it.
+"""Edges on a constraint: intermediate configurations are projected onto it.
 
 After D. Berenson, S. Srinivasa, D. Ferguson and J. Kuffner, "Manipulation planning on constraint manifolds", ICRA 2009.
 """
 
 from collections import deque
+from collections.abc import Callable
 from itertools import pairwise
 from math import ceil
 from typing import NamedTuple
@@ -11,52 +12,57 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.edges import LINE, ROUNDING, STEP, Allowed, Edges, Growth
+from ravemj.planning.edges import LINE, ROUNDING, STEP, Allowed, Edges, Growth, Proof
 from ravemj.planning.projection import PROJECTION_STEPS, Error, project
+from ravemj.planning.proofs import path_curves
 from ravemj.planning.space import Space
 
 _PROJECTED = 0.1
-"""Projections end at this fraction of the threshold."""
+"""Projections stop at this fraction of the threshold."""
 
 _INSIDE = 0.5
-"""Configurations beyond this fraction of the threshold are projected, so that lines between the others stay inside."""
+"""Fraction of the threshold above which configurations are projected, so that edges between them stay within it."""
 
 _DETOUR = 0.8
-"""The largest length of each half of a line, relative to the line. A longer half is a jump on the constraint."""
+"""Maximum length of each half of an edge, relative to the edge; a longer half is a jump on the constraint."""
 
 _SHORTEST = 1e-3
-"""Parts of a line that are shorter than this fraction of it are not halved."""
+"""Minimum length of a part that is halved, relative to the edge."""
 
 
 class Manifold(NamedTuple):
-    """The configurations that keep a constraint.
+    """Constraint manifold.
 
     Attributes:
-        error: The error function, which is zero for these configurations.
-        threshold: The norm of the error up to which a constraint is kept.
+        error: The error function, which is zero on the manifold.
+        threshold: The tolerance of the error norm.
+        norm: Returns the error norm of a configuration faster than ``error``; None if there is no faster function.
     """
 
     error: Error
     threshold: float
+    norm: Callable[[Floats], float] | None = None
 
     def off(self, values: Floats) -> float:
-        """Return the norm of the error of a configuration."""
-        return float(np.linalg.norm(self.error(values)[0]))
+        """Return the error norm of a configuration."""
+        return float(np.linalg.norm(self.error(values)[0])) if self.norm is None else self.norm(values)
 
     def has(self, values: Floats) -> bool:
-        """Return whether a configuration keeps the constraint."""
+        """Return whether a configuration is on the manifold."""
         return self.off(values) <= self.threshold
 
 
 class ConstrainedEdges(Edges):
-    """Tests lines that are bent onto a constraint, in steps of the space's resolution; ``allowed`` need not test it."""
+    """Tests edges on a constraint manifold in steps of the resolution; ``allowed`` need not test it."""
 
-    def __init__(self, space: Space, allowed: Allowed, manifold: Manifold, step: float = STEP) -> None:
-        super().__init__(space, allowed, step)
+    def __init__(
+        self, space: Space, allowed: Allowed, manifold: Manifold, step: float = STEP, proof: Proof | None = None
+    ) -> None:
+        super().__init__(space, allowed, step, proof)
         self._manifold = manifold
 
     def grow(self, start: Floats, target: Floats, *, longest: float = LINE, whole: bool = False) -> Growth:
-        """Return steps on the constraint towards another configuration, up to the first that is blocked or too far."""
+        """Return steps on the constraint towards another configuration, up to the first blocked or too long one."""
         points, here, arrives = [start], start, False
         for _ in range(ceil(longest / self.step - ROUNDING)):
             end, arrives = self._towards(here, target)
@@ -69,14 +75,14 @@ class ConstrainedEdges(Edges):
         return Growth(np.array(points[1:]), False, arrives)
 
     def _towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
-        """Return the configuration one step nearer to a target, onto the constraint, and whether it is the target."""
+        """Return the configuration one step closer to a target, on the constraint, and whether it is the target."""
         way, arrives = self._shortened(start, target, self.step)
         if arrives and self._manifold.has(start + way):
             return start + way, True
         return self.onto(start + way), False
 
     def onto(self, configuration: Floats) -> Floats:
-        """Return a configuration well inside of the threshold, near another one; that one where none is found."""
+        """Project a configuration well inside of the threshold; if that fails, return it unchanged."""
         if self._manifold.off(configuration) <= _INSIDE * self._manifold.threshold:
             return configuration
         smallest = _PROJECTED * self._manifold.threshold
@@ -84,13 +90,23 @@ class ConstrainedEdges(Edges):
         return configuration if steps < 0 else found
 
     def line(self, start: Floats, step: Floats) -> bool:
-        """Return whether the bent line from a configuration that is allowed is so everywhere, its end included."""
-        return self.bent(start, start + step) is not None
+        """Return whether the projected edge from an allowed configuration is allowed everywhere, including its end."""
+        return self._bent_line(start, step, proved=self.is_strict)
+
+    def shortcut(self, start: Floats, step: Floats) -> bool:
+        """Return whether a projected edge is allowed and passes the proof required of shortcuts."""
+        return self._bent_line(start, step, proved=True)
+
+    def _bent_line(self, start: Floats, step: Floats, *, proved: bool) -> bool:
+        points = self.bent(start, start + step)
+        if points is None or not proved or self.proof is None:
+            return points is not None
+        return self.proof(path_curves(points, self.space.difference))
 
     def bent(self, start: Floats, end: Floats) -> Floats | None:
-        """Return the configurations along a bent line, shape (m, n); None where one of them is not allowed.
+        """Return the configurations along a projected edge, shape (m, n); None if one of them is not allowed.
 
-        They are so near that straight lines between them keep the constraint. The start is allowed.
+        They are so close that straight lines between them keep the constraint. The start must be allowed.
         """
         if not (self._manifold.has(end) and self.allowed(end)):
             return None
@@ -108,13 +124,13 @@ class ConstrainedEdges(Edges):
         return np.array([points[part] for part in sorted(points)])
 
     def _is_straight(self, start: Floats, end: Floats) -> bool:
-        """Return whether a straight line keeps the constraint, and is no longer than the resolution."""
+        """Return whether a straight line keeps the constraint and is not longer than the resolution."""
         step = self.space.difference(end, start)
         most = max(_INSIDE * self._manifold.threshold, self._manifold.off(start), self._manifold.off(end))
         return self.space.steps(step) == 1 and self._manifold.off(start + step / 2) <= most
 
     def _middle(self, start: Floats, end: Floats) -> Floats | None:
-        """Return the middle of a bent line, or None where there is none on the constraint that is not far aside."""
+        """Return the middle of a projected edge, or None if there is none nearby on the constraint."""
         step = self.space.difference(end, start)
         middle = self.onto(start + step / 2)
         farther = max(self._far(start, middle), self._far(middle, end))
@@ -126,7 +142,7 @@ class ConstrainedEdges(Edges):
 
 
 def bent_path(edges: ConstrainedEdges, points: Floats) -> Floats | None:
-    """Return the configurations along a path of bent lines, shape (m, n); None where one is not allowed."""
+    """Return the configurations along a path of projected edges, shape (m, n); None if one is not allowed."""
     bent = [edges.bent(start, end) for start, end in pairwise(points)]
     rows = [one[1:] for one in bent if one is not None]
     return np.concatenate([points[:1], *rows]) if len(rows) == len(bent) else None

@@ -1,6 +1,6 @@
 """Tests of configurations and of the straight lines between them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from math import ceil, sqrt
 from typing import NamedTuple
@@ -8,19 +8,24 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.planning.proofs import Curve, line_curve
 from ravemj.planning.space import Space
 
 STEP = 0.04
-"""Default step of trees, a weighted distance: OpenRAVE's default step length."""
+"""Default step of trees as a weighted distance: OpenRAVE's default step length."""
 
 LINE = 1.0
-"""Largest length of one line of a tree, a weighted distance."""
+"""Maximum length of an edge of a tree, a weighted distance."""
 
 ROUNDING = 1e-9
-"""Part of a step by which a line may be longer than a number of steps."""
+"""Rounding tolerance of the number of steps of a line, as a fraction of a step."""
 
 Allowed = Callable[[Floats], bool]
-"""Whether a configuration is without collisions, and keeps the user's constraints."""
+"""Test of a configuration for collisions and user constraints."""
+
+
+Proof = Callable[[Sequence[Curve]], bool]
+"""Proof that a motion is free of collisions at all times."""
 
 
 class Growth(NamedTuple):
@@ -44,20 +49,25 @@ class Edges:
         space: The configuration space.
         allowed: The test of one configuration.
         step: Distance of neighbouring nodes of a tree, a weighted distance; 0 selects ``STEP``.
+        proof: Additional test of shortcuts, or None.
+
+    Attributes:
+        is_strict: Whether the edges of trees have to pass ``proof``, too.
     """
 
-    def __init__(self, space: Space, allowed: Allowed, step: float = STEP) -> None:
-        self.space, self.allowed = space, allowed
+    def __init__(self, space: Space, allowed: Allowed, step: float = STEP, proof: Proof | None = None) -> None:
+        self.space, self.allowed, self.proof = space, allowed, proof
         self.step = step if step > 0 else STEP
+        self.is_strict = False
 
     def grow(self, start: Floats, target: Floats, *, longest: float = LINE, whole: bool = False) -> Growth:
-        """Return the steps from an allowed configuration towards another one, up to the first that is blocked.
+        """Return the steps from an allowed configuration towards another one, up to the first blocked step.
 
         Args:
             start: The configuration to start from, shape (n,).
             target: The configuration to grow towards, shape (n,).
-            longest: Largest length of the line, a weighted distance.
-            whole: Return no steps at all if one of them is blocked, which takes fewer tests.
+            longest: Maximum length of the line, a weighted distance.
+            whole: Whether to return no steps if one is blocked, which takes fewer tests.
         """
         way, arrives = self._shortened(start, target, longest)
         count = max(1, ceil(self._length(way) / self.step - ROUNDING))
@@ -66,11 +76,13 @@ class Edges:
         for number in bisection_order(count * tests):
             if number <= free * tests and not self.allowed(start + number / (count * tests) * way):
                 free = 0 if whole else (number - 1) // tests
+        while free and self.is_strict and not self._is_proved(start, free / count * way):
+            free = 0 if whole else free // 2
         points = start + np.arange(1, free + 1)[:, None] / count * way
         return Growth(points, free < count, arrives and free == count)
 
     def _shortened(self, start: Floats, target: Floats, longest: float) -> tuple[Floats, bool]:
-        """Return the difference from a start to a target, cut to a length, and whether it is not cut."""
+        """Return the difference from a start to a target, clipped to a length, and whether it is not clipped."""
         way = self.space.difference(target, start)
         far = self._length(way)
         return (way * (longest / far), False) if far > longest * (1 + ROUNDING) else (way, True)
@@ -80,21 +92,29 @@ class Edges:
         return sqrt(weighted.dot(weighted))
 
     def onto(self, configuration: Floats) -> Floats:
-        """Return the configuration nearest to another one that keeps the constraint: the same, as there is none."""
+        """Project a configuration onto the constraint: without constraint, return it unchanged."""
         return configuration
 
     def line(self, start: Floats, step: Floats) -> bool:
-        """Return whether the line from a configuration that is allowed is so everywhere, its end included.
+        """Return whether the line from an allowed configuration is allowed everywhere, including its end.
 
-        Lines in collision are mostly so in their middle: halves are tested before quarters.
+        Halves are tested before quarters, since colliding lines mostly collide in the middle.
         """
         allowed, steps = self.allowed, self.space.steps(step)
-        return all(allowed(start + number / steps * step) for number in bisection_order(steps))
+        is_free = all(allowed(start + number / steps * step) for number in bisection_order(steps))
+        return is_free and (not self.is_strict or self._is_proved(start, step))
+
+    def shortcut(self, start: Floats, step: Floats) -> bool:
+        """Return whether a line is allowed and passes the proof required of shortcuts."""
+        return self.line(start, step) and (self.is_strict or self._is_proved(start, step))
+
+    def _is_proved(self, start: Floats, step: Floats) -> bool:
+        return self.proof is None or self.proof([line_curve(start, step)])
 
 
 @lru_cache(maxsize=256)
 def bisection_order(steps: int) -> tuple[int, ...]:
-    """Return the order in which the steps of a line are tested, 1 to ``steps``: its end, middle, quarters, ..."""
+    """Return the order in which steps 1 to ``steps`` of a line are tested: the end, the middle, quarters, ..."""
     order, pending = [steps], [(0, steps)]
     for low, high in pending:
         middle = (low + high) // 2
@@ -105,7 +125,7 @@ def bisection_order(steps: int) -> tuple[int, ...]:
 
 
 def path_is_allowed(edges: Edges, points: Floats) -> bool:
-    """Return whether a path of straight lines is allowed everywhere, shape (m, n)."""
+    """Return whether a path of straight lines, shape (m, n), is allowed everywhere."""
     space = edges.space
     return edges.allowed(points[0]) and all(
         edges.line(points[index], space.difference(points[index + 1], points[index]))
@@ -114,16 +134,16 @@ def path_is_allowed(edges: Edges, points: Floats) -> bool:
 
 
 def length(space: Space, points: Floats) -> float:
-    """Return the length of a path of straight lines, in weighted distances."""
+    """Return the weighted length of a path of straight lines."""
     return float(np.linalg.norm(space.weights * space.difference(points[1:], points[:-1]), axis=1).sum())
 
 
 def nearby(
     space: Space, configuration: Floats, allowed: Allowed, tries: int, farthest: float, random: np.random.Generator
 ) -> Floats | None:
-    """Return a configuration itself if it is allowed, else an allowed one near it, or None.
+    """Return a configuration if it is allowed, else an allowed one nearby, or None.
 
-    Each value moves by ``farthest`` [rad or m] at most; the first of the tries stay nearer.
+    Each value changes by at most ``farthest`` [rad or m]; the first tries stay closer.
     """
     if allowed(configuration):
         return configuration

@@ -1,4 +1,4 @@
-"""The planners of OMPL, the Open Motion Planning Library, in our spaces; it comes with the extra ``planning``."""
+"""Planners of OMPL, the Open Motion Planning Library, in ravemj's spaces; with the extra ``planning``."""
 
 import importlib
 import inspect
@@ -18,19 +18,19 @@ Ompl = Any
 """OMPL has no types."""
 
 _PATIENCE = 0.02
-"""How long a planner works [s] between two questions whether to go on, where it cannot ask itself."""
+"""Interval [s] between checks of the budget for planners that do not call it themselves."""
 
 _NO_SETTINGS = ("up", "name")
-"""``setup`` and ``setName`` set no parameters."""
+"""OMPL methods ``setup`` and ``setName`` that do not set parameters."""
 
 
 class OmplError(Exception):
-    """A planner of OMPL cannot work in a space, or does not take a setting; the text says why."""
+    """A planner of OMPL does not support a space or a setting; the text gives the reason."""
 
 
 @cache
 def planner_classes() -> Mapping[str, Ompl] | None:
-    """Return OMPL's planners by their names in lower case; None: it is not installed."""
+    """Return OMPL's planners by lower-case name; None if OMPL is not installed."""
     try:
         base, geometric = (importlib.import_module(f"ompl.{name}") for name in ("base", "geometric"))
     except ImportError:
@@ -48,19 +48,19 @@ def search_with_ompl(
     seed: int,
     settings: Mapping[str, str],
 ) -> Search:
-    """Find a path by a planner of OMPL, given by its class; those that look for the best one use up the budget.
+    """Find a path with a planner class of OMPL; optimizing planners use up the budget.
 
-    Starts and goals are allowed. An iteration is a question of the planner whether to go on, or a node of a roadmap.
-    ``settings`` has texts by the names of the planner's own parameters, such as ``range`` or ``goal_bias``; other names
-    mean nothing to it.
+    Starts and goals must be allowed. An iteration is a termination check of the planner, or a node of a roadmap.
+    ``settings`` are texts by the names of the planner's parameters, such as ``range`` or ``goal_bias``; other names are
+    ignored.
 
     Raises:
-        OmplError: the planner cannot work in this space, or a setting is wrong.
+        OmplError: the planner does not support the space, or a setting is wrong.
     """
     util = importlib.import_module("ompl.util")
     level = util.getLogLevel()
     util.setLogLevel(util.LogLevel.LOG_NONE)
-    util.RNG.setSeed(seed + 1)  # 0 is none
+    util.RNG.setSeed(seed + 1)  # 0 means none
     try:
         return _searched(planner, edges, (starts, goals), budget, settings)
     except RuntimeError as error:
@@ -82,13 +82,13 @@ def _searched(
     def is_allowed(state: Ompl) -> bool:
         return questions.point(space.values(state))
 
-    class Lines(base.MotionValidator):
+    class EdgeValidator(base.MotionValidator):
         def checkMotion(self, one: Ompl, other: Ompl) -> bool:  # noqa: N802 - OMPL's name
             return questions.line(space.values(one), space.values(other))
 
     information = base.SpaceInformation(space.made)
     information.setStateValidityChecker(is_allowed)
-    lines = Lines(information)
+    lines = EdgeValidator(information)
     information.setMotionValidator(lines)
     information.setup()
     problem, wanted = base.ProblemDefinition(information), base.GoalStates(information)
@@ -114,11 +114,11 @@ def _searched(
 
 
 def _solve(solver: Ompl, condition: Ompl, questions: "_Questions") -> None:
-    """Let a planner work until it has a path or should end."""
+    """Run a planner until it has a path or the budget ends."""
     if not hasattr(solver, "milestoneCount"):
         solver.solve(condition)
         return
-    # Roadmaps are searched in a thread, which has to go without Python: the lock of the interpreter is taken.
+    # Roadmaps are searched in a thread that holds the lock of the Python interpreter, so it must not call Python.
     while not questions.is_over() and not solver.getProblemDefinition().hasExactSolution():
         solver.solve(_PATIENCE)
         questions.count = solver.milestoneCount()
@@ -129,7 +129,7 @@ def _nearest(space: Space, configurations: Sequence[Floats], one: Floats) -> int
 
 
 def _apply(solver: Ompl, settings: Mapping[str, str]) -> None:
-    """Set the parameters of a planner: ``goal_bias`` by ``setGoalBias``, with a number or a truth value."""
+    """Set the parameters of a planner: ``goal_bias`` by ``setGoalBias``, with a number or a boolean."""
     for name, text in settings.items():
         setter = getattr(solver, "set" + "".join(map(str.capitalize, name.split("_"))), None)
         if name in _NO_SETTINGS or setter is None:
@@ -147,7 +147,7 @@ def _truth(text: str) -> bool:
 
 
 class _Questions:
-    """What OMPL asks. What its questions raise ends the search, and is kept, since C++ cannot pass it on."""
+    """Callbacks of OMPL. Their exceptions end the search and are stored, since C++ cannot propagate them."""
 
     def __init__(self, edges: Edges, budget: Budget) -> None:
         self._edges, self._budget = edges, budget
@@ -156,15 +156,15 @@ class _Questions:
         self.count = 0
 
     def safely(self, test: Callable[[], bool]) -> bool:
-        """Return whether a test succeeds; it does not once something was raised."""
+        """Return the result of a test; False after an exception."""
         try:
-            return not self._errors and bool(test())  # numpy has truth values of its own
-        except BaseException as error:  # raised again where C++ is over
+            return not self._errors and bool(test())  # numpy has its own booleans
+        except BaseException as error:  # raised again after the return from C++
             self._errors.append(error)
             return False
 
     def check(self) -> None:
-        """Raise what was raised; nothing refers to it afterwards, since it refers to all that OMPL has."""
+        """Raise a stored exception and drop the reference, since its traceback refers to OMPL's objects."""
         if self._errors:
             raise self._errors.pop()
 
@@ -177,7 +177,7 @@ class _Questions:
         return self.safely(lambda: self._edges.line(start, self._edges.space.difference(end, start)))
 
     def is_over(self) -> bool:
-        """Return whether to end."""
+        """Return whether the search must end."""
 
         def proceeds() -> bool:
             self.end = self._budget.end(self.count)
@@ -188,7 +188,7 @@ class _Questions:
 
 
 class _Space:
-    """OMPL's space for one of ours: a box, whose values are weighted, and a circle for each circular value."""
+    """OMPL space of one of ravemj's: a box of weighted values, and a circle for each circular value."""
 
     def __init__(self, base: Ompl, space: Space) -> None:
         circular = space.coordinates.circular
@@ -207,7 +207,6 @@ class _Space:
         self.made = base.CompoundStateSpace(parts, weights) if self._circles else parts[0]
 
     def values(self, state: Ompl) -> Floats:
-        """Return the configuration of a state."""
         found, first = np.empty(len(self._weights)), int(bool(self._straight))
         if self._straight:
             box = state[0] if self._circles else state
@@ -218,7 +217,6 @@ class _Space:
         return found
 
     def state(self, information: Ompl, values: Floats) -> Ompl:
-        """Return the state of a configuration."""
         state, first = information.allocState(), int(bool(self._straight))
         box = state[0] if self._circles and self._straight else state
         for axis, column in enumerate(self._straight):

@@ -1,4 +1,4 @@
-"""Configurations that reduce an error: steps of damped least squares, down a gradient and onto a constraint."""
+"""Damped least-squares steps that reduce an error, along a gradient and onto a constraint."""
 
 from collections.abc import Callable, Sequence
 
@@ -10,31 +10,31 @@ from ravemj.planning.rrt import Budget, End, Search
 from ravemj.planning.space import Space
 
 Error = Callable[[Floats], tuple[Floats, Floats]]
-"""Returns what a configuration lacks, shape (k,), and how joint values reduce that: a Jacobian, shape (k, n)."""
+"""Returns the error of a configuration, shape (k,), and the Jacobian that reduces it, shape (k, n)."""
 
 PROJECTION_STEPS = 40
-"""Of one projection at most: OpenRAVE's number."""
+"""Maximum number of steps of a projection: OpenRAVE's number."""
 
 _DAMPING = 1e-8
-"""Of steps, beside a part of the squared error: it keeps them finite where the Jacobian has no full rank."""
+"""Constant part of the damping, which keeps steps finite if the Jacobian is rank-deficient."""
 
 _STEP = 0.1
-"""How far [rad or m] one step of a descent goes at most."""
+"""Maximum length of a step of a descent [rad or m]."""
 
 _PATIENCE = 30
-"""A descent gives up after so many steps that did not come nearer than the best one before."""
+"""Maximum number of consecutive steps without progress in a descent."""
 
 
 def damped_step(error: Floats, jacobian: Floats) -> Floats:
-    """Return a step that reduces an error (K. Levenberg and D. Marquardt), shape (n,)."""
+    """Return a damped step that reduces an error (K. Levenberg and D. Marquardt), shape (n,)."""
     damping = _DAMPING + 0.05 * float(error @ error)
     return jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + damping * np.eye(len(error)), error)
 
 
 def project(values: Floats, error: Error, space: Space, threshold: float, most: int) -> tuple[int, Floats]:
-    """Return after how many steps a configuration has a small error, and it; -1 if it has none after ``most`` steps.
+    """Project a configuration; return the number of steps and the result, -1 steps if it fails within ``most``.
 
-    A small error has a norm of ``threshold`` at most. The limits of the space are kept.
+    The projection succeeds if the error norm is at most ``threshold``. The limits of the space are kept.
     """
     for step in range(most + 1):
         lacking, jacobian = error(values)
@@ -53,9 +53,9 @@ def descend(
     random: np.random.Generator,
     tries: int,
 ) -> Search:
-    """Go down the gradient of one error after the other, each from the start, until the norm of one is small.
+    """Descend along the gradient of one error after the other, each from the start, until an error norm is small.
 
-    Where the way down is not allowed, the best one of ``tries`` random steps is taken.
+    If the descent step is not allowed, the best of some random steps is taken.
     """
     iteration, stopped = 0, budget.end(0)
     for goal, error in enumerate(errors):
@@ -87,6 +87,6 @@ def _random_steps(edges: Edges, here: Floats, random: np.random.Generator, tries
 
 
 def _bounded(space: Space, here: Floats, step: Floats) -> Floats:
-    """Return where a step leads that is not too long, and not beyond limits."""
+    """Return the end of a step, clipped to the maximum length and the limits."""
     far = float(np.linalg.norm(step))
     return space.clamp(here + (step * (_STEP / far) if far > _STEP else step))

@@ -1,4 +1,4 @@
-"""Motions of joints by constant accelerations: one ramp to a cruising speed, and one from it.
+"""Joint motions with constant accelerations: a ramp to a cruising velocity, and a ramp from it.
 
 The formulas follow from the areas under speed over time; see K. Hauser and V. Ng-Thow-Hing, "Fast smoothing of
 manipulator trajectories using optimal bounded-acceleration shortcuts", ICRA 2010.
@@ -11,19 +11,19 @@ import numpy as np
 from ravemj.core.transforms import Floats
 
 _ROUNDING = 1e-9
-"""Relative."""
+"""Relative rounding tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ramps:
-    """A motion of several joints over one time; both ramps of a joint have opposite accelerations.
+    """Synchronized motion of several joints; both ramps of a joint have opposite accelerations.
 
     Attributes:
-        duration: How long it takes [s].
+        duration: Duration [s].
         start: Velocities at its start [rad/s or m/s], shape (n,).
         rate: Accelerations of the first ramps; those of the last are their negatives, shape (n,).
-        first: When the first ramp of each joint ends [s], shape (n,).
-        last: When its last ramp starts [s], shape (n,).
+        first: End time of each joint's first ramp [s], shape (n,).
+        last: Start time of each joint's last ramp [s], shape (n,).
     """
 
     duration: float
@@ -33,7 +33,7 @@ class Ramps:
     last: Floats
 
     def changes(self, same: float) -> Floats:
-        """Return when accelerations change [s], up to the end; ``same`` is how near [s] changes are at one time."""
+        """Return the times at which accelerations change [s], up to the end; times within ``same`` [s] are merged."""
         moving = self.rate != 0
         inner = np.concatenate([self.first[moving], self.last[moving], [self.duration]])
         inner.sort()
@@ -43,14 +43,14 @@ class Ramps:
         return inner[kept]
 
     def states(self, times: Floats) -> tuple[Floats, Floats]:
-        """Return how far the joints are from their start, and velocities, at some times, shape (len(times), n) each."""
+        """Return displacements from the start and velocities at some times, shape (len(times), n) each."""
         t = times[:, None]
         ramp, cruise, rest = np.minimum(t, self.first), np.maximum(t - self.first, 0.0), np.maximum(t - self.last, 0.0)
         values = self.start * t + self.rate * (ramp * (ramp / 2 + cruise) - rest * rest / 2)
         return values, self.start + self.rate * (ramp - rest)
 
     def reach(self) -> tuple[Floats, Floats]:
-        """Return the least and the greatest values that the joints pass, from their start [rad or m], shape (n,)."""
+        """Return the minimum and maximum displacements from the start [rad or m], shape (n,)."""
         divisor = np.where(self.rate != 0, self.rate, 1.0)
         turns = np.stack([-self.start / divisor, self.last + self.start / divisor + self.first])
         ends = np.stack([self.first, self.last, np.full_like(self.first, self.duration)])
@@ -61,14 +61,14 @@ class Ramps:
 
 
 def shortest_ramps(steps: Floats, start: Floats, end: Floats, speed: Floats, acceleration: Floats) -> Floats:
-    """Return how long each joint takes at least [s], shape (n,); infinite where its limits forbid the motion.
+    """Return the minimum time of each joint [s], shape (n,); infinite if its limits do not allow the motion.
 
     Args:
-        steps: How far [rad or m], shape (n,).
+        steps: Displacements [rad or m], shape (n,).
         start: Velocities at the start, shape (n,).
         end: Velocities at the end, shape (n,).
-        speed: Greatest speeds, shape (n,).
-        acceleration: Greatest accelerations, shape (n,).
+        speed: Maximum speeds, shape (n,).
+        acceleration: Maximum accelerations, shape (n,).
     """
     forward = _one_way(steps, start, end, speed, acceleration)
     backward = _one_way(-steps, -start, -end, speed, acceleration)
@@ -79,7 +79,7 @@ def shortest_ramps(steps: Floats, start: Floats, end: Floats, speed: Floats, acc
 
 
 def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, acceleration: Floats) -> Floats:
-    """Return the times of motions that go up to a peak and down from it; infinite where there is no such peak."""
+    """Return the times of motions that accelerate to a peak and decelerate; infinite if there is no such peak."""
     with np.errstate(divide="ignore", invalid="ignore"):
         square = acceleration * steps + (start**2 + end**2) / 2
         peak = np.sqrt(np.maximum(square, 0.0))
@@ -91,13 +91,13 @@ def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, accelerat
 
 
 def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: Floats) -> Ramps | None:
-    """Return what ``fit_ramps`` does for motions from rest to rest, in a third of its time."""
+    """Return the result of ``fit_ramps`` for motions from rest to rest, in a third of its time."""
     first = last = np.full(len(steps), duration / 2)
     rate = steps * (4 / duration**2)
     way = np.abs(steps)
     too_fast = way > speed * (duration / 2 * (1 + _ROUNDING))
     if too_fast.any():
-        cruise = way[too_fast] / speed[too_fast]  # the time that the whole way takes at the greatest speed
+        cruise = way[too_fast] / speed[too_fast]  # the time of the whole displacement at maximum speed
         if (cruise >= duration).any():
             return None
         last = first.copy()
@@ -112,13 +112,13 @@ def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: F
 def fit_ramps(
     steps: Floats, start: Floats, end: Floats, duration: float, speed: Floats, acceleration: Floats
 ) -> Ramps | None:
-    """Return motions that take a time above 0 with the least accelerations, or None where a joint has none.
+    """Return motions of a given positive duration with minimal accelerations; None if a joint has none.
 
-    The accelerations of both ramps of a joint are the same, in opposite directions. A joint that would get too fast
-    cruises at its greatest speed. Arguments are as for ``shortest_ramps``.
+    Both ramps of a joint have opposite accelerations. A joint that would become too fast cruises at its maximum speed.
+    Arguments are as for ``shortest_ramps``.
     """
     change, excess = end - start, steps - (start + end) * (duration / 2)
-    # From the area under two ramps: a^2 T^2 - 4 a (d - (v0 + v1) T / 2) - (v1 - v0)^2 = 0; the greater root has its
+    # From the area under two ramps: a^2 T^2 - 4 a (d - (v0 + v1) T / 2) - (v1 - v0)^2 = 0; with the greater root, the
     # change of acceleration within the time.
     side = np.where(excess < 0, -1.0, 1.0)
     rate = (2 * excess + side * np.sqrt(4 * excess**2 + (duration * change) ** 2)) / duration**2

@@ -1,4 +1,4 @@
-"""Randomized A*: the way that looks shortest is followed first, over random neighbours in place of a grid.
+"""Randomized A*: expands the most promising configuration first, with random neighbours instead of a grid.
 
 After R. Diankov and J. Kuffner, "Randomized statistical path planning", IROS 2007.
 """
@@ -10,26 +10,26 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges
-from ravemj.planning.rrt import Budget, End, Search, Tree, without_repetitions
+from ravemj.planning.rrt import Budget, End, Search, SearchTree, without_repetitions
 
 _STEP = 0.3
-"""How far [rad or m] neighbours are."""
+"""Distance of neighbours [rad or m]."""
 
 _REACH = 1.0
-"""Largest length [rad or m] of a line to a goal."""
+"""Maximum length of a line to a goal [rad or m]."""
 
 _APART = 0.5
-"""Nearer than this part of a step no two configurations are."""
+"""Minimum distance of two configurations, as a fraction of a step."""
 
 _NEIGHBOURS = 8
-"""Of a configuration that are tried at once."""
+"""Number of neighbours tested per expansion."""
 
 
 def search_by_cost(
     edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats], budget: Budget, random: np.random.Generator
 ) -> Search:
-    """Follow the configurations with the least way so far and to the nearest goal; an iteration looks at one."""
-    space, tree = edges.space, Tree(edges.space)
+    """A* over sampled configurations: expand the one with the least cost-to-come plus distance to a goal."""
+    space, tree = edges.space, SearchTree(edges.space)
     ways: list[float] = []
     pending: list[tuple[float, int]] = []
 
@@ -55,6 +55,6 @@ def search_by_cost(
             way = space.difference(neighbour, node)
             if np.linalg.norm(space.difference(neighbour, nearest)) > _APART * _STEP and edges.line(node, way):
                 add(neighbour, number, ways[number] + space.distance(neighbour, node))
-        heapq.heappush(pending, (cost + _STEP, number))  # it has further neighbours
+        heapq.heappush(pending, (cost + _STEP, number))  # it may have more neighbours
         iteration += 1
     return Search(stopped, None, -1, -1, iteration, (tree,))

@@ -1,4 +1,4 @@
-"""Planners that grow trees of configurations (RRT), and the problem that they solve."""
+"""RRT planners, and the planning problem that they solve."""
 
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -16,8 +16,8 @@ from ravemj.planning.space import Space
 _FIRST_CAPACITY = 256
 
 
-class Tree:
-    """Configurations, ``count`` of them, each but the roots with a parent that a line leads to."""
+class SearchTree:
+    """Tree of ``count`` configurations; each node except the roots is connected to its parent by an edge."""
 
     def __init__(self, space: Space, roots: Iterable[Floats] = ()) -> None:
         self._space = space
@@ -29,7 +29,7 @@ class Tree:
             self.add(root)
 
     def add(self, configuration: Floats, parent: int = -1) -> int:
-        """Add a configuration; return its number. -1 as parent makes it a root."""
+        """Add a node and return its index; the parent -1 makes it a root."""
         if self.count == len(self._nodes):
             self._nodes = np.concatenate([self._nodes, np.empty(self._nodes.shape)])
         self._nodes[self.count] = configuration
@@ -38,23 +38,23 @@ class Tree:
         return self.count - 1
 
     def add_line(self, configurations: Floats, parent: int) -> int:
-        """Add configurations, each a child of the one before, shape (m, n); return the number of the last one."""
+        """Add a chain of nodes, shape (m, n), to a parent; return the index of the last one."""
         for configuration in configurations:
             parent = self.add(configuration, parent)
         return parent
 
     def node(self, number: int) -> Floats:
-        """Return a configuration."""
+        """Return the configuration of a node."""
         return self._nodes[number]
 
     def nearest(self, configuration: Floats) -> int:
-        """Return the number of the configuration nearest to one, by weighted distance."""
+        """Return the index of the nearest node, by weighted distance."""
         apart = self._space.difference(self._nodes[: self.count], configuration)
         apart = apart * self._weights
         return int(np.einsum("ij,ij->i", apart, apart).argmin())
 
     def branch(self, number: int) -> list[Floats]:
-        """Return the configurations from one up to its root."""
+        """Return the configurations from a node to its root."""
         found: list[Floats] = []
         while number >= 0:
             found.append(self._nodes[number].copy())
@@ -62,53 +62,54 @@ class Tree:
         return found
 
     def root(self, number: int) -> int:
-        """Return the number of the root that a configuration hangs on."""
+        """Return the index of the root of a node."""
         while self._parents[number] >= 0:
             number = self._parents[number]
         return number
 
     def nodes(self) -> Floats:
-        """Return all configurations, shape (count, n); a copy."""
+        """Return a copy of all configurations, shape (count, n)."""
         return self._nodes[: self.count].copy()
 
     def lines(self) -> list[tuple[int, int]]:
-        """Return the numbers of each configuration that is no root, and of its parent."""
+        """Return the edges: the index of each node that is not a root, and of its parent."""
         return [(number, parent) for number, parent in enumerate(self._parents) if parent >= 0]
 
 
 _PATIENCE = 20
-"""After so many blocked lines of the smaller tree, the other one has a turn: perhaps it finds the way in."""
+"""Number of blocked edges of the smaller tree after which the other tree grows, which may find the way in."""
 
 _WHOLE_LINES = 50
-"""Number of blocked lines that are dropped. After them, trees keep the steps before what blocks a line.
+"""Number of blocked edges that are discarded before trees keep the steps before an obstacle.
 
-Most problems are open: trees of long whole lines meet sooner, since a blocked line takes few tests. Narrow problems
+In open problems, trees of long complete edges connect sooner, since a blocked edge takes few tests. Narrow problems
 need steps.
 """
 
 _WHOLE_LENGTH = 0.15
-"""Largest length of a whole line, relative to the diagonal of the space."""
+"""Maximum length of a complete edge, relative to the diagonal of the space."""
 
 _LONGEST = 4.0
-"""Largest length of a whole line, a weighted distance: OpenRAVE's 100 steps of 0.04."""
+"""Maximum length of a complete edge, a weighted distance: OpenRAVE's 100 steps of 0.04."""
 
 _TURN = 1e-6
-"""Largest difference of the directions [1] of two steps of one straight line."""
+"""Maximum difference of the unit directions of two collinear steps."""
 
 _SAME = 1e-9
-"""Largest distance [rad or m] of two equal nodes of a path."""
+"""Tolerance of equal nodes of a path [rad or m]."""
 
 _MOST_LINES = 16
-"""Of straight lines from starts to goals that are tried before any tree is grown."""
+"""Maximum number of direct edges from starts to goals that are tested before any tree grows."""
 
 
 class End(Enum):
-    """Why a search ended."""
+    """Reason for the end of a search."""
 
     found = "a path was found"
     iterations = "the iterations were used up"
     time = "the time was used up"
     interrupted = "a callback interrupted"
+    no_start = "there is no start"
     no_goal = "there is no goal"
     stuck = "no step came nearer"
 
@@ -130,7 +131,7 @@ class Budget:
     started: float = field(default_factory=time.monotonic)
 
     def end(self, iteration: int) -> End | None:
-        """Return why to stop before an iteration, or None."""
+        """Return the reason to stop before an iteration, or None."""
         if iteration >= self.iterations:
             return End.iterations
         if self.seconds > 0 and time.monotonic() - self.started > self.seconds:
@@ -148,7 +149,7 @@ class Search:
         start: Index of the start of the path.
         goal: Index of the goal of the path.
         iterations: Number of iterations.
-        trees: The trees, whose neighbouring nodes are a step apart at most.
+        trees: The trees; adjacent nodes are at most one step apart.
     """
 
     end: End
@@ -156,15 +157,15 @@ class Search:
     start: int
     goal: int
     iterations: int
-    trees: Sequence[Tree]
+    trees: Sequence[SearchTree]
 
 
-class MoreGoals(NamedTuple):
-    """Source of further goals during a search.
+class MoreRoots(NamedTuple):
+    """Source of further starts or goals during a search.
 
     Attributes:
-        sample: Function that returns a goal, or None if it has none at this time.
-        probability: Probability of sampling a goal in an iteration.
+        sample: Function that returns a start or goal, or None if it has none at this time.
+        probability: Probability of sampling one in an iteration.
     """
 
     sample: Callable[[], Floats | None]
@@ -176,12 +177,12 @@ class Problem:
     """A path planning problem.
 
     Attributes:
-        edges: The test of configurations and of lines, in a space.
+        edges: The tests of configurations and edges, in a space.
         starts: The possible starts, each of shape (n,), all allowed.
         goals: The possible goals, each of shape (n,), all allowed.
         budget: The limits of the search.
         random: The random numbers.
-        more: A source of further goals; None for none.
+        more: The sources of further starts and of further goals; None if there is none.
     """
 
     edges: Edges
@@ -189,7 +190,7 @@ class Problem:
     goals: Sequence[Floats]
     budget: Budget
     random: np.random.Generator
-    more: MoreGoals | None = None
+    more: Sequence[MoreRoots | None] = (None, None)
 
 
 def connect(
@@ -198,11 +199,11 @@ def connect(
     goals: Sequence[Floats],
     budget: Budget,
     random: np.random.Generator,
-    more_goals: MoreGoals | None = None,
+    more: Sequence[MoreRoots | None] = (None, None),
 ) -> Search:
-    """Grow trees from starts and goals, which are allowed, towards each other.
+    """RRT-Connect: grow trees from allowed starts and goals towards each other; ``more`` provides further roots.
 
-    At first, lines that are blocked are dropped; later, the trees keep the steps before what blocks a line.
+    At first, blocked edges are discarded; later, the trees keep the steps before an obstacle.
     """
     growth = _Growth(edges, starts, goals)
     stopped = budget.end(0)
@@ -210,35 +211,37 @@ def connect(
         return found
     iteration = 0
     while stopped is None:
-        if more_goals is not None and (not growth.trees[1].count or random.random() < more_goals.probability):
-            growth.add_goal(more_goals.sample())
-        if growth.trees[1].count and (found := growth.grow(edges.space.sample(random), iteration + 1)) is not None:
+        for side, source in enumerate(more):
+            if source is not None and (not growth.trees[side].count or random.random() < source.probability):
+                growth.add_root(side, source.sample())
+        has_both = all(tree.count for tree in growth.trees)
+        if has_both and (found := growth.grow(edges.space.sample(random), iteration + 1)) is not None:
             return found
         iteration += 1
         stopped = budget.end(iteration)
-    if not growth.trees[1].count and stopped is End.iterations:
-        stopped = End.no_goal
+    if stopped is End.iterations and not all(tree.count for tree in growth.trees):
+        stopped = End.no_goal if growth.trees[0].count else End.no_start
     return Search(stopped, None, -1, -1, iteration, growth.trees)
 
 
 class _Growth:
-    """Trees from starts and goals."""
+    """Growing trees from starts and goals."""
 
     def __init__(self, edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats]) -> None:
         self._edges = edges
-        self.trees = Tree(edges.space, starts), Tree(edges.space, goals)
-        self._goals = list(range(len(goals)))
+        self.trees = SearchTree(edges.space, starts), SearchTree(edges.space, goals)
+        self._roots = list(range(len(starts))), list(range(len(goals)))
         self._grown = self._blocked = self._lines_blocked = 0
         diagonal = float(np.linalg.norm(edges.space.weights * (edges.space.upper - edges.space.lower)))
         self._longest = min(max(LINE, _WHOLE_LENGTH * diagonal), _LONGEST)
 
-    def add_goal(self, goal: Floats | None) -> None:
-        """Add a further goal, if it is one."""
-        if goal is not None:
-            self._goals.append(self.trees[1].add(goal))
+    def add_root(self, side: int, root: Floats | None) -> None:
+        """Add a further start (side 0) or goal (1), unless it is None."""
+        if root is not None:
+            self._roots[side].append(self.trees[side].add(root))
 
     def straight(self, starts: Sequence[Floats], goals: Sequence[Floats]) -> Search | None:
-        """Return the path of one line, nearest ends first, or None."""
+        """Return a path of a single edge, the nearest ends first, or None."""
         space = self._edges.space
         pairs = [(space.distance(goal, start), s, g) for s, start in enumerate(starts) for g, goal in enumerate(goals)]
         for _, start, goal in sorted(pairs)[:_MOST_LINES]:
@@ -247,7 +250,7 @@ class _Growth:
         return None
 
     def grow(self, target: Floats, iteration: int) -> Search | None:
-        """Grow the smaller tree towards a configuration, and the other to where it got; return the path, or None."""
+        """Grow the smaller tree towards a configuration, and the other to its new node; return the path, or None."""
         near, far = self.trees[self._grown], self.trees[1 - self._grown]
         whole = self._lines_blocked < _WHOLE_LINES
         longest = self._longest if whole else LINE
@@ -265,7 +268,8 @@ class _Growth:
     def _found(self, at_start: int, at_goal: int, iteration: int) -> Search:
         first, second = self.trees
         path = _path(self._edges, first.branch(at_start)[::-1] + second.branch(at_goal))
-        start, goal = first.root(at_start), self._goals.index(second.root(at_goal))
+        start = self._roots[0].index(first.root(at_start))
+        goal = self._roots[1].index(second.root(at_goal))
         return Search(End.found, path, start, goal, iteration, self.trees)
 
 
@@ -277,11 +281,11 @@ def single(
     random: np.random.Generator,
     goal_bias: float,
 ) -> Search:
-    """Grow one tree from the starts, now and then towards a goal: the basic RRT.
+    """Basic RRT: grow one tree from the starts, sometimes towards a goal.
 
-    Starts and goals are allowed. ``goal_bias`` is the part of the iterations in which the tree grows towards a goal.
+    Starts and goals must be allowed. ``goal_bias`` is the probability of growing towards a goal in an iteration.
     """
-    tree = Tree(edges.space, starts)
+    tree = SearchTree(edges.space, starts)
     iteration = 0
     while (stopped := budget.end(iteration)) is None:
         to_goal = iteration == 0 or random.random() < goal_bias
@@ -297,9 +301,11 @@ def single(
     return Search(stopped, None, -1, -1, iteration, (tree,))
 
 
-def explore(edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, random: np.random.Generator) -> Tree:
-    """Grow one tree from the starts until it has a size, one step in an iteration, without any goal."""
-    tree = Tree(edges.space, starts)
+def explore(
+    edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, random: np.random.Generator
+) -> SearchTree:
+    """Grow one tree from the starts to a given size, one step per iteration, without a goal."""
+    tree = SearchTree(edges.space, starts)
     iteration = 0
     while tree.count < size and budget.end(iteration) is None:
         _extend(edges, tree, edges.space.sample(random), longest=edges.step)
@@ -308,12 +314,12 @@ def explore(edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, r
 
 
 def _extend(
-    edges: Edges, tree: Tree, target: Floats, *, longest: float = LINE, whole: bool = False
+    edges: Edges, tree: SearchTree, target: Floats, *, longest: float = LINE, whole: bool = False
 ) -> tuple[int | None, bool]:
-    """Grow a tree towards a configuration by one line.
+    """Grow a tree towards a configuration by one edge.
 
     Returns:
-        The last new node, or None if the first step is blocked; and whether the line is blocked.
+        The last new node, or None if the first step is blocked; and whether the edge is blocked.
     """
     nearest = tree.nearest(target)
     grown = edges.grow(tree.node(nearest), target, longest=longest, whole=whole)
@@ -321,8 +327,8 @@ def _extend(
     return added, grown.is_blocked
 
 
-def _reach(edges: Edges, tree: Tree, target: Floats, *, whole: bool = False) -> int | None:
-    """Grow a tree to a configuration, line by line; return the node there, or None if one is blocked on the way."""
+def _reach(edges: Edges, tree: SearchTree, target: Floats, *, whole: bool = False) -> int | None:
+    """Grow a tree to a configuration, edge by edge; return the node there, or None if an edge is blocked."""
     nearest = tree.nearest(target)
     while True:
         grown = edges.grow(tree.node(nearest), target, whole=whole)
@@ -332,9 +338,9 @@ def _reach(edges: Edges, tree: Tree, target: Floats, *, whole: bool = False) -> 
 
 
 def _path(edges: Edges, nodes: Sequence[Floats]) -> Floats:
-    """Return a path through nodes of trees without those that are repeated, or on a straight line between others.
+    """Return a path through tree nodes without repeated or collinear ones.
 
-    A line has to be allowed without the nodes on it, too: it is tested at other configurations then.
+    An edge must still be allowed after the nodes on it are removed, since it is then tested at other configurations.
     """
     space, path = edges.space, np.array(nodes)
     lengths = np.linalg.norm(space.difference(path[1:], path[:-1]), axis=1)
@@ -348,13 +354,13 @@ def _path(edges: Edges, nodes: Sequence[Floats]) -> Floats:
     kept = [0]
     for first, last in pairwise([0, *(np.flatnonzero(turns) + 1).tolist(), len(steps)]):
         way = steps[first:last].sum(axis=0)
-        is_short = np.allclose(space.difference(path[last], path[first]), way)  # else it would go the other way round
+        is_short = np.allclose(space.difference(path[last], path[first]), way)  # otherwise it would take the longer arc
         is_line = is_short and last > first + 1 and edges.line(path[first], way)
         kept += [last] if is_line else range(first + 1, last + 1)
     return path[kept]
 
 
 def without_repetitions(path: Floats) -> Floats:
-    """Return a path without configurations that are the same as the one before."""
+    """Return a path without repeated consecutive configurations."""
     kept = np.append(True, (np.diff(path, axis=0) != 0).any(axis=1))
     return path[kept]

@@ -1,4 +1,4 @@
-"""Shorter paths: straight lines, or faster ramps, in place of detours."""
+"""Shortcuts of paths and motions: straight lines, or faster ramps, instead of detours."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -9,14 +9,15 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges, bisection_order
+from ravemj.planning.proofs import Curve
 from ravemj.planning.ramps import Ramps, fit_from_rest, fit_ramps, shortest_ramps
-from ravemj.planning.retiming.segments import Limits
+from ravemj.planning.retiming.segments import PathLimits
 
 _WORTH = 3e-3
-"""A shortcut has to save this part of the whole path: testing lines is what takes time."""
+"""Minimum saving of a shortcut, as a fraction of the path length, because collision checks dominate the time."""
 
 _MOST_ENDS = 32
-"""Number of ends of straight lines from one point that are tried."""
+"""Maximum number of end points tried for a line from one point."""
 
 
 def shorten(
@@ -26,11 +27,11 @@ def shorten(
     random: np.random.Generator,
     proceed: Callable[[int], bool] = lambda attempt: True,
 ) -> Floats:
-    """Return a path that is nowhere longer, from the same start to the same goal, shape (k, n).
+    """Return a shortened path with the same start and goal, shape (k, n).
 
-    Straight lines between points of the path take the place of detours; then two random places at a time are connected
-    by one, if it is allowed and shorter. This is tried ``tries`` times, while ``proceed``, asked with the number of the
-    try, says so.
+    Straight lines between waypoints replace detours; then pairs of random points on the path are connected if the line
+    is allowed and shorter. There are at most ``tries`` attempts; ``proceed``, called with the number of the attempt,
+    stops them by False.
     """
     space = edges.space
     path = list(_without_detours(edges, points))
@@ -48,9 +49,9 @@ def shorten(
         end = edges.onto(_place(path[second], steps[second], lengths[second], high - (ends[second] - lengths[second])))
         step = space.difference(end, start)
         straight = float(np.linalg.norm(space.weights * step))
-        # What is left of both lines is tested, too: in steps from its own ends, which are not those of the whole lines.
+        # The remaining parts of both lines are tested again, since their steps differ from those of the whole lines.
         if high - low - straight > _WORTH * ends[-1] and all(
-            edges.line(one, space.difference(other, one))
+            edges.shortcut(one, space.difference(other, one))
             for one, other in ((start, end), (path[first], start), (end, path[second + 1]))
         ):
             path[first + 1 : second + 1] = [start, end]
@@ -62,35 +63,35 @@ def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
 
 
 def _without_detours(edges: Edges, path: Floats) -> Floats:
-    """Return a path that goes from each of its points straight to the last one that a line reaches.
+    """Connect each waypoint directly to the last one that a straight line reaches; return the path.
 
-    Of many points, ``_MOST_ENDS`` are tried.
+    Of many waypoints, ``_MOST_ENDS`` are tried.
     """
     kept, last = [0], len(path) - 1
     while kept[-1] < last:
         start = path[kept[-1]]
         farther = range(last, kept[-1] + 1, -ceil((last - kept[-1]) / _MOST_ENDS))
-        reached = (end for end in farther if edges.line(start, edges.space.difference(path[end], start)))
+        reached = (end for end in farther if edges.shortcut(start, edges.space.difference(path[end], start)))
         kept.append(next(reached, kept[-1] + 1))
     return path[kept]
 
 
 _WORTH_TIME = 1e-3
-"""A shortcut has to save this part of the time."""
+"""Minimum saving of a shortcut, as a fraction of the duration."""
 
 _SAME_TIME = 1e-9
-"""Changes of acceleration this near [s] are at one time."""
+"""Tolerance of equal times of acceleration changes [s]."""
 
 
-class Piece(NamedTuple):
-    """A motion with constant accelerations.
+class MotionSegment(NamedTuple):
+    """Segment of a motion with constant accelerations.
 
     Attributes:
-        duration: How long it takes [s].
-        values: At its start [rad or m], shape (n,).
-        velocities: At its start, shape (n,).
+        duration: Duration [s].
+        values: Values at its start [rad or m], shape (n,).
+        velocities: Velocities at its start, shape (n,).
         accelerations: Shape (n,).
-        is_corner: Whether it starts where one line or shortcut meets another.
+        is_corner: Whether it starts at a junction of lines or shortcuts.
     """
 
     duration: float
@@ -100,19 +101,19 @@ class Piece(NamedTuple):
     is_corner: bool
 
     def after(self, time: float) -> tuple[Floats, Floats]:
-        """Return values and velocities a time after its start."""
+        """Return values and velocities at a time after the start."""
         moved = self.values + self.velocities * time + self.accelerations * (time * time / 2)
         return moved, self.velocities + self.accelerations * time
 
-    def part(self, start: float, end: float, *, is_corner: bool) -> "Piece":
-        """Return what is between two times after its start."""
+    def part(self, start: float, end: float, *, is_corner: bool) -> "MotionSegment":
+        """Return the part between two times after the start."""
         values, velocities = self.after(start)
-        return Piece(end - start, values, velocities, self.accelerations, is_corner)
+        return MotionSegment(end - start, values, velocities, self.accelerations, is_corner)
 
 
-def lines(points: Floats, limits: Limits) -> list[Piece]:
-    """Return the motion along the straight lines of a path, shape (m, n), that stops at each corner."""
-    motion: list[Piece] = []
+def lines(points: Floats, limits: PathLimits) -> list[MotionSegment]:
+    """Return the motion along the straight lines of a path, shape (m, n), with a stop at each waypoint."""
+    motion: list[MotionSegment] = []
     for start, end in pairwise(points):
         step = limits.coordinates.difference(end, start)
         moving = step != 0
@@ -130,29 +131,30 @@ def lines(points: Floats, limits: Limits) -> list[Piece]:
     return motion
 
 
-def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) -> list[Piece]:
+def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) -> list[MotionSegment]:
     times = np.concatenate([[0.0], ramps.changes(_SAME_TIME)])
     values, velocities = ramps.states(times)
-    found: list[Piece] = []
+    found: list[MotionSegment] = []
     for index, duration in enumerate(np.diff(times).tolist()):
         if duration > 0:
             rate = (velocities[index + 1] - velocities[index]) / duration
             state = origin + spread(values[index]), spread(velocities[index]), spread(rate)
-            found.append(Piece(duration, *state, is_corner=index == 0))
+            found.append(MotionSegment(duration, *state, is_corner=index == 0))
     return found
 
 
 def faster(
     edges: Edges,
-    motion: list[Piece],
-    limits: Limits,
+    motion: list[MotionSegment],
+    limits: PathLimits,
     tries: int,
     random: np.random.Generator,
     proceed: Callable[[int], bool] = lambda attempt: True,
-) -> list[Piece]:
-    """Return a motion that is nowhere slower, from the same start to the same end.
+) -> list[MotionSegment]:
+    """Return a motion with the same start and end, made faster by random shortcuts of constant accelerations.
 
-    It tries ``tries`` shortcuts between random times, while ``proceed``, asked with the number of the try, says so.
+    It tries at most ``tries`` shortcuts between random times; ``proceed``, called with the number of the attempt, stops
+    it by False.
     """
     for attempt in range(tries):
         if not motion or not proceed(attempt):
@@ -173,8 +175,8 @@ def faster(
 
 
 def _shortcut(
-    edges: Edges, start: tuple[Floats, Floats], end: tuple[Floats, Floats], longest: float, limits: Limits
-) -> list[Piece] | None:
+    edges: Edges, start: tuple[Floats, Floats], end: tuple[Floats, Floats], longest: float, limits: PathLimits
+) -> list[MotionSegment] | None:
     step = limits.coordinates.difference(end[0], start[0])
     bounds = limits.velocity, limits.acceleration
     duration = float(shortest_ramps(step, start[1], end[1], *bounds).max(initial=0.0))
@@ -188,11 +190,23 @@ def _shortcut(
     if (beyond & ~limits.coordinates.circular).any():
         return None
     pieces = _pieces(ramps, lambda numbers: numbers, start[0])
-    return pieces if all(_is_allowed(edges, piece) for piece in pieces) else None
+    if not all(_is_allowed(edges, piece) for piece in pieces):
+        return None
+    return pieces if edges.proof is None or edges.proof(_curves(pieces)) else None
 
 
-def _is_allowed(edges: Edges, piece: Piece) -> bool:
-    """Return whether a piece is allowed everywhere, its start excluded; no joint moves farther than its resolution."""
+def _curves(pieces: list[MotionSegment]) -> list[Curve]:
+    found, time = list[Curve](), 0.0
+    for piece in pieces:
+        middle = piece.values + piece.velocities * (piece.duration / 2)
+        control = np.array([piece.values, middle, piece.after(piece.duration)[0]])
+        found.append(Curve(time, time + piece.duration, control))
+        time += piece.duration
+    return found
+
+
+def _is_allowed(edges: Edges, piece: MotionSegment) -> bool:
+    """Return whether a segment is allowed everywhere after its start, tested in steps of the joint resolutions."""
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
     steps = edges.space.steps(farthest)

@@ -1,4 +1,4 @@
-"""Spaces of configurations: joint values, and parts of the pose of a base."""
+"""Configuration spaces: joint values, and pose components of a base."""
 
 from dataclasses import dataclass, field
 
@@ -8,15 +8,15 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats
 
 ON_LIMIT = 1e-12
-"""How far beyond a limit [rad or m], relative to its size, a value is still on it: rounding."""
+"""Relative rounding tolerance of limits [rad or m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Coordinates:
-    """What the numbers of a configuration are.
+    """Types of the coordinates of a configuration.
 
     Attributes:
-        circular: For each, whether it is an angle that goes round, shape (n,).
+        circular: Whether each is a circular angle, shape (n,).
         translation: Columns of x, y, z of a base.
         rotation: Columns of its angle (one), rotation vector (three) or quaternion (four).
     """
@@ -26,12 +26,12 @@ class Coordinates:
     rotation: tuple[int, ...] = ()
 
     def difference(self, configurations: Floats, others: Floats) -> Floats:
-        """Return how to get from the others to configurations, the short way round; shape (…, n)."""
+        """Return the shortest differences from ``others`` to configurations, shape (…, n)."""
         step = configurations - others
         if self.circular.any():
             angles = step[..., self.circular]
             step[..., self.circular] = angles - 2 * np.pi * np.round(angles / (2 * np.pi))
-        if len(self.rotation) == 4:  # a quaternion and its negative are one rotation
+        if len(self.rotation) == 4:  # a quaternion and its negative are the same rotation
             columns = list(self.rotation)
             opposite = np.sum(configurations[..., columns] * others[..., columns], axis=-1, keepdims=True) < 0
             step[..., columns] = np.where(
@@ -40,9 +40,9 @@ class Coordinates:
         return step
 
     def outside(self, values: Floats, lower: Floats, upper: Floats, tolerance: float = ON_LIMIT) -> NDArray[np.bool_]:
-        """Return which values, shape (…, n), are outside their limits or not finite; circular ones have no limits.
+        """Return the mask of values, shape (…, n), that are not finite or outside limits; circular ones have none.
 
-        ``tolerance`` is how far beyond a limit a value may be, relative to its size above 1.
+        ``tolerance`` is absolute for limits below 1, and relative above.
         """
         slack = tolerance * np.maximum(1.0, np.abs(values))
         beyond = (values < lower - slack) | (values > upper + slack)
@@ -51,14 +51,14 @@ class Coordinates:
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """A box of configurations, with a distance.
+    """Box-shaped configuration space with a weighted distance.
 
     Attributes:
-        coordinates: What the numbers are.
-        lower: Least values [rad or m], shape (n,).
-        upper: Greatest values, shape (n,).
-        weights: Of each number in distances, shape (n,).
-        resolution: The largest steps in which lines are tested, shape (n,).
+        coordinates: The types of the coordinates.
+        lower: Lower limits [rad or m], shape (n,).
+        upper: Upper limits, shape (n,).
+        weights: Weight of each value in distances, shape (n,).
+        resolution: Maximum steps of edge tests, shape (n,).
     """
 
     coordinates: Coordinates
@@ -73,7 +73,7 @@ class Space:
         object.__setattr__(self, "_is_plain", plain)
 
     def difference(self, configurations: Floats, others: Floats) -> Floats:
-        """Return how to get from the others to configurations, the short way round; shape (…, n)."""
+        """Return the shortest differences from ``others`` to configurations, shape (…, n)."""
         return configurations - others if self._is_plain else self.coordinates.difference(configurations, others)
 
     def distance(self, one: Floats, other: Floats) -> float:
@@ -81,17 +81,17 @@ class Space:
         return float(np.linalg.norm(self.weights * self.difference(one, other)))
 
     def clamp(self, configuration: Floats) -> Floats:
-        """Return the configuration with values outside the limits at them; circular ones stay."""
+        """Return the weighted distance of two configurations: the root of the sum of (weight * difference)^2."""
         limited = np.minimum(np.maximum(configuration, self.lower), self.upper)
         return np.where(self.coordinates.circular, configuration, limited)
 
     def outside(self, configuration: Floats) -> int | None:
-        """Return the first number that is outside its limits, or None."""
+        """Return the index of the first value outside its limits, or None."""
         wrong = self.coordinates.outside(configuration, self.lower, self.upper)
         return int(wrong.argmax()) if wrong.any() else None
 
     def steps(self, difference: Floats) -> int:
-        """Return into how many steps a line is divided so that none is longer than the resolution; at least 1."""
+        """Return the number of steps of a line that do not exceed the resolution; at least 1."""
         return max(1, int(np.ceil(np.abs(difference / self.resolution).max(initial=0.0) - 1e-9)))
 
     def sample(self, random: np.random.Generator) -> Floats:

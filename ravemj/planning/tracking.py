@@ -1,4 +1,4 @@
-"""Configurations that reach one goal after the other, without jumps between them."""
+"""Paths of configurations that reach a sequence of goals without jumps."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -10,20 +10,20 @@ from ravemj.core.transforms import Floats
 from ravemj.planning.space import Space
 
 LARGEST_JUMP = 0.5
-"""The largest step of a joint between consecutive goals [rad or m]; a larger one is another branch of solutions."""
+"""Maximum joint step between consecutive goals [rad or m]; a larger one is a change of branch."""
 
 _FIRST_STEP = 1000.0
-"""What the way from the start to the first goal costs: a path that begins where the robot is beats all others."""
+"""Cost of the motion from the start to the first goal, so large that paths from the present configuration win."""
 
 Solve = Callable[[int, Floats], Sequence[Floats]]
-"""Returns configurations that reach a goal, by its number; it may search near the second argument."""
+"""Returns configurations that reach a goal, given its index; it may search near the second argument."""
 
 Connects = Callable[[int, Floats, Floats], bool]
-"""Whether a configuration of the goal before leads straight to one of a goal, by the number of the latter."""
+"""Tests the connection from a configuration of the previous goal to one of a goal, given its index."""
 
 
 class _Layer(NamedTuple):
-    """Configurations that reach one goal, lengths of the shortest ways to them, and places in the layer before."""
+    """Layer of the planning graph: solutions of a goal, path costs, and predecessor indices in the layer before."""
 
     rows: Floats
     costs: Floats
@@ -31,10 +31,10 @@ class _Layer(NamedTuple):
 
 
 def track(space: Space, count: int, start: Floats, solve: Solve, connects: Connects) -> Floats:
-    """Return the shortest way through configurations of all goals, as far as there is one, shape (m, n).
+    """Return the shortest path through solutions of all goals, up to the first unreachable goal, shape (m, n).
 
-    It begins at ``start`` if it can. Shortest ways to all solutions of a goal are kept, so that a branch that ends does
-    the others no harm.
+    It starts at ``start`` if possible. The shortest paths to all solutions of a goal are kept, so that dead ends of one
+    branch do not affect the others.
     """
     layers: list[_Layer] = []
     last = _Layer(start[None], np.zeros(1), np.zeros(1, dtype=np.intp))

@@ -1,4 +1,4 @@
-"""Whether a motion keeps its limits at every moment, and where it does not."""
+"""Verification of a motion's limits and collisions at all times."""
 
 from typing import NamedTuple
 
@@ -6,23 +6,23 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Allowed
-from ravemj.planning.retiming.segments import Limits
+from ravemj.planning.retiming.segments import PathLimits
 
 EXACT = 1e-9
-"""How much values, speeds and accelerations may be beyond their limits, relative to them: rounding."""
+"""Relative rounding tolerance of values, speeds and accelerations at their limits."""
 
 _ROUNDING = 1e-12
-"""How much values may jump, relative to them: rounding, which counts where times are close to each other."""
+"""Relative rounding error of values, which matters for differences over short times."""
 
 
 class Samples(NamedTuple):
-    """A motion at some times.
+    """Samples of a motion.
 
     Attributes:
         times: The times [s], ascending, shape (m,).
         values: Shape (m, n).
-        velocities: What the trajectory says, shape (m, n); None: nothing.
-        accelerations: What the trajectory says, shape (m, n); None: nothing.
+        velocities: Velocities in the trajectory, shape (m, n), or None.
+        accelerations: Accelerations in the trajectory, shape (m, n), or None.
         has_jumps: Whether velocities may jump between samples, as those of straight lines do.
     """
 
@@ -33,11 +33,11 @@ class Samples(NamedTuple):
     has_jumps: bool
 
 
-def flaw(samples: Samples, limits: Limits, allowed: Allowed) -> str | None:
-    """Return what is wrong with a motion, or None.
+def flaw(samples: Samples, limits: PathLimits, allowed: Allowed) -> str | None:
+    """Return the first violation of a motion, or None.
 
-    Speeds are those that the motion has between two samples, and those that the trajectory says; accelerations are
-    compared likewise where velocities do not jump.
+    Speeds are checked from differences between samples and from the trajectory's velocities; accelerations likewise if
+    velocities do not jump.
     """
     return (
         _outside(samples, limits)
@@ -47,7 +47,7 @@ def flaw(samples: Samples, limits: Limits, allowed: Allowed) -> str | None:
     )
 
 
-def _outside(samples: Samples, limits: Limits) -> str | None:
+def _outside(samples: Samples, limits: PathLimits) -> str | None:
     values = samples.values
     for row, column in np.argwhere(limits.coordinates.outside(values, limits.lower, limits.upper, EXACT)):
         bounds = f"[{limits.lower[column]:g}, {limits.upper[column]:g}]"
@@ -55,7 +55,7 @@ def _outside(samples: Samples, limits: Limits) -> str | None:
     return None
 
 
-def _speeds(samples: Samples, limits: Limits) -> list[Floats]:
+def _speeds(samples: Samples, limits: PathLimits) -> list[Floats]:
     elapsed = np.diff(samples.times)
     moved = np.abs(limits.coordinates.difference(samples.values[1:], samples.values[:-1]))
     moved = np.maximum(moved - _ROUNDING * np.maximum(1.0, np.abs(samples.values[1:])), 0.0)
@@ -70,7 +70,7 @@ def _accelerations(samples: Samples) -> list[Floats]:
     if samples.has_jumps or samples.velocities is None:
         return []
     elapsed = np.diff(samples.times)
-    passed = elapsed > 1e-6  # rounding of velocities over less is no acceleration
+    passed = elapsed > 1e-6  # velocity differences over shorter times are rounding errors
     rates = np.zeros_like(samples.values)
     rates[1:][passed] = np.diff(samples.velocities, axis=0)[passed] / elapsed[passed][:, None]
     return [rates] if samples.accelerations is None else [rates, samples.accelerations]

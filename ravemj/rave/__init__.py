@@ -20,7 +20,7 @@ _MODULE_OF = {
     for module, several, single in re.findall(r"^from (\S+) import (?:\(([^)]*)\)|(.+))$", _LINES, re.MULTILINE)
     for name in re.findall(r"(\w+) as \1\b", several or single)
 }
-"""The module of each public name, as the stub tells type checkers."""
+"""Module of each public name, read from the stub that type checkers use."""
 
 OpenRAVEException = openrave_exception = RavemjError
 
@@ -29,7 +29,7 @@ __all__ += list(_MODULE_OF)  # pyright: ignore[reportUnsupportedDunderAll] - typ
 
 
 def __getattr__(name: str) -> object:
-    """Import the module of a name when it is asked for."""
+    """Import the module of a name on first access."""
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'ravemj.rave' has no attribute '{name}'")
     value = getattr(importlib.import_module(_MODULE_OF[name]), name)

@@ -25,6 +25,7 @@ from ravemj.rave.controllers import (
     VelocityController as VelocityController,
 )
 from ravemj.rave.registry import (
+    RaveCreateIkSolver as RaveCreateIkSolver,
     RaveCreateKinBody as RaveCreateKinBody,
     RaveCreateRobot as RaveCreateRobot,
     RaveCreateTrajectory as RaveCreateTrajectory,
@@ -72,7 +73,7 @@ from ravemj.rave.ikreturn import (
     IkFailureInfo as IkFailureInfo,
     IkReturn as IkReturn,
 )
-from ravemj.rave.iksolver import IkSolver as IkSolver, RaveCreateIkSolver as RaveCreateIkSolver
+from ravemj.rave.iksolver import IkSolver as IkSolver
 from ravemj.rave.infos import (
     AttachedSensorInfo as AttachedSensorInfo,
     AxialSlice as AxialSlice,
@@ -158,6 +159,7 @@ from ravemj.rave.interface import (
     stringreaders as stringreaders,
     xmlreaders as xmlreaders,
 )
+from ravemj.rave.region import Region as Region, all_of as all_of, any_of as any_of
 from ravemj.rave.registry import (
     ManageData as ManageData,
     PluginInfo as PluginInfo,
@@ -187,6 +189,7 @@ from ravemj.rave.specification import (
     IkParameterization as IkParameterization,
     RaveGetAffineConfigurationSpecification as RaveGetAffineConfigurationSpecification,
 )
+from ravemj.rave.streaming_controller import StreamingController as StreamingController
 from ravemj.rave.trajectory import Trajectory as Trajectory
 from ravemj.rave.trimesh import TriMesh as TriMesh
 from ravemj.rave.units import (
@@ -213,6 +216,12 @@ from ravemj.rave.units import (
     TimeDurationUnit as TimeDurationUnit,
     TimeStampUnit as TimeStampUnit,
     UnitInfo as UnitInfo,
+)
+from ravemj.rave.whole_body import (
+    WholeBodyIK as WholeBodyIK,
+    WholeBodyLimits as WholeBodyLimits,
+    WholeBodyResult as WholeBodyResult,
+    WholeBodyTask as WholeBodyTask,
 )
 
 OpenRAVEException = openrave_exception = RavemjError

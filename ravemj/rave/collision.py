@@ -1,11 +1,8 @@
 """Collision checkers."""
 
 import logging
-from collections.abc import Callable, Generator, Iterable, Sequence
-from contextlib import AbstractContextManager, nullcontext
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Self, cast
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,14 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_transform
-from ravemj.core.blocks import always, block, exit_in_c
+from ravemj.core.blocks import always, exit_in_c
 from ravemj.core.transforms import Floats, Ints, Pose, pose_of
 from ravemj.engine.collision import queries
 from ravemj.engine.collision.findings import Collision, Findings, GeometryOf, Listed, Wanted, find
+from ravemj.engine.collision.geometry_groups import GeometryGroups, has_group
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import LinkOf, Links, MovedBy
 from ravemj.engine.collision.world import CollisionWorld
-from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import AABB, Ray
 from ravemj.model import scene
@@ -34,63 +32,6 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
-
-
-class GeometryGroups:
-    """Which group a checker takes in place of the geometries of links. A link without the group keeps its geometries.
-
-    Attributes:
-        default: The group of all bodies that have no other; empty for the geometries that links have.
-        is_used: Whether any body has a group.
-    """
-
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        self._of_bodies: WeakKeyDictionary[BodyState, str] = WeakKeyDictionary()
-        self._last: tuple[tuple[object, ...], CollisionWorld] | None = None
-        self.is_used = False
-        self.default = ""
-
-    def of(self, body: BodyState) -> str:
-        """Return the group that is taken for a body."""
-        return self._of_bodies.get(body, self.default)
-
-    def choose(self, name: str, body: BodyState | None = None) -> None:
-        """Take a group for a body, or for all bodies."""
-        if body is not None:
-            self._of_bodies[body] = name
-        else:
-            self.default = name
-            self._of_bodies.clear()
-        self.is_used = bool(self.default) or any(self._of_bodies.values())
-
-    def world(self) -> AbstractContextManager[CollisionWorld]:
-        """Let bodies have the geometries of their groups, and give what collision checking knows of them then.
-
-        The caller holds the lock.
-        """
-        return self._exchanged() if self.is_used else nullcontext(self._simulation.collisions())
-
-    @block
-    def _exchanged(self) -> Generator[CollisionWorld]:
-        scenes = {body: with_group(body.scene, self.of(body)) for body in self._simulation.bodies}
-        # A world is made again only for other shapes: that takes long.
-        key = (self._simulation.compiled(), *(link.geometries for body in scenes.values() for link in body.links))
-        last = self._last[1] if self._last is not None and self._last[0] == key else None
-        with self._simulation.described_as(scenes, last) as world:
-            self._last = key, world
-            yield world
-
-
-def with_group(body: scene.KinBody, name: str) -> scene.KinBody:
-    """Return a body whose links have the geometries of a group, where they have that group."""
-    links = tuple(replace(link, geometries=dict(link.groups).get(name, link.geometries)) for link in body.links)
-    return replace(body, links=links)
-
-
-def has_group(body: scene.KinBody, name: str) -> bool:
-    """Return whether a link of a body has a group; each has its own geometries."""
-    return name in {"", scene.OWN_SHAPES} or any(name in dict(link.groups) for link in body.links)
 
 
 # Plain numbers: operators of flags take longer than tests of collision.
@@ -107,7 +48,7 @@ _ARGUMENTS = ("ray", "link1", "link2", "link", "body1", "body2", "body", "bodyex
 
 
 class CollisionChecker(Interface):
-    """Tests whether bodies touch; ``env.GetCollisionChecker()`` returns it.
+    """Collision checker; ``env.GetCollisionChecker()`` returns it.
 
     Boxes, spheres, cylinders, capsules and convex meshes are exact solids. Other meshes are their triangles, as in
     OpenRAVE: what is inside one without touching a triangle does not collide.
@@ -137,7 +78,7 @@ class CollisionChecker(Interface):
         self.groups = GeometryGroups(env.simulation)
 
     def Clone(self, ref: "CollisionChecker", cloningoptions: int = 0) -> None:
-        """Take over the options, the description and the data of users from another checker.
+        """Copy the options, the description and the user data of another checker.
 
         Args:
             ref: The other checker.
@@ -158,7 +99,7 @@ class CollisionChecker(Interface):
     def SetCollisionOptions(self, collisionoptions: int) -> bool:
         """Set ``collisionoptions``, ``CollisionOptions`` combined with ``|``.
 
-        Return False, and change nothing, if there is an unknown one among them.
+        Return False, and change nothing, if one of them is unknown.
         """
         if not 0 <= int(collisionoptions) < 2 * CollisionOptions.IgnoreCallbacks:
             return False
@@ -167,7 +108,7 @@ class CollisionChecker(Interface):
         return True
 
     def _choose(self) -> None:
-        """Work out what reports should tell."""
+        """Derive from the options the contents of reports."""
         options = CollisionOptions(self._options)
         listed: Listed = "links" if options & CollisionOptions.AllLinkCollisions else "first pair"
         self._wanted = Wanted(
@@ -201,10 +142,12 @@ class CollisionChecker(Interface):
         if report is not None:
             checked_kind(report, CollisionReport, "CheckCollision: report")
         with self._simulation.lock:
-            if not self.groups.is_used:  # without a context manager, since planners ask this most
-                return self._check(self._simulation.collisions(), arguments, report)
-            with self.groups.world() as world:
-                return self._check(world, arguments, report)
+            world = self.groups.world() if self.groups.is_used else self._simulation.collisions()
+            if len(arguments) == 1 and isinstance(body := arguments[0], KinBody) and not self._options & _ACTIVE_DOFS:
+                pairs = world.known_pairs(body.simulation_state)  # in few steps: planners ask this most
+                if pairs is not None:
+                    return self.answer(world, pairs, report)
+            return self._check(world, arguments, report)
 
     def _check(self, world: CollisionWorld, arguments: tuple[object, ...], report: CollisionReport | None) -> bool:
         if arguments and isinstance(ray := arguments[0], Ray):
@@ -216,11 +159,12 @@ class CollisionChecker(Interface):
 
         Args:
             linkbody: The body, or one link that is tested against the others.
-            report: Filled with what is found.
+            report: Receives the result.
         """
         if report is not None:
             checked_kind(report, CollisionReport, "CheckSelfCollision: report")
-        with self._simulation.lock, self.groups.world() as world:
+        with self._simulation.lock:
+            world = self.groups.world()
             if isinstance(linkbody, Link):
                 pairs = queries.link_and_own_body(world, _link(linkbody))
             else:
@@ -231,7 +175,7 @@ class CollisionChecker(Interface):
             return self.answer(world, pairs, report)
 
     def _pairs(self, world: CollisionWorld, arguments: Sequence[object]) -> Pairs:
-        """Return the pairs of geoms that the arguments of ``CheckCollision`` are about."""
+        """Return the geom pairs selected by the arguments of ``CheckCollision``."""
         match arguments:
             case (thing,):
                 return self._pairs_with_others(world, thing)
@@ -271,22 +215,22 @@ class CollisionChecker(Interface):
         return thing
 
     def _active_links(self, argument: object) -> Links:
-        """Return the links to which the option ``ActiveDOFs`` restricts the tests of a body; None: all."""
+        """Return the links that the option ``ActiveDOFs`` selects of a body; None means all."""
         if not self._options & _ACTIVE_DOFS or not isinstance(argument, KinBody) or argument.moves_as_a_whole():
             return None
         return MovedBy(argument.active_dofs())
 
     @property
     def is_plain(self) -> bool:
-        """Whether the engine's own tests answer as this does: no function of a user, no other geometries."""
+        """Whether the engine's default tests give the same answers: no user callbacks, no geometry groups."""
         return type(self) is CollisionChecker and not self.groups.is_used and not self._env.collision_callbacks
 
-    def world(self) -> AbstractContextManager[CollisionWorld]:
-        """Return the world with the geometries that the checker looks at. The caller holds the lock."""
+    def world(self) -> CollisionWorld:
+        """Return the collision world with the geometry groups of the checker. The caller holds the lock."""
         return self.groups.world()
 
     def answer(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport | None) -> bool:
-        """Test pairs of geoms as the options say, fill the report, and return whether there is a collision.
+        """Test geom pairs with the checker's options, fill the report, and return whether there is a collision.
 
         The caller holds the lock.
         """
@@ -302,12 +246,12 @@ class CollisionChecker(Interface):
         return bool(self.find(world, pairs).collisions) if self._env.collision_callbacks else world.collide(pairs)
 
     def find(self, world: CollisionWorld, pairs: Pairs, distance: float = FAR) -> Findings:
-        """Return what a report tells of pairs of geoms; distances above ``distance`` [m] are of no interest."""
+        """Return the collisions and distances of geom pairs; distances above ``distance`` [m] are skipped."""
         counts = self._counts if self._env.collision_callbacks and not self._options & _IGNORE_CALLBACKS else None
         return find(world, pairs, self._wanted, distance, counts)
 
     def report(self, found: Findings) -> CollisionReport:
-        """Return a report of what was found."""
+        """Return a report of findings."""
         report = CollisionReport()
         report.Reset(self._options)
         self._fill(report, found)
@@ -321,7 +265,7 @@ class CollisionChecker(Interface):
             report.collisionInfos = [self._info(found.nearest, collides=False)]
 
     def _counts(self, collision: Collision) -> bool:
-        """Ask the registered functions whether a collision counts."""
+        """Ask the registered callbacks whether a collision counts."""
         report = self.report(Findings([collision], FAR, None, 0))
         return all(callback(report, False) != CollisionAction.Ignore for callback in self._env.collision_callbacks)
 
@@ -331,7 +275,7 @@ class CollisionChecker(Interface):
 
     def _part(self, geometry: GeometryOf) -> Part:
         link = Link(self._env.wrap(geometry.body), geometry.body, geometry.link)
-        group = self.groups.of(geometry.body)
+        group = self.groups.group_of(geometry.body)
         has_group = group and link.GetGroupNumGeometries(group) >= 0
         geometries = link.GetGeometriesFromGroup(group) if has_group else link.GetGeometries()
         return Part(link, geometries[geometry.geometry])
@@ -352,7 +296,7 @@ class CollisionChecker(Interface):
         return hit is not None
 
     def ray_targets(self, world: CollisionWorld, target: object = ...) -> Ints | None:
-        """Return the geoms of a body or link, which a ray can hit, or with ``...`` None, which stands for all.
+        """Return the geoms of a body or link as targets of rays; ``...`` gives None, which means all geoms.
 
         The caller holds the lock.
         """
@@ -383,9 +327,9 @@ class CollisionChecker(Interface):
         Args:
             aabb: The box, in its own frame.
             pose: ``T_world_box``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
-            arguments: The others by their places.
-            bodiesincluded: The bodies; left out: all.
-            report: Filled with what is found; the first names in it are those of a body ``box``.
+            arguments: The remaining arguments by position.
+            bodiesincluded: The bodies; by default all.
+            report: Receives the result; the box appears in it as a body ``box``.
         """
         checked_kind(aabb, AABB, "CheckCollisionOBB: aabb")
         x, y, z = aabb.extents().tolist()
@@ -410,9 +354,9 @@ class CollisionChecker(Interface):
 
         Args:
             trimesh: The triangles, in the world [m].
-            arguments: The others by their places.
-            body: The only body that counts; left out: all.
-            report: Filled with what is found; the first names in it are those of a body ``box``.
+            arguments: The remaining arguments by position.
+            body: The only body to test; by default all.
+            report: Receives the result; the mesh appears in it as a body ``box``.
         """
         mesh = checked_mesh(trimesh, "CheckCollisionTriMesh: trimesh")
         given: list[Any] = [one for one in arguments if one is not None]
@@ -445,7 +389,7 @@ class CollisionChecker(Interface):
         front_facing_only: bool = False,
         checkPreemptFn: object = None,
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return which rays hit something, shape (n,), and where, shape (n, 6); see ``env.CheckCollisionRays``.
+        """Return the rays that hit something, shape (n,), and their hits, shape (n, 6); see ``env.CheckCollisionRays``.
 
         Args:
             rays: As there.
@@ -465,26 +409,26 @@ class CollisionChecker(Interface):
         """Do nothing about ``body``; OpenRAVE's checkers free memory here."""
 
     def SetGeometryGroup(self, groupname: str) -> None:
-        """Take a group of geometries in place of those that links have, for all bodies.
+        """Select a geometry group of the links for all bodies.
 
-        Links without the group keep their geometries, and viewers and physics look at those of all links. A query
-        compiles the world anew where shapes have changed since the last one, as it does without groups.
+        Links without this group keep their own geometries; viewers and physics always use the links' own geometries.
+        If the selected shapes differ from those of the last query, the next query recompiles the collision world.
 
         Args:
-            groupname: The group, of ``link.SetGroupGeometries``; empty: the geometries that links have.
+            groupname: The group, of ``link.SetGroupGeometries``; empty: the links' own geometries.
         """
         self.groups.choose(checked_kind(groupname, str, "SetGeometryGroup: groupname", "a text"))
 
     def GetGeometryGroup(self) -> str:
-        """Return the group of ``SetGeometryGroup``; empty: the geometries that links have."""
+        """Return the group of ``SetGeometryGroup``; empty: the links' own geometries."""
         return self.groups.default
 
     def SetBodyGeometryGroup(self, body: KinBody, groupname: str) -> bool:
-        """Take a group of geometries for one body; see ``SetGeometryGroup``, which sets it for all of them again.
+        """Select a geometry group for one body; a later ``SetGeometryGroup`` replaces it.
 
         Args:
             body: The body.
-            groupname: The group; empty: the geometries that links have.
+            groupname: The group; empty: the links' own geometries.
 
         Returns:
             Whether a link of the body has such a group. If not, nothing changes.
@@ -496,12 +440,12 @@ class CollisionChecker(Interface):
         return found
 
     def GetBodyGeometryGroup(self, body: KinBody) -> str:
-        """Return the group of geometries that is used for ``body``; empty: the geometries that its links have."""
-        return self.groups.of(body.simulation_state)
+        """Return the geometry group of ``body``; empty: the links' own geometries."""
+        return self.groups.group_of(body.simulation_state)
 
 
 class NoCollisionChecker(CollisionChecker):
-    """A checker for which nothing collides: that of ``env.SetCollisionChecker(None)``."""
+    """Collision checker that finds no collisions; the one after ``env.SetCollisionChecker(None)``."""
 
     def __init__(self, env: "Environment") -> None:
         super().__init__(env, "GenericCollisionChecker")
@@ -512,7 +456,7 @@ class NoCollisionChecker(CollisionChecker):
         return False
 
     def find(self, world: CollisionWorld, pairs: Pairs, distance: float = FAR) -> Findings:
-        """Return that nothing is found."""
+        """Return empty findings."""
         del world, pairs
         return Findings([], distance, None, 0)
 
@@ -523,7 +467,7 @@ class NoCollisionChecker(CollisionChecker):
 
 
 class CollisionOptionsStateSaver(ApiObject):
-    """Sets the options of a checker, and sets the old ones again at the end of its ``with``.
+    """Context manager that sets the options of a checker and restores the old ones on leaving ``with``.
 
     Example:
         >>> with ravemj.CollisionOptionsStateSaver(checker, ravemj.CollisionOptions.Contacts):
@@ -536,11 +480,11 @@ class CollisionOptionsStateSaver(ApiObject):
 
         Args:
             checker: The checker.
-            options: ``CollisionOptions`` combined with ``|``; None: as they are.
-            required: Whether to raise where the checker does not know them.
+            options: ``CollisionOptions`` combined with ``|``; None keeps the present ones.
+            required: Whether to raise an error if the checker does not know them.
 
         Raises:
-            openrave_exception: it does not.
+            openrave_exception: the options are unknown, and ``required`` is True.
         """
         self._checker = checked_kind(checker, CollisionChecker, "CollisionOptionsStateSaver: checker")
         self._old = checker.GetCollisionOptions()
@@ -564,7 +508,7 @@ def RaveCreateCollisionChecker(env: "Environment", name: str) -> CollisionChecke
     """Make a collision checker; ``env.SetCollisionChecker`` chooses it.
 
     Args:
-        env: The environment that it is for.
+        env: The environment to check.
         name: ``mujoco``. OpenRAVE's ``ode``, ``bullet``, ``pqp`` and ``fcl_`` make the same checker; once for each
             name the log says so.
 

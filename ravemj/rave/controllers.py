@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger("ravemj")
 
 _POLL = 1e-3
-"""The interval [s] at which the controller is asked: short against a time step of 10 ms, and no load for a core."""
+"""Polling interval [s] of the controller: short against a time step of 10 ms, and negligible load for a core."""
 
 
 def wait_until(is_done: Callable[[], bool], timeout: float, lock: StateLock, is_running: Callable[[], bool]) -> bool:
@@ -65,7 +65,7 @@ def wait_until(is_done: Callable[[], bool], timeout: float, lock: StateLock, is_
 
 
 class Controller(Interface):
-    """A controller: it moves a robot over time. ``robot.GetController()`` returns the controller of a robot."""
+    """Base class of controllers, which move a robot over time; ``robot.GetController()`` returns the robot's."""
 
     _interface_type = InterfaceType.controller
 
@@ -175,7 +175,7 @@ class Controller(Interface):
         return np.zeros(len(self._robot_dofs()))
 
     def _robot_dofs(self) -> Ints:
-        """Return the DOF indices that the controller moves; an error where it has no robot."""
+        """Return the DOF indices that the controller moves; raise an error if it has no robot."""
         assert self._robot is not None
         return self.GetControlDOFIndices()
 
@@ -190,7 +190,7 @@ class Controller(Interface):
 
 
 _SLACK = 1e-6
-"""How much farther than its speed limit allows a joint may move in a step [rad or m]; the number is OpenRAVE's."""
+"""Tolerance of the velocity limits [rad or m per step]; the number is OpenRAVE's."""
 
 
 class _Path(NamedTuple):
@@ -354,7 +354,7 @@ class IdealController(Controller):
             robot.Grab(body, robot.GetLinks()[change.link])
 
     def _show(self, path: _Path, time: float, elapsed: float) -> None:
-        """Put the robot where a path has it at a time [s] from its start; see ``_place``."""
+        """Set the configuration of a path at a time [s] from its start; see ``_place``."""
         point = path.trajectory.Sample(time)
         T_world_base = None
         if path.moves_base:
@@ -478,7 +478,7 @@ class VelocityController(Controller):
 
 
 class _Part(NamedTuple):
-    """One of the other controllers, and the indices of its values among those of the ``MultiController``."""
+    """Controller of a ``MultiController``, and the indices of its values in those of the whole."""
 
     controller: Controller
     places: Ints

@@ -4,7 +4,7 @@ from ravemj.core.enumerations import NamedFlag, NamedInt
 
 
 class CheckLimitsAction(NamedInt):
-    """What setters of joint values and velocities do with values outside the limits."""
+    """Treatment of joint values and velocities outside the limits."""
 
     Nothing = 0
     """Set them as they are."""
@@ -84,25 +84,25 @@ class InterfaceType(NamedInt):
 
 
 class InterfaceAddMode(NamedInt):
-    """What ``env.Add`` does when the name is taken; True and False in its place are OpenRAVE 0.9's ``anonymous``."""
+    """Treatment of a name that is already taken in ``env.Add``; True and False are OpenRAVE 0.9's ``anonymous``."""
 
     AllowRenaming = 0
-    """Add it under a name of its own."""
+    """Add it under a new, unique name."""
     StrictNameChecking = 1
     """Raise."""
     StrictIdChecking = 2
-    """Add it under a name of its own; ids are never changed here."""
+    """Add it under a new, unique name; ids are never changed here."""
     StrictNameIdChecking = 3
     """Raise."""
 
 
 class SaveParameters(NamedFlag):
-    """What a state saver keeps and restores."""
+    """Parts of the state that a state saver saves and restores."""
 
     LinkTransformation = 0x1
     """Poses of the links and joint values."""
     LinkEnable = 0x2
-    """Which links collision checking looks at."""
+    """Whether each link takes part in collision checks."""
     LinkVelocities = 0x4
     JointMaxVelocityAndAcceleration = 0x8
     JointWeights = 0x10
@@ -114,17 +114,17 @@ class SaveParameters(NamedFlag):
     ActiveManipulatorToolTransform = 0x80000
     ManipulatorsToolTransform = 0x100000
     ConnectedBodies = 0x200000
-    """Which connected bodies are active."""
+    """Whether each connected body is active."""
 
 
 class EnvironmentCreateOptions(NamedFlag):
-    """What ``Environment`` begins with; without meaning here, since time begins to pass once it is wanted."""
+    """Options of a new ``Environment``; without effect, since simulation time starts on demand."""
 
     ECO_StartSimulationThread = 1
 
 
 class CloningOptions(NamedFlag):
-    """What a clone of an environment takes over."""
+    """Parts of an environment that a clone copies."""
 
     Bodies = 1
     Viewer = 2
@@ -134,11 +134,11 @@ class CloningOptions(NamedFlag):
     Modules = 32
     PassOnMissingBodyReferences = 0x8000
     IgnoreGrabbedBodies = 0x10000
-    """Copies hold nothing."""
+    """Robots of the copy grab no bodies."""
 
 
 class UpdateFromInfoMode(NamedInt):
-    """What ``env.UpdateFromInfo`` does with bodies that the info does not name."""
+    """Treatment of bodies that the info of ``env.UpdateFromInfo`` does not name."""
 
     Exact = 0
     """Remove them."""
@@ -147,7 +147,7 @@ class UpdateFromInfoMode(NamedInt):
 
 
 class UpdateFromInfoResult(NamedInt):
-    """How an object took over an info."""
+    """Result of updating an object from an info."""
 
     NoChange = 0
     Success = 1
@@ -156,7 +156,7 @@ class UpdateFromInfoResult(NamedInt):
 
 
 class GrabbedInfoCheckResult(NamedInt):
-    """What ``body.CheckGrabbedInfo`` finds."""
+    """Result of ``body.CheckGrabbedInfo``."""
 
     Identical = 0
     BodyNotGrabbed = 1
@@ -165,7 +165,7 @@ class GrabbedInfoCheckResult(NamedInt):
 
 
 class DebugLevel(NamedInt):
-    """How much is logged; each level includes those before it."""
+    """Log levels; each includes those before it."""
 
     Fatal = 0
     Error = 1
@@ -174,11 +174,11 @@ class DebugLevel(NamedInt):
     Debug = 4
     Verbose = 5
     VerifyPlans = 0x80000000
-    """A bit beside the level."""
+    """Flag that can be added to a level."""
 
 
 class IkFilterOptions(NamedFlag):
-    """Which solutions of inverse kinematics are left out."""
+    """Tests that inverse kinematics applies to, or skips for, its solutions."""
 
     CheckEnvCollisions = 1
     IgnoreSelfCollisions = 2
@@ -186,12 +186,12 @@ class IkFilterOptions(NamedFlag):
     IgnoreCustomFilters = 8
     IgnoreEndEffectorEnvCollisions = 0x10
     IgnoreEndEffectorCollisions = 0x10
-    """The name of version 0.9."""
+    """Name of this option in version 0.9."""
     IgnoreEndEffectorSelfCollisions = 0x20
 
 
 class IkReturnAction(NamedFlag):
-    """What a filter says about a solution of inverse kinematics, and why it was rejected."""
+    """Answer of an IK filter about a solution, and reasons of rejection."""
 
     Success = 0
     Reject = 1
@@ -206,48 +206,48 @@ class IkReturnAction(NamedFlag):
 
 
 class CollisionOptions(NamedFlag):
-    """What collision checking looks for and reports; combine them with ``|``."""
+    """Options of collision checks and reports; combine them with ``|``."""
 
     Distance = 0x1
-    """``report.minDistance`` is the least distance of what is tested."""
+    """Compute ``report.minDistance``, the smallest distance between the tested geometries."""
     UseTolerance = 0x2
-    """``report.numWithinTol`` is the number of pairs of shapes that are nearer than the tolerance."""
+    """Compute ``report.numWithinTol``, the number of geometry pairs closer than the tolerance."""
     Contacts = 0x4
     """Reports have contact points."""
     RayAnyHit = 0x8
-    """For rays any hit will do; here it is the nearest all the same."""
+    """Any hit of a ray suffices; ravemj returns the nearest one all the same."""
     ActiveDOFs = 0x10
     """Only links that the robot's active DOFs move are tested."""
     AllLinkCollisions = 0x20
     """Reports have all pairs of links that collide, not only the first."""
     AllGeometryCollisions = 0x40
-    """Reports have each pair of geometries by itself."""
+    """Reports have one entry for each pair of geometries."""
     AllGeometryContacts = 0x80
     """Reports have contact points of all pairs of geometries."""
     IgnoreCallbacks = 0x100
-    """Functions of ``env.RegisterCollisionCallback`` are not called."""
+    """Do not call the callbacks of ``env.RegisterCollisionCallback``."""
 
 
 class CollisionAction(NamedInt):
-    """What a function of ``env.RegisterCollisionCallback`` says about a collision."""
+    """Answer of a callback of ``env.RegisterCollisionCallback``."""
 
     DefaultAction = 0
-    """It counts."""
+    """Count the collision."""
     Ignore = 1
-    """It does not count."""
+    """Ignore the collision."""
 
 
 class AdjacentOptions(NamedFlag):
-    """Which pairs of links ``GetNonAdjacentLinks`` returns; combine them with ``|``."""
+    """Selection of the link pairs that ``GetNonAdjacentLinks`` returns; combine with ``|``."""
 
     Enabled = 1
-    """Those of enabled links."""
+    """Pairs of enabled links."""
     ActiveDOFs = 2
-    """Those that the active DOFs move against each other."""
+    """Pairs of links that the active DOFs move relative to each other."""
 
 
 class TriangulateOptions(NamedInt):
-    """Which bodies ``TriangulateScene`` takes; also called ``SelectionOptions``."""
+    """Selection of the bodies that ``TriangulateScene`` returns; also called ``SelectionOptions``."""
 
     Obstacles = 1
     NoRobots = 1
@@ -261,7 +261,7 @@ SelectionOptions = TriangulateOptions
 
 
 class SerializationOptions(NamedFlag):
-    """What of a body goes into its hash."""
+    """Parts of a body that its hash depends on."""
 
     Kinematics = 1
     Dynamics = 2
@@ -275,7 +275,7 @@ class SerializationOptions(NamedFlag):
 
 
 class SensorCommand(NamedInt):
-    """What ``sensor.Configure`` is asked to do; ``Sensor.ConfigureCommand``."""
+    """Commands of ``sensor.Configure``; also ``Sensor.ConfigureCommand``."""
 
     PowerOn = 0x10
     PowerOff = 0x11
@@ -289,7 +289,7 @@ class SensorCommand(NamedInt):
 
 
 class PlannerStatusCode(NamedFlag):
-    """How planning ended."""
+    """Result of planning."""
 
     Failed = 0
     HasSolution = 1
@@ -298,24 +298,24 @@ class PlannerStatusCode(NamedFlag):
 
 
 class PhysicsEngineOptions(NamedFlag):
-    """What physics engines look at."""
+    """Options of physics engines."""
 
     SelfCollisions = 1
     """Links of one body collide with one another."""
 
 
 class PlannerAction(NamedInt):
-    """What a function of ``planner.RegisterPlanCallback`` says."""
+    """Answer of a callback of ``planner.RegisterPlanCallback``."""
 
     vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
     Interrupt = 1
     """Stop."""
     ReturnWithAnySolution = 2
-    """Stop if there is a path already, however long."""
+    """Stop if a path has been found already, however long."""
 
 
 class Interval(NamedFlag):
-    """Which ends of an interval belong to it; and how values between waypoints are interpolated."""
+    """End points that belong to an interval; also interpolations between waypoints."""
 
     Open = Default = 0
     OpenStart = 1
@@ -329,7 +329,7 @@ class Interval(NamedFlag):
 
 
 class ConstraintFilterOptions(NamedFlag):
-    """What tests of configurations look at."""
+    """Tests that a constraint check applies to configurations."""
 
     CheckEnvCollisions = 1
     CheckSelfCollisions = 2

@@ -23,9 +23,8 @@ class Geometry(ApiObject):
     """A shape of a link; ``link.GetGeometries()`` makes it.
 
     Boxes and round shapes share the same three numbers, as in OpenRAVE (half extents; radius; radius and height), so
-    each getter of sizes answers for all of them. For other types, getters of sizes that the type lacks raise.
-
-    Setters act at once, also in viewers and in pictures.
+    each size getter works for all of them. For other types, getters of sizes that the type lacks raise an error.
+    Setters take effect at once, also in viewers and pictures.
 
     Example:
         >>> for geometry in link.GetGeometries():
@@ -68,7 +67,7 @@ class Geometry(ApiObject):
         return self._scene.name
 
     def SetName(self, name: str) -> None:
-        """Give the geometry another name."""
+        """Set the ``name``."""
         self._edit(name=str(name))
 
     def GetType(self) -> GeometryType:
@@ -76,7 +75,7 @@ class Geometry(ApiObject):
         return TYPES[type(self._scene.shape)]
 
     def GetTransform(self) -> Floats:
-        """Return the pose in the link.
+        """Return the pose in the link frame.
 
         Returns:
             ``T_link_geometry``, shape (4, 4).
@@ -84,15 +83,15 @@ class Geometry(ApiObject):
         return self._scene.T_link_geometry.matrix()
 
     def GetTransformPose(self) -> Floats:
-        """Return the pose in the link as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        """Return the pose in the link frame as [w, x, y, z, tx, ty, tz], shape (7,)."""
         return pose_of(self.GetTransform()).numbers()
 
     def GetBoxExtents(self) -> Floats:
-        """Return half the edge lengths of a box [m], shape (3,)."""
+        """Return the half extents of a box [m], shape (3,)."""
         return np.array(self._sizes())
 
     def _sizes(self) -> Vec3:
-        """Return the numbers that OpenRAVE keeps for boxes and round shapes: its getters read them for any of these."""
+        """Return OpenRAVE's three size numbers of a box or round shape, which all its size getters read."""
         shape = self._scene.shape
         if isinstance(shape, scene.Box):
             return shape.half_extents
@@ -129,8 +128,9 @@ class Geometry(ApiObject):
         return shape
 
     def GetContainerOuterExtents(self) -> Floats:
-        """Return the outer edge lengths of a container [m], shape (3,)."""
-        return np.array(self._container().outer_extents)
+        """Return the outer edge lengths of a container [m], shape (3,); for other shapes the sizes, as in OpenRAVE."""
+        shape = self._scene.shape
+        return np.array(shape.outer_extents if isinstance(shape, scene.Container) else self._sizes())
 
     def GetContainerInnerExtents(self) -> Floats:
         """Return the edge lengths of a container's interior [m], shape (3,)."""
@@ -145,31 +145,30 @@ class Geometry(ApiObject):
         return np.array(self._container().bottom)
 
     def GetCollisionMesh(self) -> TriMesh:
-        """Return the shape as triangles, in the geometry's own frame, seen from outside counter-clockwise; copies.
+        """Return the shape as triangles in the geometry frame, counter-clockwise seen from outside; a copy.
 
-        Those of a trimesh are as the file has them. Round shapes have their corners on the surface. What
-        ``SetCollisionMesh`` set comes first.
+        A mesh of ``SetCollisionMesh`` takes precedence. A trimesh has the triangles of its file; round shapes have
+        their vertices on the surface.
         """
         return trimesh_of(self._scene.triangulated())
 
     def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
-        """Let ``GetCollisionMesh`` give the shape's own triangles; return True. ``fTessellation`` has no effect."""
+        """Reset ``GetCollisionMesh`` to the shape's own triangles; return True. ``fTessellation`` has no effect."""
         del fTessellation
         if self._scene.collision_mesh is not None:
             self._edit(collision_mesh=None)
         return True
 
     def SetCollisionMesh(self, mesh: TriMesh) -> None:
-        """Set the triangles of ``GetCollisionMesh``. Those of a trimesh are its shape, which collides and is drawn.
+        """Set the triangles of ``GetCollisionMesh``. For a trimesh, they are also the shape that collides and is drawn.
 
-        Another shape collides and is drawn as before, as in OpenRAVE: a box stays a box.
+        Other shapes still collide and are drawn as before, as in OpenRAVE: a box stays a box.
 
         Args:
             mesh: The triangles, in the geometry's frame [m].
 
         Raises:
-            openrave_exception: the geometry is not modifiable, or a triangle has a corner that is not there. Nothing
-                has changed then.
+            openrave_exception: the geometry is not modifiable, or a vertex index is out of range. Nothing changes then.
         """
         if not self._scene.modifiable:
             raise RavemjError(f"geometry '{self.GetName()}' is not modifiable")
@@ -180,7 +179,7 @@ class Geometry(ApiObject):
             self._edit(collision_mesh=triangles)
 
     def ComputeAABB(self, transform: ArrayLike) -> AABB:
-        """Return the smallest box along the axes that holds the geometry, its link standing at a pose.
+        """Return the axis-aligned bounding box of the geometry for a pose of its link.
 
         Args:
             transform: ``T_a_link``: 4x4, 3x4 or 7 numbers.
@@ -196,15 +195,15 @@ class Geometry(ApiObject):
         return np.array(self._scene.diffuse)
 
     def SetDiffuseColor(self, color: ArrayLike) -> None:
-        """Set ``color``: red, green, blue from 0 to 1. What a render file draws keeps its own colours."""
+        """Set ``color``: red, green, blue from 0 to 1. A render file keeps its own colours."""
         self._edit(diffuse=_checked_colour(color, "SetDiffuseColor"))
 
     def GetAmbientColor(self) -> Floats:
-        """Return the colour in the shade: red, green, blue from 0 to 1, shape (3,)."""
+        """Return the ambient colour: red, green, blue from 0 to 1, shape (3,)."""
         return np.array(self._scene.ambient)
 
     def SetAmbientColor(self, color: ArrayLike) -> None:
-        """Set ``color`` in the shade: red, green, blue from 0 to 1. Pictures do not use it."""
+        """Set the ambient colour ``color``: red, green, blue from 0 to 1. Pictures do not use it."""
         self._edit(ambient=_checked_colour(color, "SetAmbientColor"))
 
     def GetTransparency(self) -> float:
@@ -223,14 +222,14 @@ class Geometry(ApiObject):
     IsDraw = IsVisible
 
     def SetVisible(self, visible: bool) -> bool:
-        """Draw the geometry if ``visible``; it collides all the same. Return whether that changed something."""
+        """Draw the geometry if ``visible``; collisions do not depend on it. Return whether the visibility changed."""
         changed = self._scene.visible != bool(visible)
         if changed:
             self._edit(visible=bool(visible))
         return changed
 
     def SetDraw(self, draw: bool) -> None:
-        """Draw the geometry if ``draw``; the older name of ``SetVisible``."""
+        """Draw the geometry if ``draw``; older name of ``SetVisible``."""
         self.SetVisible(draw)
 
     def IsModifiable(self) -> bool:
@@ -243,7 +242,7 @@ class Geometry(ApiObject):
         return "" if file is None else file.name
 
     def GetRenderScale(self) -> Floats:
-        """Return the factors along x, y and z for that file, shape (3,)."""
+        """Return the scale factors of the render file along x, y and z, shape (3,)."""
         file = self._scene.render_file
         return np.array((1.0, 1.0, 1.0) if file is None else file.scale)
 
@@ -254,7 +253,7 @@ class Geometry(ApiObject):
             filename: The file; '' draws the shape itself.
 
         Raises:
-            SourceError: the file is not there, or broken. Nothing has changed then.
+            SourceError: the file is missing or broken. Nothing changes then.
         """
         info = self.GetInfo()
         info.draw(filename)
@@ -262,7 +261,7 @@ class Geometry(ApiObject):
         self._edit(render_file=changed.render_file, display=changed.display)
 
     def GetInfo(self) -> GeometryInfo:
-        """Return the description of the shape, a copy."""
+        """Return a copy of the description of the shape."""
         return GeometryInfo.of(self._scene)
 
     UpdateAndGetInfo = GetInfo
@@ -289,7 +288,6 @@ class Geometry(ApiObject):
 
 
 def _checked_colour(color: ArrayLike, caller: str) -> scene.Rgb:
-    """Return red, green and blue of a colour; a fourth number is left out."""
     numbers = checked_numbers(color, caller)
     if numbers.shape not in {(3,), (4,)} or not np.isfinite(numbers).all():
         raise ArgumentError(f"{caller}: color is {numbers.tolist()}, and should be three numbers from 0 to 1")

@@ -14,10 +14,10 @@ from ravemj.model.scene import KinBody
 from ravemj.rave.enums import CheckLimitsAction
 
 _VALUE_ROUNDING = 2e-10
-"""The tolerance of limits [rad or m], which is OpenRAVE's: it moves a value from so far outside without a warning."""
+"""Tolerance of limits [rad or m], which is OpenRAVE's: a value this far outside is clamped without a warning."""
 
 _VELOCITY_ROUNDING = 1e-10
-"""The tolerance of velocity limits [rad/s or m/s]."""
+"""Tolerance of velocity limits [rad/s or m/s]."""
 
 
 def full_values(
@@ -55,10 +55,10 @@ def full_values(
 
 
 def full_velocities(state: BodyState, velocities: ArrayLike, indices: "ArrayLike | None") -> Floats:
-    """Return a velocity for each DOF, with OpenRAVE's mistake about indices.
+    """Return a velocity for each DOF, with OpenRAVE's error in the handling of indices.
 
-    With k indices, only the first k DOFs count. Those of them that no index names keep their velocities, and all other
-    DOFs stop.
+    With k indices, only the first k DOFs are affected: those that no index names keep their velocities. All other DOFs
+    stop.
     """
     dof = state.dof
     if indices is None:
@@ -124,7 +124,7 @@ def limited_velocities(body: KinBody, limits: Floats, velocities: Floats, checkl
 
 
 def _report(body: KinBody, dof: int, message: str, effect: str, checklimits: int) -> None:
-    """Send a warning about a value outside its limits, raise an error, or do nothing, as ``checklimits`` says."""
+    """Log a warning about a value outside its limits, raise an error, or do nothing, as ``checklimits`` says."""
     if checklimits == CheckLimitsAction.CheckLimitsSilent:
         return
     joint = body.joint_of_dof(dof)

@@ -1,7 +1,7 @@
-"""Goals of inverse kinematics: their values, with a pair of setter and getter for each type."""
+"""IK goals: their values, with a setter and a getter for each type."""
 
 # ruff: noqa: D102 - the docstrings of the last methods come from a table
-# Functions of a table stand for methods.
+# The functions of the table are the methods.
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Callable, Mapping
@@ -41,7 +41,7 @@ _ANGLES = {
     _Type.TranslationYAxisAngleXNorm4D: "heading of the direction about x, from y",
     _Type.TranslationZAxisAngleYNorm4D: "heading of the direction about y, from z",
 }
-"""Types of goals that are a point and an angle."""
+"""Goal types that consist of a point and an angle."""
 
 _SET = """Set the goal to a point and the {angle}.
 
@@ -52,7 +52,7 @@ Args:
 
 
 def _with_angles(goals: type["GoalValues"]) -> type["GoalValues"]:
-    """Give the methods for points with angles, of which only the signatures are written, bodies and docstrings."""
+    """Add bodies and docstrings to the point-and-angle methods, of which only the signatures are written."""
     for kind, angle in _ANGLES.items():
         set_, get = (getattr(goals, f"{verb}{kind.name}") for verb in ("Set", "Get"))
         set_.__doc__, get.__doc__ = _SET.format(angle=angle), "Return the point [m], shape (3,), and the angle [rad]."
@@ -74,7 +74,7 @@ def _point_and_angle(kind: IkParameterizationType) -> tuple[Callable[..., None],
 
 @_with_angles
 class GoalValues(ApiObject):
-    """The type of a goal and its numbers, of which there are as many as the type has."""
+    """Type and values of an IK goal."""
 
     _type: IkParameterizationType
     _values: Floats
@@ -101,7 +101,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Transform6D)
 
     def SetRotation3D(self, quat: ArrayLike) -> None:
-        """Set the goal to the rotation ``quat``, [w, x, y, z], shape (4,), which is kept as it is."""
+        """Set the goal to the rotation ``quat``, [w, x, y, z], shape (4,), stored without normalization."""
         self._set(_Type.Rotation3D, quat)
 
     def GetRotation3D(self) -> Floats:
@@ -113,7 +113,7 @@ class GoalValues(ApiObject):
         self._set(_Type.Translation3D, pos)
 
     def GetTranslation3D(self) -> Floats:
-        """Return the point [m] of a goal that has one, of this type or of another, shape (3,)."""
+        """Return the point [m] of a goal of any type that has one, shape (3,)."""
         return self._values[-3:].copy() if has_point(self._type) else self._of(_Type.Translation3D)
 
     def SetDirection3D(self, dir: ArrayLike) -> None:
@@ -133,7 +133,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Lookat3D)
 
     def SetRay4D(self, quat: Ray) -> None:
-        """Set the goal to a ray ``quat`` that the tool lies on, anywhere; its direction is a unit vector."""
+        """Set the goal to a ray ``quat`` with a unit direction, on which the tool axis must lie at any point."""
         self._set(_Type.Ray4D, quat)
 
     def GetRay4D(self) -> Ray:
@@ -165,16 +165,16 @@ class GoalValues(ApiObject):
         return self._of(_Type.TranslationXYOrientation3D)
 
     def SetTranslationLocalGlobal6D(self, localpos: ArrayLike, pos: ArrayLike) -> None:
-        """Set the goal to a point of the tool and where it shall be.
+        """Set the goal to a point of the tool and its desired position.
 
         Args:
             localpos: The point in the frame of the tool [m], shape (3,).
-            pos: Where it shall be [m], shape (3,).
+            pos: The desired position [m], shape (3,).
         """
         self._set(_Type.TranslationLocalGlobal6D, [localpos, pos])
 
     def GetTranslationLocalGlobal6D(self) -> tuple[Floats, Floats]:
-        """Return the point of the tool and where it shall be [m], shape (3,) each."""
+        """Return the point of the tool and its desired position [m], shape (3,) each."""
         values = self._of(_Type.TranslationLocalGlobal6D)
         return values[:3], values[3:]
 
@@ -195,11 +195,11 @@ class GoalValues(ApiObject):
 
 
 _CUSTOM_DATA = 0x10000
-"""Bit of the type's number in the text of a goal that has data of users."""
+"""Bit of the type number in the text form of a goal with custom data."""
 
 
 class IkParameterizationData(GoalValues):
-    """The part of ``IkParameterization`` that works on its numbers and the data of users."""
+    """Base of ``IkParameterization`` with its values, transforms and custom data."""
 
     Type = IkParameterizationType
     __array_ufunc__ = None  # so that ``matrix * goal`` is ours
@@ -232,25 +232,25 @@ class IkParameterizationData(GoalValues):
         return self._name
 
     def GetDOF(self, type: int | None = None) -> int:
-        """Return the number of degrees of freedom that the goal, or a goal of ``type``, fixes."""
+        """Return the number of degrees of freedom that the goal, or a goal of ``type``, constrains."""
         return self.GetDOFFromType(self._type if type is None else type)
 
     def GetNumberOfValues(self, type: int | None = None) -> int:
-        """Return how many numbers the goal, or a goal of ``type``, has."""
+        """Return the number of values of the goal, or of a goal of ``type``."""
         return self.GetNumberOfValuesFromType(self._type if type is None else type)
 
     @staticmethod
     def GetDOFFromType(type: int) -> int:
-        """Return how many degrees of freedom a goal of a type takes away."""
+        """Return the number of degrees of freedom that a goal of a type constrains."""
         return goal_dof(type)
 
     @staticmethod
     def GetNumberOfValuesFromType(type: int) -> int:
-        """Return how many numbers a goal of a type has."""
+        """Return the number of values of a goal of a type."""
         return goal_size(type)
 
     def GetValues(self) -> Floats:
-        """Return the numbers of the goal, shape (n,).
+        """Return the values of the goal, shape (n,).
 
         Raises:
             ArgumentError: the goal is empty.
@@ -260,10 +260,10 @@ class IkParameterizationData(GoalValues):
         return self._values.copy()
 
     def SetValues(self, values: ArrayLike, type: int) -> None:
-        """Set the numbers of the goal.
+        """Set the values of the goal.
 
         Args:
-            values: As many as the type has.
+            values: The values, as many as the type has.
             type: The type.
         """
         kind = _Type(type)
@@ -273,7 +273,7 @@ class IkParameterizationData(GoalValues):
     # Transforms and distances
 
     def MultiplyTransform(self, transform: ArrayLike) -> None:
-        """Move the goal itself by ``transform`` (4x4 or [w, x, y, z, tx, ty, tz]), as ``transform * goal`` does."""
+        """Multiply the goal in place by ``transform`` from the left (4x4 or [w, x, y, z, tx, ty, tz])."""
         pose = pose_of(checked_transform(transform, "transform"))
         custom = {name: moved_custom_values(name, numbers, pose) for name, numbers in self._custom.items()}
         self._values = moved_goal(self._type, self._values, pose)
@@ -289,16 +289,16 @@ class IkParameterizationData(GoalValues):
         return self.Transform(transform)
 
     def MultiplyTransformRight(self, transform: ArrayLike) -> None:
-        """Move the goal itself by a transform in its own frame, as ``goal * transform`` does.
+        """Transform the goal in place by a transform in its own frame, as ``goal * transform`` does.
 
-        A frame is turned as the goal says: as it stands for points, and for directions so that the shortest way brings
-        its z axis onto the direction.
+        The goal's own frame has the identity rotation for points; for directions, its z axis is turned onto the
+        direction by the shortest rotation.
 
         Args:
             transform: 4x4, or [w, x, y, z, tx, ty, tz].
 
         Raises:
-            openrave_exception: OpenRAVE moves no goal of type ``Ray4D`` so.
+            openrave_exception: the type is ``Ray4D``, as in OpenRAVE.
         """
         pose = pose_of(checked_transform(transform, "transform"))
         self._values = goal_moved_in_its_frame(self._type, self._values, pose)
@@ -311,7 +311,7 @@ class IkParameterizationData(GoalValues):
     def ComputeDistanceSqr(self, other: "IkParameterizationData") -> float:
         """Return the squared distance to ``other``, a goal of the same type.
 
-        Angles count in radians, and less for poses.
+        Angles count in radians; for poses they have a smaller weight.
         """
         if self._type != other._type:
             message = f"ComputeDistanceSqr: other is of type {other._type.name}, and should be {self._type.name}"
@@ -324,8 +324,9 @@ class IkParameterizationData(GoalValues):
         """Attach numbers under a name without spaces.
 
         Args:
-            name: The name. Numbers of a name that ends in ``_transform=point``, or goes on behind it with ``_``, move
-                with the goal; so do those with ``direction``, ``quat`` or ``ikparam`` in place of ``point``.
+            name: The name. Values whose name ends in ``_transform=point``, or continues after it with ``_``, are
+                transformed with the goal; so are those with ``direction``, ``quat`` or ``ikparam`` in place of
+                ``point``.
             values: The numbers, shape (n,).
         """
         if not name or name.split() != [name]:
@@ -342,15 +343,15 @@ class IkParameterizationData(GoalValues):
         self.SetCustomValues(name, [value])
 
     def GetCustomValues(self, name: str) -> Floats | None:
-        """Return the numbers under a name, shape (n,), or None."""
+        """Return the values attached under a name, shape (n,), or None."""
         return self._custom[name].copy() if name in self._custom else None
 
     def GetCustomDataMap(self) -> dict[str, Floats]:
-        """Return all attached numbers."""
+        """Return all attached values by name."""
         return {name: numbers.copy() for name, numbers in self._custom.items()}
 
     def ClearCustomValues(self, name: str = "") -> int:
-        """Forget the numbers under a name, or all without one; return how many names were forgotten."""
+        """Remove the values of a name, or all by default; return the number of removed names."""
         names = [known for known in self._custom if name in {"", known}]
         for known in names:
             del self._custom[known]
@@ -359,9 +360,9 @@ class IkParameterizationData(GoalValues):
     # JSON and text
 
     def SerializeJSON(self, unitScale: float = 1.0) -> dict[str, Any]:
-        """Return the goal as dicts, lists, numbers and texts.
+        """Return the goal as JSON data: dicts, lists, numbers and strings.
 
-        ``unitScale`` is a factor for lengths, but not for those in data of users.
+        ``unitScale`` is a factor for lengths, but not for those in custom data.
         """
         scales = length_scales(self._type, unitScale)
         written: dict[str, Any] = {"type": int(self._type), "values": (self._values * scales).tolist()}
@@ -371,14 +372,14 @@ class IkParameterizationData(GoalValues):
         return {**{key: text for key, text in texts.items() if text}, **written}
 
     def DeserializeJSON(self, obj: Mapping[str, Any], unitScale: float = 1.0) -> None:
-        """Take over what ``SerializeJSON`` returned.
+        """Restore the goal from a result of ``SerializeJSON``.
 
         Args:
             obj: The dict.
             unitScale: Factor for lengths.
 
         Raises:
-            openrave_exception: something in it is missing or wrong; nothing has changed then.
+            openrave_exception: something in it is missing or wrong; nothing changes then.
         """
         checked_kind(obj, Mapping, "DeserializeJSON: obj", "a dict")
         try:
@@ -397,7 +398,7 @@ class IkParameterizationData(GoalValues):
         """Return the goal that words begin with, as ``str`` wrote it, and take these words off.
 
         Raises:
-            ArgumentError: they are not the words of a goal.
+            ArgumentError: the words do not start with a goal.
         """
         read, rest = cls(), list(words)
         try:

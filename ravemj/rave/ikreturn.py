@@ -1,4 +1,4 @@
-"""What a search for joint values answers, and why it rejected others."""
+"""Results of inverse kinematics: solutions, and reasons of failures."""
 
 from typing import Any
 
@@ -15,10 +15,10 @@ from ravemj.rave.specification import IkParameterization
 
 
 class IkReturn(ApiObject):
-    """An answer of inverse kinematics: joint values, or why there are none. Filters return it, too.
+    """Result of inverse kinematics: a solution, or the reasons of the failure. Filters return it, too.
 
     Args:
-        action: Whether there is a solution; if not, all that happened to those that were tried.
+        action: ``Success``; else the combined reasons of all rejections.
 
     Example:
         >>> answer = manip.FindIKSolution(T_world_tool, 0, ikreturn=True)
@@ -36,26 +36,26 @@ class IkReturn(ApiObject):
     _internal = ("name_failures", "take")
 
     def GetAction(self) -> IkReturnAction:
-        """Return ``Success``, or the bits of all that happened to what was tried."""
+        """Return ``Success``, or the combined reasons of all rejections."""
         return self._action
 
     def GetSolution(self) -> Floats:
-        """Return the joint values [rad or m] in the order of ``GetArmIndices()``, shape (n,); (0,) without solution."""
+        """Return the joint values [rad or m] in the order of ``GetArmIndices()``, shape (n,), or (0,) without any."""
         return self._solution.copy()
 
     def SetSolution(self, solution: ArrayLike) -> None:
         """Set the ``solution``, joint values [rad or m], shape (n,).
 
-        A filter's replaces the one that it was asked about, unchecked.
+        In the answer of a filter, it replaces the candidate solution without further checks.
         """
         self._solution = checked_numbers(solution, "SetSolution: solution")
 
     def GetMapData(self, key: str) -> Floats | None:
-        """Return the numbers under the name ``key``, shape (k,), or None."""
+        """Return the values attached under the name ``key``, shape (k,), or None."""
         return self._map[key].copy() if key in self._map else None
 
     def GetMapDataDict(self) -> dict[str, Floats]:
-        """Return all numbers by their names."""
+        """Return all attached values by name."""
         return {key: numbers.copy() for key, numbers in self._map.items()}
 
     def SetMapKeyValue(self, key: str, value: ArrayLike) -> None:
@@ -68,19 +68,19 @@ class IkReturn(ApiObject):
         self._map[key] = checked_numbers(value, "SetMapKeyValue: value")
 
     def GetUserData(self) -> Any:  # noqa: ANN401 - any object of the user's
-        """Return what ``SetUserData`` attached, or None."""
+        """Return the object that ``SetUserData`` attached, or None."""
         return self._user_data
 
     def SetUserData(self, data: Any) -> None:  # noqa: ANN401 - any object of the user's
-        """Attach an object ``data`` of your own."""
+        """Attach a user object ``data``."""
         self._user_data = data
 
     def GetIkFailureInfoIndices(self) -> list[int]:
-        """Return where the failures of this search are in the list that was given as ``ikFailureAccumulator``."""
+        """Return the indices of this search's failures in the list given as ``ikFailureAccumulator``."""
         return list(self._failures)
 
     def name_failures(self, indices: list[int]) -> None:
-        """Say where the failures are in the list of the user."""
+        """Set the indices of the failures in the user's list."""
         self._failures = indices
 
     def take(self, other: "IkReturn") -> None:
@@ -91,14 +91,14 @@ class IkReturn(ApiObject):
 
 
 class IkFailureInfo(ApiObject):
-    """Why a solution was rejected; a list that is given as ``ikFailureAccumulator`` gets them.
+    """Reason of a rejected solution; collected in the list given as ``ikFailureAccumulator``.
 
     Args:
-        action: What happened.
-        configuration: The joint values that were rejected, shape (n,); none where the goal is out of reach.
+        action: The reason of the rejection.
+        configuration: The joint values that were rejected, shape (n,); none if the goal is out of reach.
         ikparam: The goal, in the frame of the arm's base.
         report: The collision, if it was one.
-        description: A sentence that says why.
+        description: The reason as a sentence.
     """
 
     def __init__(
@@ -114,11 +114,11 @@ class IkFailureInfo(ApiObject):
         self._description = description
 
     def GetAction(self) -> IkReturnAction:
-        """Return what happened."""
+        """Return the reason of the rejection."""
         return self._action
 
     def GetConfiguration(self) -> Floats:
-        """Return the joint values [rad or m] that were rejected, shape (n,)."""
+        """Return the rejected joint values [rad or m], shape (n,)."""
         return self._configuration.copy()
 
     def GetIkParam(self) -> IkParameterization:
@@ -126,11 +126,11 @@ class IkFailureInfo(ApiObject):
         return IkParameterization(self._goal)
 
     def GetCollisionReport(self) -> CollisionReport:
-        """Return the collision; empty if it was none."""
+        """Return the collision report; empty if the reason is not a collision."""
         return self._report
 
     def GetMapData(self, key: str) -> Floats:
-        """Return further numbers of a solver, shape (k,), of which those here give none.
+        """Return additional values of a solver, shape (k,); ravemj's solvers provide none.
 
         Args:
             key: Their name.
@@ -141,15 +141,15 @@ class IkFailureInfo(ApiObject):
         raise ArgumentError(f"GetMapData: there are no numbers '{key}'")
 
     def GetMapDataDict(self) -> dict[str, Floats]:
-        """Return all further numbers of a solver by name: none."""
+        """Return all additional values of a solver by name: always empty."""
         return {}
 
     def GetDescription(self) -> str:
-        """Return a sentence that says why."""
+        """Return the reason as a sentence."""
         return self._description
 
     def SerializeJSON(self) -> dict[str, Any]:
-        """Return the failure as dicts, lists, numbers and texts."""
+        """Return the failure as JSON data: dicts, lists, numbers and strings."""
         return {
             "action": int(self._action),
             "config": self._configuration.tolist(),
@@ -160,4 +160,4 @@ class IkFailureInfo(ApiObject):
 
 
 class IkFailureAccumulatorBase(list[IkFailureInfo]):
-    """A list of failures, for ``ikFailureAccumulator``; any list will do."""
+    """List of failures for ``ikFailureAccumulator``; any list works."""

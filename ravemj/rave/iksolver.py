@@ -1,4 +1,4 @@
-"""Solvers of inverse kinematics: the search for joint values, filters of users, OpenRAVE's answers and failures."""
+"""IK solvers of the API: the search for solutions, user filters, OpenRAVE's results and failures."""
 
 # ruff: noqa: PLC0415 - inverse kinematics is slow to import
 
@@ -6,7 +6,7 @@ import logging
 import operator
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +25,8 @@ from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationTyp
 from ravemj.manipulation.arm_search import ArmSearch, Checks, Reason
 from ravemj.rave.enums import IkFilterOptions, IkReturnAction, InterfaceType
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
-from ravemj.rave.interface import Interface, asked_for
+from ravemj.rave.interface import Interface
+from ravemj.rave.solver_names import numbers_in
 from ravemj.rave.specification import IkParameterization
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 _LOG = logging.getLogger("ravemj")
 _NEAR = 1e-4
-"""Squared distance from the goal of a configuration that ``CallFilters`` takes."""
+"""Largest squared distance between the goal and the configuration that ``CallFilters`` accepts."""
 
 # Plain numbers: operators of flags take longer than tests of collision.
 _CHECK_ENV = int(IkFilterOptions.CheckEnvCollisions)
@@ -65,9 +66,9 @@ FilterFunction = Callable[[Floats, "Manipulator", IkParameterization], FilterAns
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """A function of a user's that is asked about each solution: those of higher priority first.
+    """User callback that accepts or rejects solutions; higher priorities are called first.
 
-    Those of a priority above 0 are asked before collisions are tested.
+    Those with a priority above 0 are called before collision checks.
     """
 
     priority: int
@@ -75,7 +76,7 @@ class Filter:
 
 
 def checks_of(options: int) -> Checks:
-    """Return the tests that ``IkFilterOptions`` ask for."""
+    """Return the tests that ``IkFilterOptions`` select."""
     return Checks(
         others=bool(options & _CHECK_ENV),
         itself=not options & _IGNORE_SELF,
@@ -86,14 +87,14 @@ def checks_of(options: int) -> Checks:
 
 
 class Goal(NamedTuple):
-    """A goal in the frame of the arm's base: as it was given, where an array is a pose (4, 4); as a solver takes it."""
+    """IK goal in the arm's base frame: as given, where an array is a pose (4, 4), and as the solver's input."""
 
     given: IkParameterization | Floats
     numbers: Floats
 
 
 class FilteredSearch(ArmSearch):
-    """A search for joint values that asks the filters of users, and answers with objects of OpenRAVE's API.
+    """IK search that calls user filters and returns objects of the OpenRAVE API.
 
     Args:
         manip: The manipulator.
@@ -102,7 +103,7 @@ class FilteredSearch(ArmSearch):
         free: The values of the free joints, shape (k,); None for samples.
         options: ``IkFilterOptions`` combined with ``|``.
         filters: The filters of users.
-        failures: Gets what is rejected; None: nothing does.
+        failures: Receives the rejected solutions; None skips collecting them.
     """
 
     def __init__(
@@ -128,12 +129,12 @@ class FilteredSearch(ArmSearch):
 
     @cached_property
     def _goal_of_users(self) -> IkParameterization:
-        """The goal as users see it; made when it is first asked for, since it checks a pose once more."""
+        """The goal as an ``IkParameterization``; computed on first use, since the constructor checks the pose again."""
         return self._given if isinstance(self._given, IkParameterization) else IkParameterization(self._given, _POSE)
 
     @block
     def moving(self) -> Generator[None]:
-        """Hold the lock and let the joints of the arm be active; on leaving, restore both and the configuration."""
+        """Acquire the lock and make the arm's joints active; on leaving, restore both and the configuration."""
         with super().moving():
             chosen = self._robot.active_choice
             try:
@@ -144,13 +145,13 @@ class FilteredSearch(ArmSearch):
                 self._robot.active_choice = chosen
 
     def accepts(self, row: Floats, *, before_collisions: bool) -> bool:
-        """Ask the filters of priority above 0 before collisions are tested, and the others afterwards."""
+        """Call the filters with a priority above 0 if ``before_collisions``, else the others."""
         if before_collisions:
             self._answer = IkReturn(IkReturnAction.Success)
         return self._pass([one for one in self._filters if (one.priority > 0) == before_collisions], row)
 
     def _pass(self, filters: Iterable[Filter], row: Floats) -> bool:
-        """Ask filters about a solution, and put what they attach into its answer."""
+        """Call filters for a solution, and collect the data that they attach."""
         for one in filters:
             said = self._asked(one, row)
             action = IkReturnAction.Reject if said is None else said.GetAction()
@@ -165,10 +166,10 @@ class FilteredSearch(ArmSearch):
         return True
 
     def _asked(self, one: Filter, row: Floats) -> IkReturn | None:
-        """Return what a filter says.
+        """Return the answer of a filter.
 
         Raises:
-            RavemjError: with the code ``Assert``, it raises something, or says something that means nothing.
+            RavemjError: with the code ``Assert``, the filter raised an exception or returned an invalid answer.
         """
         try:
             said: Any = one.function(row.copy(), self._manip, IkParameterization(self._goal_of_users))
@@ -185,24 +186,24 @@ class FilteredSearch(ArmSearch):
         return said
 
     def solution(self, row: Floats) -> Floats:
-        """Return the solution that a filter gave in place of joint values, or these."""
+        """Return the replacement of a solution by a filter, or the solution itself."""
         given = self._answer.GetSolution()
         return given if len(given) else row
 
     def answer(self, row: Floats) -> IkReturn:
-        """Return the answer with a solution that was accepted last, shape (n,)."""
+        """Return the result for the solution accepted last, shape (n,)."""
         answer, self._answer = self._answer, IkReturn(IkReturnAction.Success)
         answer.SetSolution(row)
         return answer
 
     def filtered(self) -> IkReturn:
-        """Ask all filters about the present joint values, whatever collides."""
+        """Call all filters for the present joint values, without collision checks."""
         row = self.present()
         with self.moving():
             return self.answer(self.solution(row)) if self._pass(self._filters, row) else self.failure()
 
     def reject(self, reason: Reason, row: Floats, findings: Findings | None) -> None:
-        """Take note that joint values are rejected; ``row`` is empty if there are none."""
+        """Record the rejection of joint values; ``row`` is empty if there are none."""
         self._reject(*_ACTIONS[reason], row, findings)
 
     def _reject(self, action: int, why: str, row: Floats, findings: Findings | None = None) -> None:
@@ -213,7 +214,7 @@ class FilteredSearch(ArmSearch):
             self._failures.append(info)
 
     def failure(self) -> IkReturn:
-        """Return the answer for a goal without a good solution."""
+        """Return the result for a goal without an accepted solution."""
         answer = IkReturn(self._action | _REJECT)
         failures = self._failures
         answer.name_failures([] if failures is None else list(range(self._started, len(failures))))
@@ -227,14 +228,14 @@ _OF_POSES = {
     _Type.TranslationYAxisAngleXNorm4D,
     _Type.TranslationZAxisAngleYNorm4D,
 }
-"""Types whose solvers also take a pose, for the part of it that they ask for."""
+"""Goal types whose solvers also accept a pose and use only the constrained components."""
 
 
 def task_of(kind: IkParameterizationType) -> "Task":
-    """Return what a type of goal asks for.
+    """Return the IK task of a goal type.
 
     Raises:
-        UnsupportedError: no solver answers such goals.
+        UnsupportedError: no solver supports this type.
     """
     from ravemj.ik import Task
 
@@ -247,9 +248,9 @@ def task_of(kind: IkParameterizationType) -> "Task":
 
 
 class IkSolver(Interface):
-    """Finds joint values that take the tool of one arm to goals of one type; ``manip.GetIkSolver()`` returns it.
+    """IK solver of one arm for goals of one type; ``manip.GetIkSolver()`` returns it.
 
-    Goals of its own methods are in the frame of the arm's base.
+    Its own methods expect goals in the frame of the arm's base.
     """
 
     _internal = (
@@ -258,6 +259,7 @@ class IkSolver(Interface):
         "derived",
         "find_all",
         "find_one",
+        "given_free",
         "kind",
         "search",
         "set_steps",
@@ -278,26 +280,69 @@ class IkSolver(Interface):
         self._arm_solver = ArmSolver(task_of(kind), free)
         self._steps = None if steps is None else tuple(steps)
         self._filters: list[Filter] = []
+        self._custom_filter: Handle | None = None
         self._robot: Robot | None = None
         self._arm_name = ""
+
+    # Commands
+
+    def _free_indices(self, arguments: str) -> str:
+        del arguments
+        return "".join(f"{joint} " for joint in self.derived().free)
+
+    def _free_increments(self, arguments: str) -> str:
+        del arguments
+        return "".join(f"{step!r} " for step in map(float, self.derived().steps))
+
+    def _set_free_increments(self, arguments: str) -> str:
+        count, steps = len(self.derived().free), numbers_in(arguments.split())
+        if steps is None or len(steps) != count or not all(0 < step < np.inf for step in steps):
+            raise ArgumentError(f"SetFreeIncrements: '{arguments}' should be {count} numbers above 0 [rad or m]")
+        self.set_steps(steps or None)
+        return ""
+
+    def _repeat_count(self, arguments: str) -> str:
+        """Return 0, the count of equal link poses between two filter calls: the links always move."""
+        del arguments
+        return "0"
+
+    def _solution_indices(self, arguments: str) -> str:
+        del arguments
+        remedy = "solutions are told apart by their joint values: FindIKSolutions returns them all"
+        raise UnsupportedError(f"GetSolutionIndices ({remedy})", "numbering of the branches of a solver")
+
+    _commands: ClassVar = {
+        "GetSolutionIndices": _solution_indices,
+        "SetJacobianRefineBit": lambda solver, arguments: "",  # solutions are exact without refinement
+        "GetFreeIndices": _free_indices,
+        "GetFreeIncrements": _free_increments,
+        "SetFreeIncrements": _set_free_increments,
+        "GetRobotLinkStateRepeatCount": _repeat_count,
+    }
 
     # What it belongs to
 
     def attach(self, robot: "Robot", arm: str) -> None:
-        """Let it answer for an arm.
+        """Assign the solver to an arm.
 
         Raises:
             ArgumentError: the robot is in another environment than the solver.
-            ValueError: the arm is none that can be solved; the message says why.
+            ValueError: the arm cannot be solved; the message says why.
         """
         if robot.GetEnv() is not self._env:
             raise ArgumentError(f"SetIkSolver: the solver '{self._xmlid}' was made for another environment")
         description = next(one for one in robot.simulation_state.scene.manipulators if one.name == arm)
-        self._arm_solver.of(robot.simulation_state.scene, description)
+        self._arm_solver.solver_for(robot.simulation_state.scene, description)
         self._robot, self._arm_name = robot, arm
 
+    @property
+    def given_free(self) -> tuple[int, ...] | None:
+        """The requested free joints, as indices into the arm; None means as few as necessary."""
+        free = self._arm_solver.free
+        return None if free is None else tuple(free)
+
     def set_steps(self, steps: Sequence[float] | None) -> None:
-        """Set how finely free joints are sampled; None: as by default."""
+        """Set the sampling steps of the free joints [rad or m]; None means the defaults."""
         self._steps = None if steps is None else tuple(steps)
 
     def _owner(self) -> "Robot":
@@ -319,17 +364,18 @@ class IkSolver(Interface):
 
     def derived(self) -> "ArmSolutions":
         """Return what computes, for the arm as it is now."""
-        solver = self._arm_solver.of(self._owner().simulation_state.scene, self._description())
-        return solver if self._steps is None else replace(solver, steps=self._steps)
+        solver = self._arm_solver.solver_for(self._owner().simulation_state.scene, self._description())
+        steps = (self._steps or ())[: len(solver.free)]  # a name may have more steps than the arm has free joints
+        return replace(solver, steps=(*steps, *solver.steps[len(steps) :])) if steps else solver
 
     def _free_values(self, solver: "ArmSolutions", shares: ArrayLike | None) -> Floats | None:
-        """Return the values of free joints, shape (k,), that are given as shares of their ranges; None: any."""
+        """Convert free joint values from fractions of their ranges to joint values, shape (k,); None means any."""
         given = np.zeros(0) if shares is None else checked_numbers(shares, "freevalues")
         if not given.size:
             return None
         count, free = len(solver.free), list(solver.free)
         if given.shape != (count,):
-            joints = "no free joint" if not count else "one free joint" if count == 1 else f"{count} free joints"
+            joints = ("no free joint", "one free joint", f"{count} free joints")[min(count, 2)]
             raise ArgumentError(f"freevalues have shape {given.shape}, and '{self._arm_name}' has {joints}")
         lower, upper = solver.chain.lower[free], solver.chain.upper[free]
         return lower + checked_vector(given, count, "freevalues") * (upper - lower)
@@ -344,7 +390,7 @@ class IkSolver(Interface):
 
         Args:
             goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
-            shares: Where the free joints are in their ranges, shape (k,); None: anywhere.
+            shares: Values of the free joints as fractions of their ranges, shape (k,); None means any.
             options: ``IkFilterOptions`` combined with ``|``.
         """
         if self._filters:
@@ -361,10 +407,9 @@ class IkSolver(Interface):
         options: int,
         failures: list[IkFailureInfo] | None = None,
     ) -> FilteredSearch:
-        solver = self.derived()
+        solver, numbers = self.derived(), self._numbers(goal)
         free = self._free_values(solver, shares)
-        goals = Goal(goal, self._numbers(goal))
-        return FilteredSearch(self._arm, solver, goals, free, options, self._filters, failures)
+        return FilteredSearch(self._arm, solver, Goal(goal, numbers), free, options, self._filters, failures)
 
     def find_one(
         self,
@@ -375,14 +420,14 @@ class IkSolver(Interface):
         seed: Floats | None = None,
         failures: list[IkFailureInfo] | None = None,
     ) -> IkReturn:
-        """Return the good solution that is nearest to a configuration, or why there is none; see ``search``.
+        """Return the accepted solution nearest to a configuration, or the reasons of the failure; see ``search``.
 
         Args:
             goal: As there.
             shares: As there.
             options: As there.
             seed: The configuration, shape (n,); None: the present one.
-            failures: Gets what is rejected.
+            failures: Receives the rejected solutions.
         """
         search = self._filtered(goal, shares, options, failures)
         start = search.present() if seed is None else seed
@@ -404,17 +449,16 @@ class IkSolver(Interface):
         options: int,
         failures: list[IkFailureInfo] | None = None,
     ) -> list[IkReturn]:
-        """Return all good solutions; none if a filter ends the search. The arguments are those of ``find_one``."""
+        """Return all accepted solutions; none if a filter ends the search. The arguments are those of ``find_one``."""
         search = self._filtered(goal, shares, options, failures)
-        rows = search.rows()
         with search.moving():
-            answers = [search.answer(row) for row in search.good(rows)]
+            answers = [search.answer(row) for row in search.all_good()]
         if not answers and failures is not None and not search.ended:
             search.explain()
         return [] if search.ended else answers
 
     def _numbers(self, goal: IkParameterization | Floats) -> Floats:
-        """Return a goal as the solver takes it: a pose (4, 4), or the numbers of its type."""
+        """Return a goal as the solver's input: a pose (4, 4), or the values of its type."""
         kind = _Type.Transform6D if isinstance(goal, np.ndarray) else goal.GetType()
         if kind not in GOAL_TYPES:
             raise RavemjError("the goal is empty; give it a value and a type first")
@@ -432,11 +476,11 @@ class IkSolver(Interface):
     _interface_type = InterfaceType.iksolver
 
     def Supports(self, iktype: IkParameterizationType) -> bool:
-        """Return whether the solver answers goals of the type ``iktype``."""
+        """Return whether the solver supports goals of the type ``iktype``."""
         return iktype == self.kind
 
     def copy_for(self, robot: "Robot") -> "IkSolver":
-        """Return a solver for the same arm of another robot like this, with the default steps of free joints."""
+        """Return a solver for the same arm of another, similar robot, with the default steps of free joints."""
         copy = IkSolver(robot.GetEnv(), self._xmlid, self.kind, self._arm_solver.free)
         copy._arm_solver = self._arm_solver.copy()
         copy.attach(robot, self._arm_name)
@@ -445,11 +489,11 @@ class IkSolver(Interface):
     # Free joints
 
     def GetNumFreeParameters(self) -> int:
-        """Return how many joints are sampled, since the arm has more than the goal needs."""
+        """Return the number of free joints, which are sampled because the arm has more joints than the goal needs."""
         return len(self.derived().free)
 
     def GetFreeParameters(self) -> Floats:
-        """Return where the free joints of the robot are in their ranges, from 0 to 1, shape (k,)."""
+        """Return the free joint values of the robot as fractions of their ranges, from 0 to 1, shape (k,)."""
         solver, values = self.derived(), self._configuration()
         free = list(solver.free)
         lower, upper = solver.chain.lower[free], solver.chain.upper[free]
@@ -459,17 +503,21 @@ class IkSolver(Interface):
     # Filters
 
     def RegisterCustomFilter(self, priority: int, callback: FilterFunction) -> Handle:
-        """Let a function of yours accept or reject solutions.
+        """Register a callback that accepts or rejects solutions.
+
+        If it rejects the solutions at all samples of a free joint, it is called for the ends, the middle and eight more
+        points of each interval of the joint's values. Solutions that it would accept only between these points are
+        missed, and so are those in gaps narrower than a sampling step.
 
         Args:
-            priority: Functions of higher priority are asked first; those above 0 before collisions are tested.
+            priority: Callbacks of higher priority are called first; those above 0 before collision checks.
             callback: ``callback(values, manipulator, ikparam)`` returns an ``IkReturnAction`` (``Success`` keeps the
                 solution, ``Reject`` goes on to the next, ``Quit`` ends the search), an ``IkReturn`` whose solution
                 takes the place of this one, or None, which rejects. ``ikparam`` is in the frame of the arm's base; the
                 robot stands in the solution, and its active DOFs are those of the arm.
 
         Returns:
-            A handle; the function is asked until it is closed or gone.
+            A handle; closing or deleting it removes the callback.
 
         Example:
             >>> def elbow_up(values, manipulator, ikparam):
@@ -482,17 +530,32 @@ class IkSolver(Interface):
         self._filters.append(entry)
         return Handle(self._filters.remove, entry)
 
-    def CallFilters(self, ikparam: IkParameterization) -> IkReturn:
-        """Ask all filters about the configuration in which the robot is.
+    def SetCustomFilter(self, callback: FilterFunction) -> bool:
+        """Register a filter that stays, in place of the one of an earlier call; see ``RegisterCustomFilter``.
 
         Args:
-            ikparam: The goal, in the frame of the arm's base, where the tool is within 0.01 (m or rad).
+            callback: The callback; it is called after collision checks.
 
         Returns:
-            The configuration as a solution, with what the filters attach; or that they reject it.
+            True.
+        """
+        handle = self.RegisterCustomFilter(0, callback)
+        if self._custom_filter is not None:
+            self._custom_filter.Close()
+        self._custom_filter = handle
+        return True
+
+    def CallFilters(self, ikparam: IkParameterization) -> IkReturn:
+        """Call all filters for the robot's present configuration.
+
+        Args:
+            ikparam: The goal, in the frame of the arm's base, which the tool must match within 0.01 (m or rad).
+
+        Returns:
+            The configuration as a solution, with what the filters attach; or their rejection.
 
         Raises:
-            ArgumentError: the tool is elsewhere.
+            ArgumentError: the tool is not at the goal.
         """
         goal = checked_kind(ikparam, IkParameterization, "CallFilters: ikparam")
         here = self._arm.GetIkParameterization(goal, False)
@@ -508,7 +571,7 @@ class IkSolver(Interface):
         Args:
             ikparam: The goal, in the frame of the arm's base.
             q0: The configuration, shape (n,); None: the present one.
-            arguments: Values of the free joints as shares of their ranges, then ``IkFilterOptions``.
+            arguments: Free joint values as fractions of their ranges, then ``IkFilterOptions``.
             named: The same by name.
         """
         goal = checked_kind(ikparam, IkParameterization, "Solve: ikparam")
@@ -534,10 +597,10 @@ _OPTIONS = "filteroptions"
 def split_options(
     caller: str, arguments: Sequence[object], named: Mapping[str, object], free_name: str = "freeparameters"
 ) -> tuple[ArrayLike | None, int]:
-    """Return values of free joints, or None, and ``IkFilterOptions`` of a call: ``([freeparameters,] filteroptions)``.
+    """Return free joint values, or None, and ``IkFilterOptions`` from ``([freeparameters,] filteroptions)``.
 
     Raises:
-        TypeError: the options are missing, or there is something else.
+        TypeError: the options are missing, or there are other arguments.
     """
     names = [free_name, _OPTIONS] if len(arguments) > 1 or free_name in named else [_OPTIONS]
     given = dict(zip([name for name in names if name not in named], arguments, strict=False)) | dict(named)
@@ -552,39 +615,3 @@ def split_options(
     except TypeError:
         raise TypeError(f"{caller}: {_OPTIONS} are {options!r}, and should be IkFilterOptions or 0") from None
     return cast("ArrayLike | None", given.get(free_name)), number
-
-
-def RaveCreateIkSolver(env: "Environment", name: str) -> IkSolver | None:
-    """Make a solver of inverse kinematics; ``manip.SetIkSolver`` gives it an arm.
-
-    Args:
-        env: The environment.
-        name: ``ikfast`` and a word in which the type of goal stands, as ``InverseKinematicsModel.getikname`` returns
-            it; what follows are the steps of free joints [rad or m]. ``ikfast Transform6D 0.05``
-
-    Returns:
-        The solver; None, and a warning is logged, where the name says no type of goal.
-
-    Raises:
-        UnsupportedError: no solver answers goals of that type.
-
-    Example:
-        >>> solver = RaveCreateIkSolver(env, "ikfast Translation3D")
-        >>> manip.SetIkSolver(solver)
-        True
-    """
-    words = asked_for(env, name, "RaveCreateIkSolver")
-    if len(words) > 1 and words[0].lower() == "ikfast":
-        kind = next((one for one in GOAL_TYPES if one.name in words[1].split(".")), None)
-        steps = _numbers_in(words[2:])
-        if kind is not None and steps is not None:
-            return IkSolver(env, name, kind, steps=steps or None)
-    _LOG.warning("there is no solver '%s': its name should be 'ikfast' and a type of goal, then steps", name)
-    return None
-
-
-def _numbers_in(words: Sequence[str]) -> list[float] | None:
-    try:
-        return [float(word) for word in words]
-    except ValueError:
-        return None

@@ -1,4 +1,4 @@
-"""Measurements of sensors: one class for each kind of sensor."""
+"""Measurements of sensors: a data class for each kind of sensor, and the device that measures."""
 
 import copy
 import math
@@ -33,7 +33,7 @@ def _nothing() -> Floats:
 
 @dataclass(eq=False, slots=True)
 class SensorData:
-    """The base class of measurements. Each kind of sensor has a class of its own.
+    """Base class of measurements; each kind of sensor has a subclass.
 
     Attributes:
         stamp: Simulation time of the measurement [microseconds].
@@ -50,7 +50,7 @@ class SensorData:
 
 @dataclass(eq=False, slots=True)
 class CameraSensorData(SensorData):
-    """A camera's picture.
+    """Image of a camera.
 
     Attributes:
         transform: ``T_world_camera`` at the time of the picture, shape (4, 4); z forward, y down.
@@ -72,7 +72,7 @@ class CameraSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class LaserSensorData(SensorData):
-    """A scan of a laser, in the world frame.
+    """Scan of a laser, in the world frame.
 
     Attributes:
         positions: The origin of all rays [m], shape (1, 3).
@@ -90,7 +90,7 @@ class LaserSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class JointEncoderSensorData(SensorData):
-    """Values of a robot's joints.
+    """Joint values and velocities of a robot.
 
     Attributes:
         encoderValues: Values of all DOFs [rad or m], rounded to the resolution, shape (dof,).
@@ -107,7 +107,7 @@ class JointEncoderSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class Force6DSensorData(SensorData):
-    """The force and torque that the parent link exerts on the sensor's link, in sensor axes.
+    """Force and torque that the parent link exerts on the sensor's link, in sensor axes.
 
     Attributes:
         force: The force on the link [N], shape (3,). At rest it carries the weight of the link and of its children, so
@@ -123,7 +123,7 @@ class Force6DSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class IMUSensorData(SensorData):
-    """Orientation, angular velocity and acceleration; the latter two in sensor axes.
+    """Orientation in the world; angular velocity and acceleration in sensor axes.
 
     Attributes:
         rotation: Orientation in the world as a quaternion [w, x, y, z], shape (4,).
@@ -147,7 +147,7 @@ class IMUSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class OdometrySensorData(SensorData):
-    """A pose and a velocity, in the world frame.
+    """Pose and velocity in the world frame.
 
     Attributes:
         pose: ``T_world_sensor``, or ``T_world_body`` of the target, shape (4, 4).
@@ -188,7 +188,7 @@ class TactileSensorData(SensorData):
 
 
 class _ActuatorState(IntEnum):
-    """The state of motion of an actuator."""
+    """Motion state of an actuator."""
 
     Undefined = 0
     Idle = 1
@@ -199,7 +199,7 @@ class _ActuatorState(IntEnum):
 
 @dataclass(eq=False, slots=True)
 class ActuatorSensorData(SensorData):
-    """The state of an actuator.
+    """State of an actuator.
 
     Attributes:
         state: The state of motion.
@@ -251,7 +251,7 @@ DATA: dict[SensorType, type[SensorData]] = {
         ActuatorSensorData,
     )
 }
-"""The class of each kind of data."""
+"""Data class of each sensor type."""
 
 
 def copied(data: SensorData) -> SensorData:
@@ -261,24 +261,24 @@ def copied(data: SensorData) -> SensorData:
 
 
 class Place(NamedTuple):
-    """Where a sensor is: ``T_world_sensor``, and the body and index of the link that carry it; None without a robot."""
+    """Sensor mount: ``T_world_sensor``, and the body and link index that carry it; None without a robot."""
 
     T_world_sensor: Floats
     carrier: tuple[BodyState, int] | None
 
     @property
     def link(self) -> tuple[BodyState, int]:
-        """Body and link that carry the sensor; what measures them is on one."""
+        """The body and link index of the mount; an error if the sensor is not on a link."""
         assert self.carrier is not None
         return self.carrier
 
 
 class Instrument:
-    """Measures in one environment what one device can, and remembers what that takes. Callers hold the lock.
+    """Measuring device of one sensor in one environment, with its internal state. Callers hold the lock.
 
     Attributes:
-        spin_angle: How far the plane of a laser has turned [rad].
-        scanned: What a laser measured last, and the world that it met; None before.
+        spin_angle: Rotation angle of the scan plane [rad].
+        scanned: The last scan, and the world in which it was made; None at first.
     """
 
     def __init__(self, env: "Environment") -> None:
@@ -287,27 +287,27 @@ class Instrument:
         self.restart()
 
     def restart(self) -> None:
-        """Forget the past."""
+        """Reset the internal state."""
         self.spin_angle = 0.0
         self.scanned: tuple[Scan, CollisionWorld] | None = None
         self._velocity: Floats | None = None
         self._acceleration = np.zeros(3)
 
     def take_over(self, other: "Instrument") -> None:
-        """Go on like another instrument of the same device: with its noise, its turn and its velocity."""
+        """Copy the state of another instrument of the same device: noise, spin angle and velocity."""
         self._deviation, self._random = other._deviation, copy.deepcopy(other._random)
         self.spin_angle = other.spin_angle
         self._velocity, self._acceleration = other._velocity, other._acceleration
 
     def set_noise(self, deviation: float, seed: int | None) -> None:
-        """Add normally distributed noise to what is measured from now on."""
+        """Add Gaussian noise to all further measurements."""
         self._deviation, self._random = deviation, np.random.default_rng(seed)
 
     def _noisy(self, numbers: Floats) -> Floats:
         return numbers + self._random.normal(0.0, self._deviation, numbers.shape) if self._deviation else numbers
 
     def advance(self, device: scene.Device, place: Place, timestep: float) -> None:
-        """Let time pass [s]: lasers spin, and changes of velocity are accelerations."""
+        """Advance by a time step [s]: spin lasers, and update accelerations from velocity differences."""
         if isinstance(device, scene.Laser) and device.spins:
             self.spin_angle = math.remainder(self.spin_angle + device.spin_speed * timestep, math.tau)
         elif isinstance(device, scene.Imu) and timestep > 0:
@@ -319,7 +319,7 @@ class Instrument:
             self._velocity = velocity
 
     def rays_pose(self, device: scene.Device, place: Place) -> Floats:
-        """Return the pose in the world of what a device looks with, shape (4, 4): lasers spin."""
+        """Return the world pose of the ray frame, shape (4, 4), including the spin of a laser."""
         if not (isinstance(device, scene.Laser) and device.spins):
             return place.T_world_sensor
         from ravemj.engine.sensing import spun  # noqa: PLC0415 - slow to import
@@ -327,15 +327,16 @@ class Instrument:
         return spun(device, place.T_world_sensor, self.spin_angle)
 
     def measured(self, device: scene.Device, place: Place, stamp: int) -> SensorData:
-        """Return what a device without a problem measures at a place and time [microseconds].
+        """Return the measurement of a valid device at a mount and time [microseconds].
 
         Raises:
-            RavemjError: it measures forces, and the environment has no physics; or it follows a body that is not there.
+            RavemjError: the sensor measures forces, and the environment has no physics; or its target body does not
+                exist.
         """
         return _MEASURES[type(device)](self, device, place, stamp)
 
     def picture(self, device: scene.Intrinsics, place: Place, stamp: int) -> CameraSensorData:
-        """Return a camera's picture."""
+        """Return the image of a camera."""
         env, (camera, form) = self._env, _camera(device, place)
         picture = env.renderer.render(camera, Look.of_sensor(env.own_background), form, drawings=False)
         if self._deviation:
@@ -343,16 +344,16 @@ class Instrument:
         return CameraSensorData(stamp, place.T_world_sensor, picture, intrinsics_of(device))
 
     def depth_image(self, device: scene.Intrinsics, place: Place) -> NDArray[np.float32]:
-        """Return how far away is what a camera sees [m], shape (height, width); infinite where nothing is."""
+        """Return the depths that a camera sees [m], shape (height, width); infinite in the background."""
         return self._env.renderer.depth(*_camera(device, place))
 
     def segmentation_image(self, device: scene.Intrinsics, place: Place) -> Ints:
-        """Return body and link that each pixel shows, shape (height, width, 2); 0 and -1 where nothing is."""
+        """Return the body and link at each pixel, shape (height, width, 2); 0 and -1 in the background."""
         geoms = self._env.renderer.segment(*_camera(device, place))
         return self._env.simulation.collisions().labels(geoms)
 
     def scan(self, device: scene.Laser | scene.FlashLidar, place: Place, stamp: int) -> LaserSensorData:
-        """Return a laser's scan."""
+        """Return the scan of a laser."""
         from ravemj.engine.sensing import scan  # noqa: PLC0415 - slow to import
 
         world = self._env.simulation.collisions()
@@ -372,7 +373,7 @@ class Instrument:
         return Force6DSensorData(stamp, self._noisy(force), self._noisy(torque))
 
     def touch(self, device: scene.Tactile, place: Place, stamp: int) -> TactileSensorData:
-        """Return where a link is touched."""
+        """Return the contacts on a link."""
         from ravemj.engine.sensing import touches  # noqa: PLC0415 - slow to import
 
         positions, forces = touches(self._needed_physics(), *place.link, place.T_world_sensor)
@@ -426,7 +427,7 @@ class Instrument:
         return JointEncoderSensorData(stamp, self._noisy(values), velocities, steps)
 
     def _physics(self) -> "Physics | None":
-        """Return the physics of the bodies as they are now; None where there is none."""
+        """Return the physics of the present bodies, or None without simulated dynamics."""
         physics = self._env.GetPhysicsEngine().dynamics
         if physics is not None:
             physics.prepare()

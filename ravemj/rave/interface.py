@@ -1,12 +1,12 @@
 """The base class of all objects of an environment, and modules."""
 
-# ruff: noqa: D417 - the functions are methods of classes that have no base in common, and take self
+# ruff: noqa: D417 - the functions become methods of classes without a common base, and take self
 
 import inspect
 from collections.abc import Callable, Mapping
 from copy import copy
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Annotations:
-    """The description and the user data of one object."""
+    """Description and user data of one object."""
 
     def __init__(self) -> None:
         self.description = ""
@@ -29,7 +29,7 @@ class Annotations:
 
 
 class Annotated(Protocol):
-    """An object with annotations: an environment or an interface. The functions below are its methods."""
+    """Protocol of objects with annotations: environments and interfaces. The functions below become its methods."""
 
     annotations: Annotations
 
@@ -37,7 +37,7 @@ class Annotated(Protocol):
 def SetUserData(self: Annotated, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
     """Attach an object of the user: ``SetUserData(data)`` or ``SetUserData(key, data)``.
 
-    The object lives as long as what it is attached to. ``GetUserData`` returns it.
+    The owner keeps the object alive. ``GetUserData`` returns it.
 
     Args:
         key: The name; or the object itself, if it is the only argument.
@@ -53,12 +53,12 @@ def GetUserData(self: Annotated, key: str = "") -> Any:  # noqa: ANN401 - any ob
 
 
 def RemoveUserData(self: Annotated, key: str = "") -> bool:
-    """Remove the object that is attached under the name ``key``, and return whether there was one."""
+    """Remove the object attached under the name ``key``, and return whether it existed."""
     return self.annotations.data.pop(key, None) is not None
 
 
 class Readable(ApiObject):
-    """A value with an id. ``stringreaders.CreateStringReadable`` makes one from a text."""
+    """Value with an id; ``stringreaders.CreateStringReadable`` makes one from a string."""
 
     def __init__(self, id: str, data: Any = "") -> None:  # noqa: ANN401 - what JSON can hold
         self._id = str(id)
@@ -100,7 +100,7 @@ class Readable(ApiObject):
 
 
 class ReadableInterface(ApiObject):
-    """An object with values under ids."""
+    """Base class of objects with values under ids."""
 
     _readables: dict[str, Readable] | None = None
 
@@ -109,7 +109,7 @@ class ReadableInterface(ApiObject):
         return (self._readables or {}).get(id)
 
     def GetReadableInterfaces(self) -> dict[str, Readable]:
-        """Return all values by their ids."""
+        """Return all values by id."""
         return dict(self._readables or {})
 
     def SetReadableInterface(self, id: str, readable: Readable | None) -> None:
@@ -124,35 +124,35 @@ class ReadableInterface(ApiObject):
 
 
 class stringreaders:  # noqa: N801 - OpenRAVE's name
-    """Makes values from texts."""
+    """Factory of readable values."""
 
     @staticmethod
     def CreateStringReadable(id: str, data: str) -> Readable:
-        """Return a text under an id.
+        """Return a string as a readable value.
 
         Args:
             id: The id.
-            data: The text.
+            data: The string.
         """
         return Readable(id, str(data))
 
 
 class xmlreaders:  # noqa: N801 - OpenRAVE's name
-    """Makes values from texts, under OpenRAVE's older names."""
+    """Factory of readable values, under OpenRAVE's older names."""
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
-        """Return a text under an id.
+        """Return a string as a readable value.
 
         Args:
             xmlid: The id.
-            data: The text.
+            data: The string.
         """
         return Readable(xmlid, str(data))
 
 
 class SerializableData(ApiObject):
-    """A text that scripts attach and read back.
+    """String that scripts attach and read back.
 
     Args:
         data: The text.
@@ -178,7 +178,7 @@ class SerializableData(ApiObject):
 
 
 class EnvironmentPart(ApiObject):
-    """The base class of the topics of ``Environment``, with the state that they share."""
+    """Base class of the mixins of ``Environment``, with their shared state."""
 
     def __init__(self) -> None:
         self._simulation = Simulation()
@@ -186,7 +186,12 @@ class EnvironmentPart(ApiObject):
         self._viewers: list[Viewer] = []
         self._found: dict[Diagnostic, None] = {}  # ordered sets: loading a file again adds nothing
         self._files: dict[str, Source | None] = {}
+        self._unread = ""  # why the last Read… gave None
         self._is_destroyed = False
+
+    @property
+    def _environment(self) -> "Environment":
+        return cast("Environment", self)
 
     def _check_alive(self) -> None:
         """Raise an error if the environment has been destroyed."""
@@ -200,13 +205,13 @@ class EnvironmentPart(ApiObject):
 
 
 Command = Callable[[str], str | None]
-"""What runs a command: takes its arguments as text, and returns the answer, or None if it failed."""
+"""Handler of a command: takes the arguments as text, and returns the answer, or None on failure."""
 
 
 class Interface(ReadableInterface):
-    """An object of an environment: a body, a controller, a physics engine, a trajectory, ...
+    """Base class of the objects of an environment: bodies, controllers, physics engines, trajectories, ...
 
-    OpenRAVE calls them interfaces, since its plugins make them.
+    OpenRAVE calls them interfaces, since plugins provide them.
     """
 
     _internal = ("annotations",)
@@ -220,7 +225,7 @@ class Interface(ReadableInterface):
         self.annotations = Annotations()
 
     def GetEnv(self) -> "Environment":
-        """Return the environment that the object was made for, also before it is added.
+        """Return the environment for which the object was made, even before it is added.
 
         Example:
             >>> robot.GetEnv() == env
@@ -237,7 +242,7 @@ class Interface(ReadableInterface):
         return self._xmlid
 
     def GetPluginName(self) -> str:
-        """Return where the implementation comes from."""
+        """Return the name of the plugin that provides the implementation."""
         return "ravemj"
 
     def GetDescription(self) -> str:
@@ -245,7 +250,7 @@ class Interface(ReadableInterface):
         return self.annotations.description
 
     def SetDescription(self, description: str) -> None:
-        """Set ``description``, a text for people."""
+        """Set ``description``, free text."""
         self.annotations.description = str(description)
 
     SetUserData = SetUserData
@@ -253,10 +258,10 @@ class Interface(ReadableInterface):
     RemoveUserData = RemoveUserData
 
     def Clone(self, ref: Any, cloningoptions: int = 0) -> None:  # noqa: ANN401 - another object of its class
-        """Take over the description and the data of users that another object of the same class has.
+        """Copy the description and the user data of another object of the same class.
 
-        Bodies, trajectories, collision checkers, physics engines and sensors take over what they are, too. A copy of a
-        controller has no robot yet, one of a module was not started.
+        Bodies, trajectories, collision checkers, physics engines and sensors also copy their content. A copy of a
+        controller has no robot, and a copy of a module is not started.
 
         Args:
             ref: The other object.
@@ -274,7 +279,7 @@ class Interface(ReadableInterface):
         return False
 
     def SendJSONCommand(self, cmd: str, input: Any, releasegil: bool = False, lockenv: bool = False) -> Any:  # noqa: ANN401 - JSON
-        """Refuse to return the answer to a command of OpenRAVE's plugins in JSON; there are none.
+        """Return no answer, but raise an error: OpenRAVE plugins' JSON commands are not supported.
 
         Args:
             cmd: The name of the command.
@@ -293,10 +298,10 @@ class Interface(ReadableInterface):
         return cmd.lower() in {"help", *map(str.lower, self._known_commands())}
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
-        """Run a command of OpenRAVE's plugins by its text.
+        """Run a text command of an OpenRAVE plugin.
 
         Args:
-            cmd: The name of the command, and behind a blank its arguments. ``help`` lists the commands.
+            cmd: The name of the command, a space, and its arguments. ``help`` lists the commands.
             releasegil: Not used.
             lockenv: Not used.
 
@@ -321,7 +326,7 @@ class Interface(ReadableInterface):
         raise RavemjError(message + ", ".join(["help", *commands]), ErrorCode.CommandNotSupported)
 
     def _known_commands(self) -> Mapping[str, Command]:
-        """Return what runs the commands, by their names."""
+        """Return the command handlers by name."""
         return {name: partial(run, self) for name, run in self._commands.items()}
 
     def _help(self) -> str:
@@ -329,17 +334,17 @@ class Interface(ReadableInterface):
 
 
 def asked_for(env: "Environment", name: str, caller: str, missing: Mapping[str, str] = {}) -> list[str]:
-    """Return the words of the name of what a function ``RaveCreate…`` should make: its kind, then arguments of that.
+    """Split the name given to a ``RaveCreate…`` function into words: the type, then its arguments.
 
     Args:
         env: The environment.
-        name: The name; without any word, the kind is an empty word.
+        name: The name; if it is empty, the type is an empty string.
         caller: The function.
-        missing: The kinds of OpenRAVE that ravemj lacks, in lower case, and the missing feature.
+        missing: OpenRAVE's types that ravemj lacks, in lower case, with the missing feature.
 
     Raises:
-        ArgumentError: the environment is none, or the name is not a text.
-        UnsupportedError: the kind is missing.
+        ArgumentError: the environment is not an ``Environment``, or the name is not a string.
+        UnsupportedError: the type is not supported.
     """
     checked_environment(env, caller)
     words = checked_kind(name, str, f"{caller}: name", "a text").split() or [""]
@@ -349,10 +354,10 @@ def asked_for(env: "Environment", name: str, caller: str, missing: Mapping[str, 
 
 
 def checked_environment(env: "Environment", caller: str) -> "Environment":
-    """Return the environment that a user gave.
+    """Return the environment that a user passed, after a type check.
 
     Raises:
-        ArgumentError: it is something else.
+        ArgumentError: it is not an ``Environment``.
     """
     if not isinstance(env, EnvironmentPart):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ArgumentError(f"{caller}: env is {env!r}, and should be an Environment")
@@ -360,7 +365,7 @@ def checked_environment(env: "Environment", caller: str) -> "Environment":
 
 
 class Module(Interface):
-    """An object that executes commands. ``RaveCreateModule`` makes modules.
+    """Base class of objects that execute commands; ``RaveCreateModule`` makes modules.
 
     Args:
         env: The environment.
@@ -390,7 +395,7 @@ class Module(Interface):
         self._env.Remove(self)
 
     def end(self) -> None:
-        """End the work of the module. The environment calls this when it removes the module."""
+        """End the module's work. The environment calls this when it removes the module."""
 
     def SimulationStep(self, timeelapsed: float) -> bool:
         """Advance by ``timeelapsed`` [s] and return whether anything was done; ``env.StepSimulation`` calls this."""
@@ -401,7 +406,7 @@ class Module(Interface):
         return self._by_name
 
     def _help(self) -> str:
-        entries = {"help": "Lists the commands.", **{name: _purpose(one) for name, one in self._by_name.items()}}
+        entries = {"help": "List the commands.", **{name: _purpose(one) for name, one in self._by_name.items()}}
         return "\n".join(f"\n{name}\n{'~' * len(name)}\n\n{purpose}\n" for name, purpose in entries.items())
 
 

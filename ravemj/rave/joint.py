@@ -30,7 +30,7 @@ from ravemj.rave.member import Member
 
 
 class Joint(Member):
-    """A joint between two links; ``body.GetJoints()`` makes it."""
+    """Joint between two links; ``body.GetJoints()`` makes it."""
 
     _internal = ("renumber",)
 
@@ -41,11 +41,11 @@ class Joint(Member):
         return type_of(self._scene.kind)
 
     def GetJointIndex(self) -> int:
-        """Return the joint's position in ``body.GetJoints()``; -1 for a passive joint."""
+        """Return the joint's index in ``body.GetJoints()``; -1 for a passive joint."""
         return self._index if self.IsActive() else -1
 
     def GetDOFIndex(self) -> int:
-        """Return the joint's first position in the vectors of DOF values; -1 for a passive joint.
+        """Return the index of the joint's first DOF value; -1 for a passive joint.
 
         Example:
             >>> index = robot.GetJoint("Joint1").GetDOFIndex()
@@ -56,7 +56,7 @@ class Joint(Member):
         return sum(len(joint.axes) for joint in self._state.scene.joints[: self._index])
 
     def GetDOF(self) -> int:
-        """Return the joint's number of axes, also of a passive joint."""
+        """Return the joint's number of axes; passive joints have axes, too."""
         return len(self._scene.axes)
 
     def GetValues(self) -> Floats:
@@ -71,7 +71,7 @@ class Joint(Member):
         return float(self.GetValues()[axis])
 
     def GetVelocities(self) -> Floats:
-        """Return the joint's velocities [rad/s or m/s] that those of its links show, shape (axes,)."""
+        """Return the joint velocities [rad/s or m/s], computed from the link velocities, shape (axes,)."""
         with self._state.simulation.lock:
             velocities, dynamics = self._state.present_velocities, self._state.dynamics
             if self.IsActive():
@@ -79,7 +79,7 @@ class Joint(Member):
             return dynamics.joint_velocities(velocities, [self._scene])[0]
 
     def _own(self, values: Floats) -> Floats:
-        """Return the part of an active joint, shape (axes,), of what there is for each DOF, shape (dof,)."""
+        """Return this active joint's entries of a vector over all DOFs, shape (axes,)."""
         first = self._state.kinematics.first_dofs[self._index]
         return values[first : first + self.GetDOF()]
 
@@ -88,10 +88,10 @@ class Joint(Member):
         return float(self.GetVelocities()[axis])
 
     def AddTorque(self, torques: ArrayLike) -> bool:
-        """Let torques act on the joint during the next step of simulation time, with those before.
+        """Apply torques to the joint during the next simulation step, in addition to earlier ones.
 
         Args:
-            torques: For each of its axes [N m, for sliders N].
+            torques: A torque for each axis [N m; N for prismatic axes].
 
         Returns:
             Whether the environment has a physics engine that moves bodies.
@@ -99,16 +99,16 @@ class Joint(Member):
         return self._parent.GetEnv().GetPhysicsEngine().AddJointTorque(self, torques)
 
     def SubtractValue(self, value0: float, value1: float, axis: int = 0) -> float:
-        """Return the difference of two values: the way from the second to the first.
+        """Return the difference of two joint values.
 
         Args:
             value0: A value [rad or m].
             value1: The value to subtract.
-            axis: Which axis they are of.
+            axis: The index of the axis.
 
         Returns:
-            ``value0 - value1``; for a circular joint the shorter way round, from -pi to pi, but as in OpenRAVE not
-            where a static link carries it.
+            ``value0 - value1``; for a circular joint wrapped to [-pi, pi], except, as in OpenRAVE, if its parent link
+            is static.
         """
         difference = float(value0) - float(value1)
         in_turns = self._axis(axis).circular and subtracts_in_turns(self._state.scene, self._scene)
@@ -129,15 +129,15 @@ class Joint(Member):
         return np.array([self.SubtractValue(first, second, axis) for axis, (first, second) in enumerate(pairs)])
 
     def GetWrapOffset(self, axis: int = 0) -> float:
-        """Return the value about which ``SetWrapOffset`` chose the turn that the value of ``axis`` is in [rad]."""
+        """Return the reference value of ``SetWrapOffset`` for ``axis`` [rad]; values are within half a turn of it."""
         return self._axis(axis).wrap_offset
 
     def SetWrapOffset(self, offset: float, axis: int = 0) -> None:
-        """Count full turns so that the joint's value is at most half a turn from another value. Nothing moves.
+        """Shift the joint value by full turns to within half a turn of a reference value. The links do not move.
 
         Args:
-            offset: The other value [rad].
-            axis: Which axis.
+            offset: The reference value [rad].
+            axis: The index of the axis.
         """
         chosen = checked_number(offset, "SetWrapOffset: offset")
         changed = replace(self._axis(axis), wrap_offset=chosen)
@@ -152,39 +152,39 @@ class Joint(Member):
                 self._state.set_values(values, clamp_mimic=False)
 
     def IsActive(self) -> bool:
-        """Return whether the joint has DOFs of its own: it is enabled and follows no other."""
+        """Return whether the joint has its own DOFs: it is enabled and not a mimic joint."""
         return self._index < len(self._state.scene.joints)
 
     def IsRevolute(self, axis: int = 0) -> bool:
-        """Return whether an axis turns; as in OpenRAVE, a spherical joint has none that does."""
+        """Return whether an axis is revolute; as in OpenRAVE, a spherical joint has no revolute axis."""
         return 0 <= axis < len(self._scene.axes) and self._scene.kind != "spherical" and not self._scene.slides(axis)
 
     def IsPrismatic(self, axis: int = 0) -> bool:
-        """Return whether an axis slides."""
+        """Return whether an axis is prismatic."""
         return 0 <= axis < len(self._scene.axes) and self._scene.slides(axis)
 
     def IsCircular(self, axis: int = 0) -> bool:
-        """Return whether the joint turns about ``axis`` without end."""
+        """Return whether the joint rotates about ``axis`` without limits."""
         return self._axis(axis).circular
 
     def IsStatic(self) -> bool:
-        """Return whether the joint is a weld: its limits leave no room."""
-        return self._scene.static
+        """Return whether the limits leave the joint no room. If they did when the body was made, it is a weld."""
+        return not self._scene.has_room
 
     def IsMimic(self, axis: int = -1) -> bool:
-        """Return whether an axis follows other joints; -1 means any."""
+        """Return whether an axis mimics other joints; -1 means any axis."""
         return self._scene.mimic is not None and axis <= 0
 
     def GetMimicEquation(self, axis: int = 0, itype: int = 0, format: str = "") -> str:  # OpenRAVE's names
-        """Return the equation by which the joint follows others, as the file has it.
+        """Return the mimic equation of the joint, as in the file.
 
         Args:
-            axis: Which axis; only the first one can follow.
+            axis: The index of the axis; only the first one can mimic.
             itype: 0 the position, 1 the partial derivatives for velocities, 2 those for accelerations.
-            format: OpenRAVE's choice of notation; only the plain one is known here.
+            format: Notation of the equation; only the empty string is supported.
 
         Returns:
-            The equation, with the names of joints; empty for a joint that follows none.
+            The equation, with the names of joints; empty if the joint is not a mimic joint.
         """
         del format
         mimic = self._scene.mimic
@@ -193,7 +193,7 @@ class Joint(Member):
         return (mimic.position, mimic.velocity, mimic.acceleration)[itype]
 
     def GetMimicDOFIndices(self, axis: int = 0) -> Ints:
-        """Return the DOFs in the equation of ``axis``; as in OpenRAVE, not those of other followers in it."""
+        """Return the DOFs in the mimic equation of ``axis``; as in OpenRAVE, not those of other mimic joints in it."""
         mimic = self._scene.mimic
         if mimic is None or axis or mimic.expression is None:
             return np.array([], dtype=np.int_)
@@ -202,19 +202,20 @@ class Joint(Member):
         return np.array(sorted(dofs), dtype=np.int_)
 
     def SetMimicEquations(self, axis: int, poseq: str, veleq: str = "", acceleq: str = "") -> None:
-        """Change how the joint follows others. It stays where it is until joint values are next set.
+        """Set the mimic equations of the joint. Its value changes only when joint values are next set.
 
-        A joint that begins to follow others loses its DOF, and the DOFs behind it are numbered anew; one that ceases
-        to follow gets the last DOF. Active DOFs are then all of them again.
+        A joint that becomes a mimic joint loses its DOF, and later DOFs are renumbered; a joint that ceases to be one
+        gets the last DOF. All DOFs become active again.
 
         Args:
-            axis: Which axis; only the first one can follow.
-            poseq: The equation, with the names of joints, for instance ``2*lead + 0.1``; '' follows none.
-            veleq: The partial derivatives for velocities, kept for ``GetMimicEquation``; velocities are computed.
-            acceleq: Those for accelerations, kept too.
+            axis: The index of the axis; only the first one can mimic.
+            poseq: The equation, with the names of joints, for instance ``2*lead + 0.1``; '' ends the mimicry.
+            veleq: The partial derivatives for velocities, stored for ``GetMimicEquation`` only, since velocities are
+                computed from ``poseq``.
+            acceleq: The partial derivatives for accelerations, also only stored.
 
         Raises:
-            openrave_exception: the equation cannot be used, or is for a second axis. Nothing has changed then.
+            openrave_exception: the equation is invalid, or is for a second axis. Nothing changes then.
 
         Example:
             >>> body.GetJoint("finger2").SetMimicEquations(0, "-finger1")
@@ -228,15 +229,15 @@ class Joint(Member):
             self._parent.set_following(self._index, Equations(poseq, veleq, acceleq))
 
     def renumber(self, index: int) -> None:
-        """Take note of another index among the active joints followed by the passive ones."""
+        """Set the joint's new index in the list of active, then passive joints."""
         self._index = index
 
     def GetAnchor(self) -> Floats:
-        """Return a point on the axis in the world, as the links stand now [m], shape (3,)."""
+        """Return a point on the joint axis in the world for the present link poses [m], shape (3,)."""
         return self._T_world_parent() @ (*reported_anchor(self._scene), 1.0)
 
     def GetAxis(self, axis: int = 0) -> Floats:
-        """Return the direction of an axis in the world, as the links stand now, shape (3,).
+        """Return the direction of an axis in the world for the present link poses, shape (3,).
 
         The second axis of a ``Hinge2`` turns with the first.
         """
@@ -265,7 +266,7 @@ class Joint(Member):
         return np.array(rotate(conjugate(self._left().wxyz), self._axis(axis).direction))
 
     def GetInternalHierarchyLeftTransform(self) -> Floats:
-        """Return the joint's frame in the parent link: at the anchor; z of a hinge's is its axis, others are parallel.
+        """Return the joint frame in the parent link: z is a hinge's axis, other frames are parallel to the link.
 
         The child is at ``left @ motion @ right``, where ``motion`` turns about or slides along the axis by the joint's
         value.
@@ -301,14 +302,14 @@ class Joint(Member):
         self._state.edit_joint(self._index, parameters=parameters)
 
     def GetInfo(self) -> JointInfo:
-        """Return the description of the joint at its present value, a copy."""
+        """Return a copy of the description of the joint at its present value."""
         with self._state.simulation.lock:
             return JointInfo.of(self._state.scene, self._index, self._shown_values())
 
     UpdateAndGetInfo = GetInfo
 
     def _shown_values(self) -> list[float]:
-        """Return the values, also of a body that is in no world: what its links show."""
+        """Return the joint values; for a body outside of an environment, those of its link poses."""
         if self._state.index:
             return self.GetValues().tolist()
         parent, child = (pose_of(self._state.link_transform(i)) for i in (self._scene.parent, self._scene.child))
@@ -321,7 +322,7 @@ class Joint(Member):
         return joint_table(self)
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
-        """Print the table of the axes in IPython, where ``repr`` would name the joint alone."""
+        """Print the table of the axes in IPython; ``repr`` names only the joint."""
         from ravemj.rave.tables import joint_text, print_pretty  # noqa: PLC0415 - html is slow to import
 
         del cycle
@@ -345,19 +346,19 @@ class Joint(Member):
         return self._of_axes("lower"), self._of_axes("upper")
 
     def SetLimits(self, lower: ArrayLike, upper: ArrayLike) -> None:
-        """Set the limits; a joint outside them stays there until it is next set.
+        """Set the limits. A joint value outside them stays until it is next set.
 
         Args:
             lower: Lower limits [rad or m], shape (axes,).
             upper: Upper limits, shape (axes,).
 
         Raises:
-            ArgumentError: there are too few or too many. Nothing has changed then.
+            ArgumentError: the number of values is wrong. Nothing changes then.
         """
         self._set_axes("SetLimits", lower=lower, upper=upper)
 
     def GetVelocityLimits(self) -> tuple[Floats, Floats]:
-        """Return the lowest and the highest velocities [rad/s or m/s], each of shape (axes,)."""
+        """Return the minimum and maximum velocities [rad/s or m/s], each of shape (axes,)."""
         limits = self._of_axes("max_velocity")
         return -limits, limits
 
@@ -390,7 +391,7 @@ class Joint(Member):
         self._set_axes("SetHardVelocityLimits", hard_max_velocity=maxlimits)
 
     def GetHardAccelerationLimits(self) -> Floats:
-        """Return the accelerations never to exceed [rad/s^2 or m/s^2], shape (axes,); 0 if none is set."""
+        """Return the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (axes,); 0 if none is set."""
         return self._of_axes("hard_max_acceleration")
 
     def SetHardAccelerationLimits(self, maxlimits: ArrayLike) -> None:
@@ -406,7 +407,7 @@ class Joint(Member):
         self._set_axes("SetHardJerkLimits", hard_max_jerk=maxlimits)
 
     def GetTorqueLimits(self) -> Floats:
-        """Return the torque or force limits [N m or N], shape (axes,); 0 where the file says nothing."""
+        """Return the torque or force limits [N m or N], shape (axes,); 0 if the file has none."""
         return self._of_axes("max_torque")
 
     def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:
@@ -438,7 +439,7 @@ class Joint(Member):
         return self._axis(axis).hard_max_jerk
 
     def GetMaxTorque(self, axis: int = 0) -> float:
-        """Return the torque or force limit of ``axis`` [N m or N]; 0 where the file says nothing."""
+        """Return the torque or force limit of ``axis`` [N m or N]; 0 if the file has none."""
         return self._axis(axis).max_torque
 
     def GetWeights(self) -> Floats:
@@ -456,23 +457,23 @@ class Joint(Member):
         self._set_axes("SetWeights", weight=weights)
 
     def GetResolutions(self) -> Floats:
-        """Return the steps of planners [rad or m], shape (axes,)."""
+        """Return the step sizes of planners [rad or m], shape (axes,)."""
         return self._of_axes("resolution")
 
     def GetResolution(self, axis: int) -> float:
-        """Return the step of planners along ``axis`` [rad or m]."""
+        """Return the step size of planners along ``axis`` [rad or m]."""
         return self._axis(axis).resolution
 
     def SetResolution(self, resolution: float) -> None:
-        """Set the step of planners, the same for all axes.
+        """Set the step size of planners, the same for all axes.
 
         Args:
-            resolution: Step [rad or m]; planners take one of their own where it is not positive.
+            resolution: Step [rad or m]; if it is not positive, planners use their default.
         """
         self._set_axes("SetResolution", resolution=[resolution] * len(self._scene.axes))
 
     def _axis(self, axis: int) -> scene.Axis:
-        """Return one axis of the joint.
+        """Return one axis.
 
         Raises:
             IndexError: the joint has no such axis.
@@ -484,7 +485,7 @@ class Joint(Member):
         return np.array([getattr(axis, field) for axis in self._scene.axes], dtype=np.float64)
 
     def _set_axes(self, caller: str, **fields: ArrayLike) -> None:
-        """Set one or more fields of the axes, all or nothing."""
+        """Set fields of the axes; on an error, none is changed."""
         axes = list(self._scene.axes)
         for field, values in fields.items():
             numbers = checked_numbers(values, f"{caller}: values")

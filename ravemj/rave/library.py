@@ -1,4 +1,4 @@
-"""The library as a whole: starting and ending it, its folders and plugins."""
+"""Initialization of the library, its folders and plugins."""
 
 import logging
 import os
@@ -15,39 +15,39 @@ _PLUGINS = """
     basecontrollers basesamplers basesensors bulletrave configurationcache fclrave grasper ikfastsolvers logging oderave
     or_urdf pqprave qtcoinrave qtosgrave rmanipulation rplanners
 """
-"""Plugins with a counterpart here, those of OpenRAVE and or_urdf: what they provide is there from the start."""
+"""OpenRAVE's and or_urdf's plugins whose features ravemj includes."""
 
 
 def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) -> int:
-    """Make the folder of ``RaveGetHomeDirectory()``, and set the level of the log; importing has done the rest.
+    """Create the folder of ``RaveGetHomeDirectory()`` and set the log level; importing has initialized everything else.
 
-    Where the folder cannot be made, a warning is logged.
+    If the folder cannot be created, a warning is logged.
 
     Args:
-        load_all_plugins: For OpenRAVE; there are no plugins.
+        load_all_plugins: Not used; there are no plugins.
         level: As of ``RaveSetDebugLevel``.
 
     Returns:
-        0, which stands for success.
+        0 for success.
     """
     del load_all_plugins
     logs.RaveSetDebugLevel(level)
     try:
         os.makedirs(RaveGetHomeDirectory(), exist_ok=True)
-    except (OSError, RuntimeError) as error:  # Path.home raises the latter where nobody is at home
+    except (OSError, RuntimeError) as error:  # Path.home raises RuntimeError if the user has no home folder
         _LOG.warning("RaveInitialize: the folder of OPENRAVE_HOME cannot be made: %s", error)
     return 0
 
 
 def RaveLoadPlugin(filename: str) -> bool:
-    """Say whether what a plugin of OpenRAVE provides is there; native plugins cannot be loaded.
+    """Return whether ravemj provides the features of an OpenRAVE plugin; native plugins cannot be loaded.
 
     Args:
         filename: Name of the plugin, or its file.
 
     Returns:
-        True for or_urdf and for the plugins that come with OpenRAVE, whose interfaces are part of ravemj as far as it
-        has them. False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
+        True for or_urdf and for the plugins that come with OpenRAVE, whose interfaces are built into ravemj, if
+        supported. False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
     """
     if Path(filename).name.split(".")[0].removeprefix("lib") in _PLUGINS.split():
         return True
@@ -60,12 +60,12 @@ def RaveReloadPlugins() -> None:
 
 
 def RaveGetPluginInfo() -> list[tuple[str, object]]:
-    """Return the plugins, of which there are none."""
+    """Return an empty list, since there are no plugins."""
     return []
 
 
 def RaveGetHomeDirectory() -> str:
-    """Return the folder for what is kept between runs: ``OPENRAVE_HOME``, or ``.openrave`` at home."""
+    """Return the folder for persistent data: ``OPENRAVE_HOME``, or ``.openrave`` in the home folder."""
     return os.environ.get("OPENRAVE_HOME") or str(Path.home() / ".openrave")
 
 
@@ -74,7 +74,7 @@ def RaveFindDatabaseFile(filename: str, bRead: bool = True) -> str:
 
     Args:
         filename: Path relative to one of these folders.
-        bRead: True: the file must be there. False: a path to write it to, in the first folder.
+        bRead: True finds an existing file. False returns a path for writing, in the first folder.
 
     Returns:
         The path, or an empty text.
@@ -88,27 +88,27 @@ _data_access = 0
 
 
 def RaveSetDataAccess(accessoptions: int) -> None:
-    """Choose where ``RaveFindLocalFile`` looks. Files that are loaded are not restricted.
+    """Set the folders that ``RaveFindLocalFile`` searches. Loading of files is not restricted.
 
     Args:
-        accessoptions: 0: everywhere. 1: only in the folders of ``OPENRAVE_DATA``.
+        accessoptions: 0 searches everywhere; 1 searches only the folders of ``OPENRAVE_DATA``.
     """
     global _data_access  # noqa: PLW0603 - OpenRAVE's function sets it for the process
     _data_access = int(accessoptions)
 
 
 def RaveGetDataAccess() -> int:
-    """Return what ``RaveSetDataAccess`` chose; 0 from the start."""
+    """Return the value of ``RaveSetDataAccess``; 0 by default."""
     return _data_access
 
 
 def RaveInvertFileLookup(filename: str) -> str:
-    """Return the path of ``filename`` relative to the folder of ``OPENRAVE_DATA`` that it is in; empty: in none."""
+    """Return the path of ``filename`` relative to its folder of ``OPENRAVE_DATA``; empty if it is in none."""
     return name_in_data_folders(filename)
 
 
 def RaveGetDefaultViewerType() -> str:
-    """Return the viewer of ``env.SetDefaultViewer``: what ``OPENRAVE_DEFAULT_VIEWER`` says, else ``qtcoin``."""
+    """Return the viewer of ``env.SetDefaultViewer``: the value of ``OPENRAVE_DEFAULT_VIEWER``, else ``qtcoin``."""
     return os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin"
 
 
@@ -128,11 +128,11 @@ def GetMilliTime() -> int:
 
 
 def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
-    """Return the path of a file in a folder, else in the working folder or those of ``OPENRAVE_DATA``.
+    """Search a file in a folder, then in the working folder and those of ``OPENRAVE_DATA``; return its path.
 
     Args:
         filename: A path, relative to the folder or to one of ``OPENRAVE_DATA``.
-        curdir: The folder to look in first.
+        curdir: The folder to search first.
 
     Returns:
         The absolute path, or an empty text.

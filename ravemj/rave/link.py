@@ -24,7 +24,7 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 
 class Link(Member):
-    """A link: one rigid part of a body. ``body.GetLinks()`` returns the links."""
+    """Rigid link of a body; ``body.GetLinks()`` returns the links."""
 
     _often_called = ("SetTransform",)
 
@@ -37,7 +37,7 @@ class Link(Member):
     LinkInfo = LinkInfo
 
     def GetIndex(self) -> int:
-        """Return the link's position in ``body.GetLinks()``."""
+        """Return the link's index in ``body.GetLinks()``."""
         return self._index
 
     def GetTransform(self) -> Floats:
@@ -125,7 +125,7 @@ class Link(Member):
         return self._scene.inertial
 
     def _answer(self, value: ArrayLike) -> Floats:
-        """Return a mass, a centre or an inertia; NaN where OpenRAVE's formulas give no number."""
+        """Return a mass, centre or inertia; NaN if OpenRAVE's formulas are undefined."""
         return np.where(self._inertial.undefined, np.nan, value)
 
     def GetMass(self) -> float:
@@ -353,7 +353,7 @@ class Link(Member):
         self._set_geometries(shapes)
 
     def scene_with_group(self, name: str) -> scene.Link:
-        """Return the link with the geometries of a group in place of its own."""
+        """Return the link with the geometries of a group instead of its own."""
         return replace(self._scene, geometries=self._group(name))
 
     @property

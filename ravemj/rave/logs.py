@@ -22,7 +22,7 @@ _level = int(DebugLevel.Info)
 
 
 def RaveSetDebugLevel(level: int) -> None:
-    """Set the level from which messages are logged, those of ``RaveLogInfo`` and its like and those of ravemj.
+    """Set the log level for ``RaveLogInfo`` and similar functions, and for ravemj's own messages.
 
     Args:
         level: A ``DebugLevel``, or its number. The flag ``VerifyPlans`` is stored and has no effect.
@@ -37,7 +37,7 @@ def RaveSetDebugLevel(level: int) -> None:
 
 
 def RaveGetDebugLevel() -> int:
-    """Return the number that ``RaveSetDebugLevel`` set; from the start that of ``DebugLevel.Info``."""
+    """Return the level of ``RaveSetDebugLevel``; ``DebugLevel.Info`` by default."""
     return _level
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers, checked_whole_numbers
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ErrorCode, RavemjError
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Member(ApiObject):
-    """A link or joint of a body. Two objects are equal if they stand for the same link or joint of the same body."""
+    """Base of links and joints. Two objects are equal if they refer to the same link or joint of the same body."""
 
     _often_called = ("__init__",)
 
@@ -37,7 +37,7 @@ class Member(ApiObject):
         """The current description in the scene."""
 
     def _gone(self, kind: str) -> RavemjError:
-        """Return the error for a link or joint that the body no longer has, since it was initialized again."""
+        """Return the error for a link or joint that no longer exists, since the body was initialized again."""
         return RavemjError(f"'{self._parent.GetName()}' has no {kind} {self._index} any more", ErrorCode.InvalidState)
 
     @abstractmethod
@@ -94,7 +94,7 @@ class Member(ApiObject):
             key: The name.
             parameters: The integers; [] removes them.
         """
-        numbers = checked_numbers(parameters, "SetIntParameters").ravel().astype(np.int_)
+        numbers = checked_whole_numbers(parameters, "SetIntParameters: parameters")
         self._set_parameter("integers", key, tuple(numbers.tolist()))
 
     def GetStringParameters(self, name: str | None = None) -> dict[str, str] | str | None:
@@ -131,7 +131,7 @@ class Member(ApiObject):
 
 
 def _chosen(arrays: dict[str, Any], name: str | None, index: int) -> Any:  # noqa: ANN401 - floats or integers
-    """Return all arrays, that of a name or None, or one number of it."""
+    """Return all arrays, the array of a name, or one of its elements; None for an unknown name."""
     if name is None:
         return arrays
     found = arrays.get(name)

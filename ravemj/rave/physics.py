@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 _WITHOUT_DYNAMICS = "genericphysicsengine"
 _WITH_DYNAMICS = ("ode", "bullet", "mujoco")
 _LONGEST = 86400
-"""The longest time step [s]: a day takes MuJoCo minutes, and what is longer is a mistake."""
+"""Longest accepted time step [s]; a day takes MuJoCo minutes, and more is surely a mistake."""
 
 
 class PhysicsEngine(Interface):
-    """A physics engine: it has gravity and advances bodies in time. ``env.GetPhysicsEngine()`` returns it.
+    """Physics engine: gravity and the dynamics of bodies; ``env.GetPhysicsEngine()`` returns it.
 
     With OpenRAVE's ``GenericPhysicsEngine``, which every environment has from the start, bodies stay in place, and
     forces have no effect. The other engines of ``RaveCreatePhysicsEngine`` simulate with MuJoCo: masses, joints,
@@ -45,7 +45,7 @@ class PhysicsEngine(Interface):
     _interface_type = InterfaceType.physicsengine
     _internal = ("attach", "detach", "dynamics", "loads")
     dynamics: "Physics | None" = None
-    """The simulation of the dynamics; None where nothing is simulated."""
+    """Simulated dynamics; None for an engine without simulation."""
 
     def __init__(self, env: "Environment", xmlid: str, gravity: Vec3 = ZERO) -> None:
         super().__init__(env, xmlid)
@@ -104,7 +104,7 @@ class PhysicsEngine(Interface):
         return True
 
     def GetPhysicsOptions(self) -> PhysicsEngineOptions:
-        """Return which collisions the simulation handles."""
+        """Return the options, which select the collisions that the simulation handles."""
         return PhysicsEngineOptions(int(self.dynamics is not None and self.dynamics.self_collisions))
 
     def SimulateStep(self, timestep: float) -> None:
@@ -254,18 +254,18 @@ class PhysicsEngine(Interface):
         return loads is not None
 
     def attach(self) -> None:
-        """Become the engine of the environment."""
+        """Register as the engine of the environment."""
         self._is_attached = True
         self._env.simulation.set_gravity(self._gravity)
         self._env.simulation.physics = self.dynamics
 
     def detach(self) -> None:
-        """Stop being the engine of the environment."""
+        """End the use as the engine of the environment."""
         self._gravity = self._env.simulation.gravity
         self._is_attached = False
 
     def loads(self, state: BodyState) -> "Loads | None":
-        """Return the loads on a body in the next step, which callers change; None without simulated dynamics."""
+        """Return the mutable loads on a body for the next step; None without simulated dynamics."""
         return None if self.dynamics is None else self.dynamics.loads(state)
 
     def __repr__(self) -> str:
@@ -275,7 +275,7 @@ class PhysicsEngine(Interface):
 
 
 def RaveCreatePhysicsEngine(env: "Environment", name: str) -> PhysicsEngine | None:
-    """Make a physics engine; ``env.SetPhysicsEngine`` puts it to use.
+    """Make a physics engine; ``env.SetPhysicsEngine`` activates it.
 
     Args:
         env: The environment.

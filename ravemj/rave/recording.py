@@ -1,4 +1,4 @@
-"""Videos and pages of a robot that follows a motion."""
+"""Videos and interactive pages of a robot that follows a motion."""
 
 import math
 import os
@@ -18,6 +18,7 @@ from ravemj.graphics.rendering.style import AS_USUAL, Look, LookChoices
 from ravemj.graphics.shown_path import ShownPath
 from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
+from ravemj.graphics.webgl.sliders import mechanism
 from ravemj.trajectories.body_motion import BodyMotion
 from ravemj.trajectories.motion_arguments import MotionLike, body_motion
 
@@ -26,11 +27,11 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-_POSES_FOR_THE_VIEW = 17  # configurations along a motion that the camera has to see: enough for full turns of a joint
+_POSES_FOR_THE_VIEW = 17  # number of configurations that the camera has to see: enough for full turns of a joint
 
 
 class Shot(NamedTuple):
-    """The settings of a video: camera, look, size and quality of the frames, and frames per second."""
+    """Settings of a video: camera, appearance, size and quality of the frames, and frame rate."""
 
     camera: Camera
     look: Look
@@ -73,7 +74,7 @@ def record(  # noqa: PLR0913 - keyword arguments
         background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else a gradient.
         shadows: Whether lights cast shadows; None: if OpenGL draws with a graphics card, as they take most of the time
             without one.
-        floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto``: one where neither script nor
+        floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto`` draws one if neither script nor
             file sets a background.
         lights: ``studio``, ``model`` (the model's own lights) or ``both``.
         on_frame: Called with the number of frames drawn so far.
@@ -106,7 +107,7 @@ def record(  # noqa: PLR0913 - keyword arguments
 
 
 def followed_motion(env: "Environment", motion: MotionLike, robot: "KinBody | None" = None) -> BodyMotion:
-    """Return how the bodies move; a warning names each joint that stops at a limit. ``record`` has the arguments."""
+    """Return the motion of the bodies, with a warning for each joint that stops at a limit; see ``record``."""
     with env:
         followed = body_motion(env.simulation, motion, None if robot is None else robot.simulation_state)
         for body, rows in zip(followed.bodies, followed.rows, strict=True):
@@ -151,12 +152,12 @@ def camera_for_motion(env: "Environment", motion: BodyMotion, aspect: float) -> 
 
 
 def lowest_of_motion(env: "Environment", motion: BodyMotion) -> float:
-    """Return the least z [m] of what is drawn along a motion, so that the floor stands still."""
+    """Return the lowest z [m] of all visible geometry during a motion, for a floor that stays in place."""
     return min(env.renderer.lowest_point() for _ in _along(motion))
 
 
 def _along(motion: BodyMotion) -> Iterator[None]:
-    """Place the bodies at some configurations along a motion, one after the other, and then where they were."""
+    """Set the bodies to some configurations along a motion, one per iteration; restore them at the end."""
     before = [(body, body.pose(), body.kinematics.values()) for body in motion.bodies]
     for time in np.linspace(0.0, motion.duration, _POSES_FOR_THE_VIEW):
         motion.place(float(time))
@@ -167,12 +168,12 @@ def _along(motion: BodyMotion) -> Iterator[None]:
 
 
 _ASPECT = 4 / 3
-"""Width of a picture divided by its height for which the first view is chosen; the page has any."""
+"""Aspect ratio for which the initial camera is chosen; pages can have any."""
 
 _LOWEST_FPS, _HIGHEST_FPS = 0.01, 1000
 
 
-def animate(
+def animate(  # noqa: PLR0913 - those of ``Environment.animation``
     env: "Environment",
     motion: MotionLike | None,
     robot: "KinBody | None" = None,
@@ -180,8 +181,10 @@ def animate(
     camera: ArrayLike | None = None,
     background: ArrayLike | None = None,
     choices: LookChoices = AS_USUAL,
+    *,
+    notes: Sequence[str] = (),
 ) -> Animation:
-    """Return the page of a motion; ``Environment.animation`` says what the arguments are."""
+    """Return the interactive page of a motion; arguments as for ``Environment.animation``."""
     if not _LOWEST_FPS <= fps <= _HIGHEST_FPS:  # NaN is refused, too
         raise ArgumentError(f"expected from {_LOWEST_FPS} to {_HIGHEST_FPS} frames a second, found {fps}")
     with env:
@@ -198,13 +201,17 @@ def animate(
         recording = _recorded(env, shown, followed, fps)
         title = ", ".join(body.scene.name for body in shown) or "ravemj"
         look = replace(env.look(background, choices), lowest=lowest)
-        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, look, title, choices.shadows)
+        appearance = Appearance(view, 1.0 if is_fitted else _ASPECT, look, title, choices.shadows, tuple(notes))
         compiled, drawings = env.simulation.compiled(), env.simulation.drawings.primitives()
-        return Animation(animation_page(compiled.model, compiled.data, recording, appearance, drawings))
+        moved = None
+        if followed is None:
+            bodies = [body for body in env.simulation.bodies if body.scene.joints] if robot is None else shown
+            moved = mechanism(compiled, bodies)
+        return Animation(animation_page(compiled.model, compiled.data, recording, appearance, drawings, moved))
 
 
 def _recorded(env: "Environment", bodies: Sequence[BodyState], motion: BodyMotion | None, fps: float) -> Recording:
-    """Move the bodies as the motion says, and return where everything was."""
+    """Play a motion, and return the recorded poses of all geoms."""
     rows: list[tuple[Floats, Floats, Floats]] = []
     for time in [0.0] if motion is None else motion.frame_times(fps):
         if motion is not None:

@@ -1,18 +1,20 @@
-"""OpenRAVE's functions that make bodies and trajectories."""
+"""OpenRAVE's factory functions of bodies, trajectories and viewers."""
 
+import logging
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, UnsupportedError
+from ravemj.geometry_functions.ik_types import GOAL_TYPES
 from ravemj.model.scene import KinBody as SceneBody
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.collision import RaveCreateCollisionChecker
 from ravemj.rave.controllers import RaveCreateController
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
-from ravemj.rave.iksolver import RaveCreateIkSolver
+from ravemj.rave.iksolver import IkSolver
 from ravemj.rave.interface import Interface, asked_for
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import MODULES, RaveCreateModule
@@ -22,18 +24,21 @@ from ravemj.rave.planning.names import PLANNERS
 from ravemj.rave.robot import Robot
 from ravemj.rave.samplers import SAMPLERS, RaveCreateSpaceSampler
 from ravemj.rave.sensors import KIND_NAMES, RaveCreateSensor
+from ravemj.rave.solver_names import numbers_in
 from ravemj.rave.trajectory import KIND, Trajectory
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
 
+_LOG = logging.getLogger("ravemj")
+
 
 def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
-    """Make a body without links; ``InitFromBoxes`` and the like fill it, ``env.Add`` adds it.
+    """Make a body without links; ``InitFromBoxes`` and similar methods fill it, ``env.Add`` adds it.
 
     Args:
-        env: The environment that it is for.
-        name: OpenRAVE's name of the kind of body, which is empty.
+        env: The environment of the body.
+        name: OpenRAVE's type of body; only the empty string is known.
 
     Returns:
         The body; None for an unknown kind.
@@ -48,18 +53,50 @@ def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
     return None if asked_for(env, name, "RaveCreateKinBody")[0] else _empty(env, is_robot=False)
 
 
+def RaveCreateIkSolver(env: Environment, name: str) -> IkSolver | None:
+    """Make a solver of inverse kinematics; ``manip.SetIkSolver`` gives it an arm.
+
+    Args:
+        env: The environment.
+        name: ``ikfast`` and a word in which the type of goal stands, as ``InverseKinematicsModel.getikname`` returns
+            it; what follows are the steps of free joints [rad or m]. ``ikfast Transform6D 0.05``
+
+    Returns:
+        The solver; None, and a warning is logged, where the name says no type of goal.
+
+    Raises:
+        UnsupportedError: no solver answers goals of that type.
+
+    Example:
+        >>> solver = RaveCreateIkSolver(env, "ikfast Translation3D")
+        >>> manip.SetIkSolver(solver)
+        True
+    """
+    words = asked_for(env, name, "RaveCreateIkSolver")
+    if len(words) > 1 and words[0].lower() == "ikfast":
+        kind = next((one for one in GOAL_TYPES if one.name in words[1].split(".")), None)
+        steps = numbers_in(words[2:])
+        if kind is not None and steps is not None:
+            return IkSolver(env, name, kind, steps=steps or None)
+    _LOG.warning("there is no solver '%s': its name should be 'ikfast' and a type of goal, then steps", name)
+    return None
+
+
 def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
     """Make a robot without links; see ``RaveCreateKinBody``.
 
     Args:
-        env: The environment that it is for.
-        name: OpenRAVE's name of the kind of robot: empty or ``GenericRobot``.
+        env: The environment of the robot.
+        name: OpenRAVE's type of robot: empty or ``GenericRobot``; ``CollisionMapRobot`` makes a plain robot and logs a
+            warning.
 
     Returns:
         The robot; None for an unknown kind.
     """
     kind = asked_for(env, name, "RaveCreateRobot")[0].lower()
-    robot = _empty(env, is_robot=True) if kind in {"", "genericrobot"} else None
+    if kind == "collisionmaprobot":
+        _LOG.warning("RaveCreateRobot: '%s' is a plain robot here, without maps of collisions", name)
+    robot = _empty(env, is_robot=True) if kind in {"", "genericrobot", "collisionmaprobot"} else None
     return robot if isinstance(robot, Robot) else None
 
 
@@ -73,10 +110,10 @@ def RaveCreateTrajectory(env: Environment, name: str = "") -> Trajectory | None:
 
     Args:
         env: The environment with the robots that the trajectory may refer to.
-        name: ``GenericTrajectory``, the only type, in any letter case; empty: that one.
+        name: ``GenericTrajectory``, the only type, in any letter case, or empty.
 
     Returns:
-        The trajectory, or None where there is no such type.
+        The trajectory, or None for an unknown type.
 
     Example:
         >>> trajectory = RaveCreateTrajectory(env, "")
@@ -90,7 +127,7 @@ SENSOR_SYSTEMS = "sensor systems"
 
 
 class PluginInfo(ApiObject):
-    """A plugin of OpenRAVE; ravemj has none.
+    """Description of an OpenRAVE plugin; ravemj has none.
 
     Attributes:
         interfacenames: The kind and the name of each interface that the plugin makes.
@@ -102,7 +139,7 @@ class PluginInfo(ApiObject):
 
 
 class SensorSystem(Interface):
-    """A source of measured poses for bodies; ravemj has none."""
+    """Source of measured body poses; ravemj has none."""
 
     _interface_type = InterfaceType.sensorsystem
 
@@ -111,24 +148,24 @@ class SensorSystem(Interface):
 
 
 class ManageData(ApiObject):
-    """The data of a sensor system about a body. ravemj has none, so ``body.GetManageData()`` is None."""
+    """Data of a sensor system about a body. ravemj has none, so ``body.GetManageData()`` is None."""
 
     def __init__(self, *args: object, **kwargs: object) -> None:
         raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
 
     def GetSystem(self) -> NoReturn:
-        """Refuse to return anything, since there is no sensor system."""
+        """Return nothing: raise an error, since there is no sensor system."""
         raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
 
     GetData = GetOffsetLink = IsPresent = IsEnabled = IsLocked = GetSystem
 
     def Lock(self, dolock: bool) -> NoReturn:
-        """Refuse to return anything, since there is no sensor system; ``dolock`` is not used."""
+        """Return nothing: raise an error, since there is no sensor system; ``dolock`` is not used."""
         raise UnsupportedError("ManageData.Lock", SENSOR_SYSTEMS)
 
 
 def RaveCreateSensorSystem(env: Environment, name: str) -> None:
-    """Refuse to make a sensor system.
+    """Return nothing: raise an error, since sensor systems are not supported.
 
     Args:
         env: The environment.
@@ -175,20 +212,20 @@ _MAKERS: dict[InterfaceType, tuple[Callable[["Environment", str], object], Seque
     InterfaceType.trajectory: (RaveCreateTrajectory, ("GenericTrajectory",)),
     InterfaceType.viewer: (RaveCreateViewer, ()),
 }
-"""The function that makes each kind of interface, and the names that it knows; viewers are asked for theirs."""
+"""Factory and known names of each interface type; the names of viewers are queried."""
 
 
 def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
-    """Return the names that the ``RaveCreate…`` function of each kind of interface knows."""
+    """Return the names that the ``RaveCreate…`` function of each interface type knows."""
     names = {kind: list(known) for kind, (_, known) in _MAKERS.items()}
     return {kind: names.get(kind, []) for kind in InterfaceType} | {InterfaceType.viewer: _viewer_names()}
 
 
 def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's names of the arguments
-    """Return whether ``RaveCreateInterface`` makes something of a kind and name.
+    """Return whether ``RaveCreateInterface`` supports a type and name.
 
     Args:
-        type: The kind.
+        type: The interface type.
         name: The name; letter case does not matter.
     """
     known = RaveGetLoadedInterfaces()[InterfaceType(type)]
@@ -196,12 +233,12 @@ def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's name
 
 
 def RaveCreateInterface(env: Environment, type: InterfaceType, name: str) -> Any:  # noqa: ANN401 - of any kind
-    """Make an object of any kind: a body, a controller, a trajectory, ...
+    """Make an object of an interface type: a body, a controller, a trajectory, ...
 
     Args:
         env: The environment.
-        type: The kind.
-        name: The name, as the ``RaveCreate…`` function of that kind takes it.
+        type: The interface type.
+        name: The name, the argument of the type's ``RaveCreate…`` function.
 
     Returns:
         The object; None for an unknown name.
@@ -223,7 +260,7 @@ def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: Environment | N
         cloneenv: The environment of the copy; by default that of ``ref``.
 
     Raises:
-        openrave_exception: no function makes an interface of this kind and name.
+        openrave_exception: interfaces of this type and name cannot be made.
 
     Example:
         >>> copy = ravemj.RaveClone(robot, 0)

@@ -19,7 +19,7 @@ FAR = 1e20
 
 @dataclass(slots=True)
 class Contact:
-    """A point where two geometries overlap, or where a ray hits a geometry.
+    """Contact point of two geometries, or hit of a ray.
 
     Attributes:
         pos: The point in the world [m], shape (3,).
@@ -34,18 +34,18 @@ class Contact:
 
 
 class Part(NamedTuple):
-    """One of two colliding geometries, as objects of the API."""
+    """One geometry of a colliding pair, as API objects."""
 
     link: "Link"
     geometry: "Geometry"
 
     def names(self) -> tuple[str, str, str]:
-        """Return the names of body, link and geometry."""
+        """Return the names of the body, the link and the geometry."""
         return self.link.GetParent().GetName(), self.link.GetName(), self.geometry.GetName()
 
 
 class CollisionPairInfo(ApiObject):
-    """Two links that collide, the two nearest links, or a link that a ray hits.
+    """Two colliding links, the two nearest links, or a link that a ray hits.
 
     Attributes:
         contacts: The contact points, a list of ``Contact``.

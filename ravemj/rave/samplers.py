@@ -78,7 +78,7 @@ class SpaceSampler(Interface):
 
     @also_named(seed="type")
     def GetLimits(self, type: SampleDataType) -> tuple[Floats, Floats]:
-        """Return the smallest and the greatest values of ``type``, a ``SampleDataType``, shape (dof,) each."""
+        """Return the minima and maxima of numbers of ``type``, a ``SampleDataType``, shape (dof,) each."""
         self._check(type, "GetLimits")
         return self._sequence.limits()
 
@@ -125,7 +125,7 @@ class SpaceSampler(Interface):
         return float(self._one(SampleDataType.Real, interval))
 
     def SampleSequenceOneUInt32(self) -> int:
-        """Return the next integer of a one-dimensional sequence, as ``SampleSequenceOneReal`` does a real number."""
+        """Return the next integer of a one-dimensional sequence; see ``SampleSequenceOneReal``."""
         return int(self._one(SampleDataType.Uint32, Interval.Closed))
 
     def _one(self, type: SampleDataType, interval: int) -> float:
@@ -135,7 +135,7 @@ class SpaceSampler(Interface):
         return self.SampleSequence(type, 1, interval)[0]
 
     def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
-        """Raise an error: no sampler of OpenRAVE returns points, shape (num, dof), that cover its space completely.
+        """Return no points, shape (num, dof), but raise an error: no sampler covers its space completely.
 
         Args:
             type: The kind of numbers, a ``SampleDataType``.
@@ -156,7 +156,7 @@ class SpaceSampler(Interface):
 
 
 class _Random:
-    """Independent, uniformly distributed random points."""
+    """Independent, uniformly distributed samples."""
 
     kinds = frozenset(SampleDataType)
     """The kinds of numbers."""
@@ -166,19 +166,16 @@ class _Random:
         self._dof = 1
 
     def dof(self) -> int:
-        """Return the number of dimensions."""
         return self._dof
 
     def set_dof(self, dof: int) -> None:
-        """Set the number of dimensions."""
         self._dof = dof
 
     def limits(self) -> tuple[Floats, Floats]:
-        """Return the smallest and the greatest real numbers, shape (dof,) each."""
+        """Return the minima and maxima of real numbers, shape (dof,) each."""
         return np.zeros(self._dof), np.ones(self._dof)
 
     def start(self, seed: int) -> None:
-        """Restart the sequence with a seed."""
         self._generator = np.random.Generator(np.random.MT19937(seed))
 
     def reals(self, count: int) -> Floats:
@@ -192,7 +189,7 @@ class _Random:
 
 
 class _Halton(_Random):
-    """Halton's low-discrepancy sequence in the bases 2, 3, 5, ...: the same, evenly spread points every time."""
+    """Halton's low-discrepancy sequence in the bases 2, 3, 5, ...: deterministic and evenly spread."""
 
     kinds = frozenset({SampleDataType.Real})
     _next = 0

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 class DescribedSensor(Interface):
-    """A sensor as the scene describes it, on a robot or by itself.
+    """Sensor with its description in the scene, on a robot or without one.
 
     Attributes:
         attached: The attached sensor of a robot that it belongs to, or None.
@@ -83,16 +83,16 @@ class DescribedSensor(Interface):
             self.attached.edit(**changes)
 
     def _moved(self) -> None:
-        """React to a new pose of a sensor without a robot."""
+        """Handle a new pose of a sensor without a robot."""
 
     def _take_over(self) -> None:
-        """Restart with other constant properties."""
+        """Restart after a change of the constant properties."""
 
     def take_state(self, other: "DescribedSensor") -> None:
         """Copy the state of another sensor of the same kind."""
 
     def _problem(self) -> str | None:
-        """Return why the sensor cannot measure, or None."""
+        """Return the reason why the sensor cannot measure, or None."""
         description, device = self.description, self.device
         if self.attached is not None and description.link is None:
             return "it is attached to no link"
@@ -123,7 +123,7 @@ class DescribedSensor(Interface):
             raise RavemjError(f"{caller}: '{self.GetName()}' is on a robot: {reason}", ErrorCode.InvalidState)
 
     def GetXMLId(self) -> str:
-        """Return OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``."""
+        """Return OpenRAVE's name of the sensor type, for instance ``BaseCamera``."""
         return self.description.type or ""
 
     def GetTransform(self) -> Floats:
@@ -194,7 +194,7 @@ class DescribedSensor(Interface):
     def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
         """Return the constant properties of the sensor.
 
-        None if it has none of the kind ``type``, which by default is its own.
+        None if the sensor does not have the type ``type``; by default its own.
         """
         device = self.description.device
         geometry = None if device is None else geometry_of(device)
@@ -237,15 +237,15 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
         SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
     }
 )
-"""The devices whose measurements, and whose geometry, viewers can draw."""
+"""Devices whose measurements and whose geometry viewers can draw."""
 
 _OFF = 1
-"""The number of an "off" command is that of its "on" command plus this."""
+"""Offset from the number of an "on" command to that of its "off" command."""
 
-_SWITCH_BITS = 0x30  # the bits of a command's number that say what it switches
+_SWITCH_BITS = 0x30  # the bits of a command's number that select what it switches
 
 _SLACK = 1e-9
-"""How much too early a measurement may be taken [s]: the sum of many time steps has rounding errors."""
+"""Tolerance of the measurement time [s], for rounding errors in the sum of many time steps."""
 
 
 class Sensor(DescribedSensor):
@@ -502,7 +502,7 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw the geometry of the sensor if that is on; ``anew``: it may have changed since it was drawn."""
+        """Draw the sensor geometry if that is on; ``anew`` redraws it after a possible change."""
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
         device = self.device

@@ -1,4 +1,4 @@
-"""Specifications of configurations: the groups of numbers, how they are read, written and converted."""
+"""Configuration specifications: groups of values, their access and conversion."""
 
 from collections.abc import MutableSequence, Sequence
 from typing import TYPE_CHECKING, Any, Self
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.core.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers, checked_whole_numbers
 from ravemj.core.transforms import Floats, Ints, Pose
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
@@ -26,23 +26,23 @@ if TYPE_CHECKING:
 
 
 class ConfigurationData(ApiObject):
-    """The part of ``ConfigurationSpecification`` that works on numbers."""
+    """Base of ``ConfigurationSpecification`` with the access to values."""
 
     _groups: list[Group]
 
     def ExtractJointValues(
         self, data: ArrayLike, body: "KinBody | None", indices: ArrayLike, timederivative: int = 0
     ) -> Floats | None:
-        """Return joint values in a configuration.
+        """Return the joint values in a configuration.
 
         Args:
             data: The configuration.
-            body: Whose values; None: those of any body.
+            body: The body; None means any.
             indices: DOF indices.
-            timederivative: 1 for velocities, 2 for accelerations and so on.
+            timederivative: Order of the derivative: 0 for values, 1 for velocities, 2 for accelerations.
 
         Returns:
-            One value for each index, 0 for those that are not there; None where there are none of the body.
+            One value for each index, 0 for missing ones; None if the configuration has no values of the body.
         """
         values = self._checked(data)
         return extraction.joint_values(
@@ -57,17 +57,17 @@ class ConfigurationData(ApiObject):
         indices: ArrayLike,
         timederivative: int = 0,
     ) -> bool:
-        """Write joint values into a configuration; the others stay. Arguments as for ``ExtractJointValues``.
+        """Write joint values into a configuration in place. Arguments as for ``ExtractJointValues``.
 
         Args:
             data: The configuration; it is changed. Shape (dof,).
             values: The numbers.
             body: The body.
-            indices: The DOFs that the values are of.
+            indices: The DOF indices of the values.
             timederivative: 0 for values, 1 for velocities, 2 for accelerations.
 
         Returns:
-            Whether there are values of the body.
+            Whether the configuration has values of the body.
         """
         given, chosen, changed = checked_numbers(values, "values"), _indices(indices), self._checked(data)
         if given.shape != (len(chosen),):
@@ -81,17 +81,17 @@ class ConfigurationData(ApiObject):
     def ExtractAffineValues(
         self, data: ArrayLike, body: "KinBody | None", affinedofs: int, timederivative: int = 0
     ) -> Floats | None:
-        """Return values of parts of a pose in a configuration.
+        """Return pose components in a configuration.
 
         Args:
             data: The configuration.
-            body: Whose pose; None: that of any body.
+            body: The body; None means any.
             affinedofs: ``DOFAffine`` values, combined.
-            timederivative: 1 for velocities, 2 for accelerations and so on.
+            timederivative: Order of the derivative: 0 for values, 1 for velocities, 2 for accelerations.
 
         Returns:
-            Values in the order X, Y, Z, rotation, shape (n,); 0 for those that are not there; None where there are
-            none of the body. (OpenRAVE looks for positions under a name that no group has, and finds none.)
+            Values in the order X, Y, Z, rotation, shape (n,); 0 for missing ones; None if the configuration has none of
+            the body. (OpenRAVE searches positions under a wrong group name, and finds none.)
         """
         values, order = self._checked(data), checked_order(timederivative)
         return extraction.affine_values(self._groups, values, _name(body), affinedofs, order)
@@ -99,16 +99,16 @@ class ConfigurationData(ApiObject):
     def ExtractTransform(
         self, transform: ArrayLike | None, data: ArrayLike, body: "KinBody | None", timederivative: int = 0
     ) -> Floats | None:
-        """Return a body's pose in a configuration.
+        """Return the pose of a body in a configuration.
 
         Args:
-            transform: What to take from where the configuration has only parts of a pose; None: the identity.
+            transform: Pose that supplies components missing in the configuration; None means the identity.
             data: The configuration.
-            body: Whose pose; None: that of any body.
-            timederivative: Has to be 0; ``ExtractAffineValues`` gives derivatives.
+            body: The body; None means any.
+            timederivative: Must be 0; see ``ExtractAffineValues`` for derivatives.
 
         Returns:
-            Shape (4, 4); None where there is nothing of the body.
+            Shape (4, 4); None if the configuration has no pose of the body.
         """
         if timederivative != 0:
             raise ArgumentError(f"timederivative: is {timederivative}, and should be 0; take ExtractAffineValues")
@@ -122,11 +122,11 @@ class ConfigurationData(ApiObject):
         return None if column is None else float(self._checked(data)[column])
 
     def InsertDeltaTime(self, data: MutableSequence[float] | Floats, deltatime: float) -> bool:
-        """Write the time since the last waypoint [s] into a configuration; return whether it has a place for it.
+        """Write the time since the last waypoint [s] into a configuration; return whether it has a deltatime group.
 
         Args:
             data: The configuration; it is changed. Shape (dof,).
-            deltatime: Seconds since the configuration before.
+            deltatime: Time since the previous waypoint [s].
         """
         column = extraction.time_column(self._groups)
         if column is None:
@@ -136,7 +136,7 @@ class ConfigurationData(ApiObject):
         return True
 
     def ExtractUsedBodies(self, env: "Environment") -> "list[KinBody]":
-        """Return the bodies of ``env`` whose values the configuration has."""
+        """Return the bodies of ``env`` that have values in the configuration."""
         bodies = (env.GetKinBody(name) for name in extraction.used_bodies(self._groups))
         return [body for body in bodies if body is not None]
 
@@ -154,17 +154,17 @@ class ConfigurationData(ApiObject):
         env: "Environment | None",
         filluninitialized: bool = True,
     ) -> Floats:
-        """Return configurations in another specification.
+        """Return configurations converted to another specification.
 
         Args:
             targetspec: The other specification.
-            sourcedata: The configurations, one behind the other.
-            numpoints: How many they are.
-            env: Where the bodies are whose present state stands for what the configurations lack.
-            filluninitialized: False: zeros stand for it.
+            sourcedata: The configurations, concatenated.
+            numpoints: The number of configurations.
+            env: The environment whose bodies' present state supplies missing values.
+            filluninitialized: False fills missing values with zeros.
 
         Returns:
-            The configurations, one behind the other, shape (numpoints * dof,).
+            The converted configurations, concatenated, shape (numpoints * dof,).
         """
         target = np.zeros(numpoints * targetspec.GetDOF())
         return self._converted(target, targetspec, sourcedata, numpoints, _finder(env) if filluninitialized else None)
@@ -177,14 +177,14 @@ class ConfigurationData(ApiObject):
         numpoints: int,
         env: "Environment | None",
     ) -> Floats:
-        """Return configurations in another specification; what they lack is taken from ``targetdata``.
+        """Return configurations converted to another specification; ``targetdata`` supplies missing values.
 
         Args:
-            targetdata: Numbers in the layout of the target; they are changed.
+            targetdata: Values in the target's layout; changed in place.
             targetspec: The layout of the target.
-            sourcedata: Numbers in the layout of this one, shape (numpoints, dof).
-            numpoints: How many configurations there are.
-            env: Where the bodies are.
+            sourcedata: Values in this layout, shape (numpoints, dof).
+            numpoints: The number of configurations.
+            env: The environment of the bodies.
         """
         del env
         return self._converted(checked_numbers(targetdata, "targetdata"), targetspec, sourcedata, numpoints, None)
@@ -210,15 +210,15 @@ class ConfigurationData(ApiObject):
         env: "Environment | None",
         filluninitialized: bool = True,
     ) -> Floats:
-        """Return the values of a group as those of another group of its kind; see ``ConvertData``.
+        """Return the values of a group converted to another group of its type; see ``ConvertData``.
 
         Args:
             gtarget: The group to convert to.
-            sourcedata: Numbers of the group, shape (numpoints, dof).
-            gsource: The group that the data are of.
-            numpoints: How many configurations there are.
-            env: Where the bodies are.
-            filluninitialized: Whether values that the source has not are taken from the environment.
+            sourcedata: Values of the source group, shape (numpoints, dof).
+            gsource: The source group.
+            numpoints: The number of configurations.
+            env: The environment of the bodies.
+            filluninitialized: Whether the environment supplies missing values.
         """
         target = np.zeros((numpoints, gtarget.dof))
         source = _rows(sourcedata, numpoints, gsource.dof, "sourcedata")
@@ -230,7 +230,7 @@ class ConfigurationData(ApiObject):
 
 
 def checked_order(derivative: int, name: str = "timederivative") -> int:
-    """Return the order of a derivative, from 0 to 6."""
+    """Return the order of a derivative, checked to be from 0 to 6."""
     if not 0 <= derivative <= 6:
         raise ArgumentError(f"{name}: is {derivative}, and should be from 0 to 6")
     return int(derivative)
@@ -241,7 +241,7 @@ def _name(body: "KinBody | None") -> str | None:
 
 
 def _indices(indices: ArrayLike) -> list[int]:
-    return checked_numbers(indices, "indices").astype(np.int_).ravel().tolist()
+    return checked_whole_numbers(indices, "indices").tolist()
 
 
 def _rows(data: ArrayLike, count: int, dof: int, name: str) -> Floats:
@@ -337,16 +337,16 @@ class ConfigurationSpecification(ConfigurationData):
 
         Args:
             name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be the same, too.
+            exactmatch: Whether the rest of the name has to be equal as well.
         """
         return self._shifted(name, 1, exactmatch)
 
     def FindTimeIntegralGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return a copy of the group whose time derivative another group is, or None. See ``FindCompatibleGroup``.
+        """Return a copy of the group that is the time integral of another, or None. See ``FindCompatibleGroup``.
 
         Args:
             name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be the same, too.
+            exactmatch: Whether the rest of the name has to be equal as well.
         """
         return self._shifted(name, -1, exactmatch)
 
@@ -393,7 +393,7 @@ class ConfigurationSpecification(ConfigurationData):
         self._groups = layout.with_derivatives(self._groups, checked_order(deriv, "deriv"), adddeltatime)
 
     def AddVelocityGroups(self, adddeltatime: bool) -> None:
-        """Add velocities: the older name of ``AddDerivativeGroups(1, adddeltatime)``."""
+        """Add velocities; older name of ``AddDerivativeGroups(1, adddeltatime)``."""
         self.AddDerivativeGroups(1, adddeltatime)
 
     def RemoveGroups(self, groupname: str, exactmatch: bool = True) -> int:

@@ -77,7 +77,6 @@ _HEADINGS = ("DOF", "joint", "value", "limits", "unit")
 
 
 def _axes(joint: "Joint") -> Iterable[Row]:
-    """Return a row for each axis of a joint."""
     try:
         values = [f"{value:.4g}" for value in joint.GetValues()]
     except RavemjError:  # a body outside of an environment has no joint values

@@ -14,6 +14,7 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.core.output import AnyPath, new_file
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.planning.certificates import Certificate
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Interface
 from ravemj.rave.specification import ConfigurationSpecification
@@ -43,11 +44,45 @@ class Trajectory(Interface):
     """
 
     _interface_type = InterfaceType.trajectory
-    _internal = ("set_waypoints", "waypoints")
+    _internal = ("set_waypoints", "take", "waypoints")
+
+    start_index: int = -1
+    """Index of the start of ``BaseManipulation`` at which a planned motion begins; -1 if unknown."""
+
+    goal_index: int = -1
+    """Index of the goal that the motion reaches; regions are counted after the goals. -1 if unknown."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         super().__init__(env, xmlid)
         self._waypoints: Waypoints | None = None
+        self._certificate: tuple[Waypoints, Certificate] | None = None
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """Collision certificate of the motion from planning or ``certify``; None if there is none or it is outdated."""
+        known = self._certificate
+        return known[1] if known is not None and known[0] is self._waypoints else None
+
+    def certify(self) -> Certificate:
+        """Prove that the motion is free of collisions at all times, in the present environment.
+
+        The bodies of the trajectory are moved during the proof, and restored afterwards.
+
+        Returns:
+            The certificate, which ``certificate`` then returns. The motion is not certified if it has no times, turns a
+            base about more than one axis, moves spherical joints, or if a user callback decides about collisions;
+            ``reason`` says so.
+
+        Example:
+            >>> print(trajectory.certify())
+            certified: there are no other bodies
+        """
+        from ravemj.manipulation.certification import certified  # noqa: PLC0415 - rarely wanted
+
+        env = self.GetEnv()
+        found = certified(env.simulation, self.waypoints, env.GetCollisionChecker)
+        self._certificate = self.waypoints, found
+        return found
 
     @also_named(group="spec")
     def Init(self, spec: Spec) -> None:
@@ -64,9 +99,13 @@ class Trajectory(Interface):
             raise ArgumentError("Init: spec is None, and should be a ConfigurationSpecification")
         self._waypoints = Waypoints(_groups(spec))
 
+    def take(self, other: Self) -> None:
+        """Copy the waypoints and the certificate of another trajectory."""
+        self._waypoints, self._certificate = other._waypoints, other._certificate
+
     @property
     def waypoints(self) -> Waypoints:
-        """The waypoints as an object below OpenRAVE's API; ``Init`` makes it."""
+        """The waypoints below OpenRAVE's API; ``Init`` makes them."""
         if self._waypoints is None:
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints
@@ -345,7 +384,7 @@ class Trajectory(Interface):
         return iter(self.GetAllWaypoints2D())
 
     def __bool__(self) -> bool:
-        """Return True, also for a trajectory without waypoints, which ``len`` would make false."""
+        """Return True, also for a trajectory without waypoints."""
         return True
 
     def __repr__(self) -> str:
@@ -353,7 +392,7 @@ class Trajectory(Interface):
         return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT).decode()!r})"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
-        """Print the short text in IPython, where ``repr`` would fill the screen."""
+        """Print the short text in IPython; ``repr`` is long."""
         del cycle
         printer.text(str(self))
 

@@ -1,4 +1,4 @@
-"""The triangle meshes that users read and pass in."""
+"""Triangle mesh of the API."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,7 @@ from ravemj.model.scene import Mesh
 
 
 class TriMesh:
-    """A triangle mesh.
+    """Triangle mesh.
 
     Attributes:
         vertices: The vertices [m], shape (n, 3); None in a new mesh.
@@ -44,12 +44,12 @@ class TriMesh:
 
 
 def trimesh_of(mesh: Mesh) -> TriMesh:
-    """Return a mesh of the scene as a copy for users."""
+    """Return a copy of a scene mesh as a ``TriMesh``."""
     return TriMesh(mesh.vertices, mesh.triangles)
 
 
 def checked_mesh(trimesh: object, name: str) -> Mesh:
-    """Return the mesh of a ``TriMesh``, checked. Arrays that are None count as empty.
+    """Return the checked mesh of a ``TriMesh``. Arrays that are None count as empty.
 
     Raises:
         ArgumentError: the object is not a ``TriMesh``, an array has the wrong shape, or an index is out of range.

@@ -73,7 +73,7 @@ _PER_STANDARD = {
     "deg": 57.29577951308232,
     "cdeg": 5729.577951308232,
 }
-"""How many of a unit are a metre, a gram or a radian; inch, foot and pound have their legal definitions.
+"""Number of units per metre, gram or radian; inch, foot and pound have their legal definitions.
 
 All other units are 10 to the power of their number: ``mm`` is -3.
 """
@@ -110,82 +110,81 @@ def _read(kind: type[Unit], text: str, default: Unit) -> Unit:
 
 
 def _per_standard(kind: type[Unit], unit: Unit | str) -> float:
-    """Return how many of a unit make one standard unit."""
     chosen = _read(kind, unit, next(iter(kind))) if isinstance(unit, str) else kind(unit)
     return _PER_STANDARD.get(chosen.name, 10.0**-chosen)
 
 
 def GetLengthUnitString(unit: LengthUnit) -> str:
-    """Return how a unit of length is written."""
+    """Return the name of the unit of length ``unit``."""
     return _written(LengthUnit(unit))
 
 
 def GetMassUnitString(unit: MassUnit) -> str:
-    """Return how a unit of mass is written."""
+    """Return the name of the unit of mass ``unit``."""
     return _written(MassUnit(unit))
 
 
 def GetAngleUnitString(unit: AngleUnit) -> str:
-    """Return how a unit of angles is written."""
+    """Return the name of the unit of angle ``unit``."""
     return _written(AngleUnit(unit))
 
 
 def GetTimeDurationUnitString(unit: TimeDurationUnit) -> str:
-    """Return how a unit of durations is written."""
+    """Return the name of the unit of duration ``unit``."""
     return _written(TimeDurationUnit(unit))
 
 
 def GetTimeStampUnitString(unit: TimeStampUnit) -> str:
-    """Return how a unit of points in time is written."""
+    """Return the name of the unit of time stamps ``unit``."""
     return _written(TimeStampUnit(unit))
 
 
 def GetLengthUnitFromString(text: str, default: LengthUnit) -> LengthUnit:
-    """Return the unit of length that a text names; the default for an empty one."""
+    """Return the unit of length called ``text``; ``default`` for an empty text."""
     return _read(LengthUnit, text, default)
 
 
 def GetMassUnitFromString(text: str, default: MassUnit) -> MassUnit:
-    """Return the unit of mass that a text names; the default for an empty one."""
+    """Return the unit of mass called ``text``; ``default`` for an empty text."""
     return _read(MassUnit, text, default)
 
 
 def GetAngleUnitFromString(text: str, default: AngleUnit) -> AngleUnit:
-    """Return the unit of angles that a text names; the default for an empty one."""
+    """Return the unit of angle called ``text``; ``default`` for an empty text."""
     return _read(AngleUnit, text, default)
 
 
 def GetTimeDurationUnitFromString(text: str, default: TimeDurationUnit) -> TimeDurationUnit:
-    """Return the unit of durations that a text names; the default for an empty one."""
+    """Return the unit of duration called ``text``; ``default`` for an empty text."""
     return _read(TimeDurationUnit, text, default)
 
 
 def GetLengthUnitStandardValue(unit: LengthUnit | str) -> float:
-    """Return how many of a unit are a metre."""
+    """Return the number of units ``unit`` per metre."""
     return _per_standard(LengthUnit, unit)
 
 
 def GetMassUnitStandardValue(unit: MassUnit | str) -> float:
-    """Return how many of a unit are a gram."""
+    """Return the number of units ``unit`` per gram."""
     return _per_standard(MassUnit, unit)
 
 
 def GetAngleUnitStandardValue(unit: AngleUnit | str) -> float:
-    """Return how many of a unit are a radian."""
+    """Return the number of units ``unit`` per radian."""
     return _per_standard(AngleUnit, unit)
 
 
 def GetTimeDurationUnitStandardValue(unit: TimeDurationUnit | str) -> float:
-    """Return how many of a unit are a second."""
+    """Return the number of units ``unit`` per second."""
     return _per_standard(TimeDurationUnit, unit)
 
 
 def GetLengthUnitConversionScale(source: LengthUnit | str, target: LengthUnit | str) -> float:
-    """Return the factor from a length in one unit to the same length in another.
+    """Return the factor that converts lengths from one unit to another.
 
     Args:
-        source: The one unit.
-        target: The other.
+        source: The unit to convert from.
+        target: The unit to convert to.
 
     Example:
         >>> GetLengthUnitConversionScale(LengthUnit.m, LengthUnit.mm)
@@ -195,31 +194,31 @@ def GetLengthUnitConversionScale(source: LengthUnit | str, target: LengthUnit | 
 
 
 def GetMassUnitConversionScale(source: MassUnit | str, target: MassUnit | str) -> float:
-    """Return the factor from a mass in one unit to the same mass in another.
+    """Return the factor that converts masses from one unit to another.
 
     Args:
-        source: The one unit.
-        target: The other.
+        source: The unit to convert from.
+        target: The unit to convert to.
     """
     return _per_standard(MassUnit, target) / _per_standard(MassUnit, source)
 
 
 def GetAngleUnitConversionScale(source: AngleUnit | str, target: AngleUnit | str) -> float:
-    """Return the factor from an angle in one unit to the same angle in another.
+    """Return the factor that converts angles from one unit to another.
 
     Args:
-        source: The one unit.
-        target: The other.
+        source: The unit to convert from.
+        target: The unit to convert to.
     """
     return _per_standard(AngleUnit, target) / _per_standard(AngleUnit, source)
 
 
 def GetTimeDurationUnitConversionScale(source: TimeDurationUnit | str, target: TimeDurationUnit | str) -> float:
-    """Return the factor from a duration in one unit to the same duration in another.
+    """Return the factor that converts durations from one unit to another.
 
     Args:
-        source: The one unit.
-        target: The other.
+        source: The unit to convert from.
+        target: The unit to convert to.
     """
     return _per_standard(TimeDurationUnit, target) / _per_standard(TimeDurationUnit, source)
 
@@ -251,10 +250,10 @@ class UnitInfo(ApiObject):
         return {name: _written(getattr(self, name)) for name in _KINDS}
 
     def DeserializeJSON(self, obj: dict[str, Any]) -> None:
-        """Take over the units that ``obj`` names; the others stay.
+        """Set the units that ``obj`` names; the others stay.
 
         Args:
-            obj: What ``SerializeJSON`` returns, or a part of it.
+            obj: A result of ``SerializeJSON``, or a part of it.
         """
         checked_kind(obj, Mapping, "UnitInfo.DeserializeJSON: obj", "a dict")
         for name, kind in _KINDS.items():

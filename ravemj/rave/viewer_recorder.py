@@ -1,4 +1,4 @@
-"""The module ``viewerrecorder``, which writes videos of an environment."""
+"""Module ``viewerrecorder``, which writes videos of an environment."""
 
 import time
 from collections.abc import Iterator
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 _WAITING = 8
-"""The number of frames that may wait for the encoder; drawing waits for it when there are more."""
+"""Maximum number of frames in the encoder's queue; drawing blocks when it is full."""
 _PATIENCE = 0.2
-"""The interval [s] at which the encoder checks whether the script has ended without ``Stop``. Without this check the
-encoder's thread would keep the process alive."""
+"""Interval [s] at which the encoder checks whether the script has ended without ``Stop``; without this check, its
+thread would keep the process alive."""
 
 _TIMINGS = ("simtime", "realtime", "controller")
 
 
 class _Order(NamedTuple):
-    """The settings of a video, from the command ``Start``."""
+    """Settings of a video, from the command ``Start``."""
 
     width: int
     height: int
@@ -146,7 +146,6 @@ class ViewerRecorder(Module):
 
 
 def _order_of(arguments: str) -> _Order:
-    """Return the settings in the arguments of ``Start``."""
     before, found, after = arguments.partition("filename")
     words = before.split()
     try:

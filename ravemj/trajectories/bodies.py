@@ -1,4 +1,4 @@
-"""The layouts of bodies: their joints, then their pose."""
+"""Layouts of bodies: their joints, then their pose."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ from ravemj.trajectories.layout import packed
 
 
 def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolation: str) -> list[Group]:
-    """Return the layout of some joints of a body, then of parts of its pose (``DOFAffine``), without empty groups."""
+    """Return the layout of some joints of a body, then of pose components (``DOFAffine``), without empty groups."""
     joints = Group(" ".join([JOINTS[0], name, *map(str, indices)]), 0, len(indices), interpolation)
     if not affinedofs:
         return [joints] if joints.dof else []
@@ -27,10 +27,10 @@ def configuration_values(joint_values: Floats, T_world_link0: Floats) -> Floats:
 
 
 def split_configuration(values: Floats, dof: int) -> tuple[Floats, Pose]:
-    """Return the joint values and the pose in the values of a whole body.
+    """Split the values of a whole body into joint values and pose.
 
     Raises:
-        ArgumentError: there are not ``dof`` + 7 of them.
+        ArgumentError: their number is not ``dof`` + 7.
     """
     if values.shape != (dof + 7,):
         message = f"values: has shape {values.shape}, and should have shape ({dof + 7},)"

@@ -1,4 +1,4 @@
-"""Bodies that follow a motion or a trajectory, as viewers play them, and bodies that a robot grabs meanwhile."""
+"""Bodies that follow a motion or a trajectory, as viewers play them, with grabs and releases."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -17,13 +17,13 @@ from ravemj.trajectories.waypoints import Waypoints
 
 @dataclass(frozen=True, eq=False)
 class BodyMotion:
-    """Where bodies are at each time.
+    """Motion of bodies over time.
 
     Attributes:
-        bodies: Those that move.
-        duration: When it ends [s]; it starts at 0.
-        place: Puts the bodies where they are at a time [s], with joints within their limits.
-        rows: For each body, the joint values of the rows or waypoints, as they are given, shape (N, dof).
+        bodies: The moving bodies.
+        duration: The end time [s]; it starts at 0.
+        place: Sets the configurations of the bodies at a time [s], clamped to joint limits.
+        rows: For each body, the given joint values of the rows or waypoints, shape (N, dof).
     """
 
     bodies: tuple[BodyState, ...]
@@ -33,10 +33,10 @@ class BodyMotion:
 
     @classmethod
     def of_motion(cls, body: BodyState, motion: Motion) -> "BodyMotion":
-        """Let a body follow the joint values of a motion, as far as its limits go.
+        """Drive a body along the joint values of a motion, clamped to its limits.
 
         Raises:
-            ArgumentError: the motion has another number of joints than the body.
+            ArgumentError: the number of joints differs from the body's.
         """
         name, dof = body.scene.name, body.kinematics.dof
         if motion.dof != dof:
@@ -50,10 +50,11 @@ class BodyMotion:
 
     @classmethod
     def of_waypoints(cls, simulation: Simulation, waypoints: Waypoints) -> "BodyMotion":
-        """Let all bodies of a trajectory, which is not copied, follow its joint values and poses.
+        """Drive all bodies of a trajectory along it; the trajectory is not copied.
 
         Raises:
-            ArgumentError: it has no waypoint or no time, or names no body that is there, or joints that a body lacks.
+            ArgumentError: it has no waypoints or times, names no existing body, or names joints that a body does not
+                have.
         """
         waypoints.sample(0.0, restamped=True)
         groups = [group for group in waypoints.groups if group.kind in {JOINTS[0], AFFINE[0]}]
@@ -75,15 +76,15 @@ class BodyMotion:
         return cls(bodies, waypoints.duration(), place, rows)
 
     def frame_times(self, fps: float) -> Iterator[float]:
-        """Return an iterator over the time [s] of each frame of a video; the last frame is the end."""
+        """Yield the time [s] of each frame of a video; the last frame is the end."""
         last = number_of_frames(self.duration, fps) - 1
         return (self.duration if frame == last else frame / fps for frame in range(last + 1))
 
     def rescaled(self, duration: float) -> "BodyMotion":
-        """Return the same motion in another duration [s].
+        """Return the same motion with another duration [s].
 
         Raises:
-            ArgumentError: the motion has one row only, or the duration is not above 0.
+            ArgumentError: the motion has only one row, or the duration is not positive.
         """
         if not self.duration:
             raise ArgumentError("a motion of one row has no duration that could be rescaled")
@@ -96,7 +97,7 @@ class BodyMotion:
 
 
 def _rows(body: BodyState, dofs: list[int], groups: list[Group], waypoints: Waypoints) -> Floats:
-    """Return the joint values of a body at the waypoints; joints that these lack have the present values."""
+    """Return the joint values of a body at the waypoints; missing joints have their present values."""
     rows = np.tile(body.kinematics.values(), (len(waypoints), 1))
     for row, numbers in zip(rows, waypoints.data, strict=True):
         values = extraction.joint_values(groups, numbers, body.scene.name, dofs, 0)
@@ -118,7 +119,7 @@ def _place(body: BodyState, dofs: list[int], groups: list[Group], numbers: Float
 
 
 def set_within_limits(body: BodyState, values: Floats) -> None:
-    """Set the joint values of a body, shape (dof,), moved into the limits; circular joints have none."""
+    """Set the joint values of a body, shape (dof,), clamped to the limits of joints that are not circular."""
     kinematics = body.kinematics
     if len(values) != kinematics.dof:
         raise ArgumentError(f"'{body.scene.name}' has {kinematics.dof} DOFs, and no more {len(values)}")
@@ -126,12 +127,12 @@ def set_within_limits(body: BodyState, values: Floats) -> None:
 
 
 class GrabChange(NamedTuple):
-    """A body that is grabbed or released.
+    """Grab or release of a body.
 
     Attributes:
-        time: When, from the start of the trajectory [s].
-        link: Index of the link that holds the body.
-        body: ``GetEnvironmentBodyIndex()`` of the body; negative: it is released.
+        time: Time since the start of the trajectory [s].
+        link: Index of the grabbing link.
+        body: ``GetEnvironmentBodyIndex()`` of the body; negative for a release.
     """
 
     time: float
@@ -140,7 +141,7 @@ class GrabChange(NamedTuple):
 
 
 def grab_changes(waypoints: Waypoints, robot_name: str) -> list[GrabChange]:
-    """Return what a trajectory grabs and releases, in the order of time.
+    """Return the grabs and releases in a trajectory, in the order of time.
 
     A group ``grab ROBOT LINK …`` has a value for each link of these indices: the index of a body to grab with it, the
     negative index of one to release, or 0 for no change.

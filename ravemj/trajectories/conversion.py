@@ -1,4 +1,4 @@
-"""Data of one layout in another."""
+"""Conversion of data between layouts."""
 
 from collections.abc import Callable, Sequence
 
@@ -23,7 +23,7 @@ FindBody = Callable[[str], BodyState | None]
 
 
 def nobody(name: str) -> None:
-    """Find no body."""
+    """Return None: a ``FindBody`` without bodies."""
     del name
 
 
@@ -35,15 +35,15 @@ def converted(
     find_body: FindBody | None,
     find_missing: FindBody | None = None,
 ) -> Floats:
-    """Return data in another layout.
+    """Return data converted to another layout.
 
     Args:
         source_groups: The layout of the data.
         source: The data, a configuration in each row.
-        target_groups: The layout that is wanted.
-        target: What to write into a copy of, as many rows.
-        find_body: Finds the bodies whose present state replaces what the data lacks; None: ``target`` keeps it.
-        find_missing: The same for groups that the data lacks entirely; None: ``find_body``.
+        target_groups: The layout of the result.
+        target: The initial result, which is copied, with the same number of rows.
+        find_body: Finds the bodies whose present state supplies missing values; None keeps those of ``target``.
+        find_missing: The same for entirely missing groups; by default ``find_body``.
     """
     result = target.copy()
     for group in target_groups:
@@ -59,7 +59,7 @@ def converted(
 def convert_group(
     source_group: Group, source: Floats, target_group: Group, target: Floats, find_body: FindBody | None
 ) -> None:
-    """Write the values of a group, a configuration in each row, into ``target``, those of another group of its kind.
+    """Write the values of a group, one configuration per row, into ``target``, the values of a group of the same kind.
 
     Raises:
         ArgumentError: the groups have nothing in common.
@@ -113,7 +113,7 @@ def _positions(group: Group) -> list[DOFAffine]:
 
 
 def _present(group: Group, find_body: FindBody) -> Floats:
-    """Return the present values of a group; where they are unknown, zeros and the identity pose."""
+    """Return the present values of a group; unknown ones are zeros and the identity pose."""
     body = None if group.body is None else find_body(group.body)
     if group.kind == AFFINE[0]:
         parts, axis = affine_parts(group)
@@ -131,7 +131,7 @@ def _present(group: Group, find_body: FindBody) -> Floats:
 
 
 def _pose(body: BodyState) -> Pose:
-    """Return the pose of the first link, as OpenRAVE's bodies have it."""
+    """Return the pose of the first link, which is OpenRAVE's pose of a body."""
     if not body.scene.links:
         return Pose()
     with body.simulation.lock:

@@ -1,4 +1,4 @@
-"""Values of joints, poses and times in the data of one configuration."""
+"""Access to joint values, poses and times in the data of one configuration."""
 
 from collections.abc import Sequence
 
@@ -22,17 +22,17 @@ def _of_body(groups: Sequence[Group], kind: str, body: str | None) -> list[Group
 def joint_values(
     groups: Sequence[Group], data: Floats, body: str | None, indices: Sequence[int], order: int
 ) -> Floats | None:
-    """Return the values of joints, or of their derivatives; 0 for those that are not there.
+    """Return joint values or their derivatives; missing ones are 0.
 
     Returns:
-        One value for each index, or None where there is no group of the body, or no index.
+        One value for each index, or None if there is no group of the body, or no index.
     """
     found = _of_body(groups, JOINTS[order], body)
     if not found or not indices:
         return None
     values = np.zeros(len(indices))
     for group in found:
-        first_columns: dict[int, int] = {}  # a lookup for each of many indices; a list would be searched
+        first_columns: dict[int, int] = {}  # many look-ups; a list would be slow
         for column, index in enumerate(joint_indices(group), group.offset):
             first_columns.setdefault(index, column)
         for place, index in enumerate(indices):
@@ -44,7 +44,7 @@ def joint_values(
 def insert_joint_values(
     groups: Sequence[Group], data: Floats, values: Floats, body: str | None, indices: Sequence[int], order: int
 ) -> bool:
-    """Write the values of joints into data; return whether there is a group of the body, and an index."""
+    """Write joint values into data; return whether there is a group of the body, and an index."""
     found = _of_body(groups, JOINTS[order], body)
     for group in found if indices else ():
         for place, index in enumerate(joint_indices(group)):
@@ -54,7 +54,7 @@ def insert_joint_values(
 
 
 def affine_values(groups: Sequence[Group], data: Floats, body: str | None, parts: int, order: int) -> Floats | None:
-    """Return the values of parts of a pose (``DOFAffine``), or of their derivatives; 0 for those that are not there."""
+    """Return pose components (``DOFAffine``) or their derivatives; missing ones are 0."""
     found = _of_body(groups, AFFINE[order], body)
     if not found or not parts:
         return None
@@ -70,7 +70,7 @@ def affine_values(groups: Sequence[Group], data: Floats, body: str | None, parts
 
 
 def pose(groups: Sequence[Group], data: Floats, body: str | None, start: Pose) -> Pose | None:
-    """Return a pose with the parts replaced that the data has, or None where it has none of the body."""
+    """Return a start pose with components replaced by those of the data; None if the data has none of the body."""
     found = _of_body(groups, AFFINE[0], body)
     for group in found:
         parts, axis = affine_parts(group)
@@ -79,7 +79,7 @@ def pose(groups: Sequence[Group], data: Floats, body: str | None, start: Pose) -
 
 
 def ik_group(groups: Sequence[Group], robot: str, manipulator: str, order: int) -> Group | None:
-    """Return the first goal of inverse kinematics of a robot and a manipulator, or None; empty names fit to all."""
+    """Return the first IK goal of a robot and a manipulator, or None; empty names match any."""
     for group in groups:
         _, *owner = group.name.split()[1:] or [""]
         fits = all(name in {"", word} for name, word in zip((robot, manipulator), [*owner, "", ""], strict=False))
@@ -110,6 +110,6 @@ def used_indices(groups: Sequence[Group], body: str) -> tuple[list[int], list[in
 
 
 def rotation_columns(group: Group) -> tuple[DOFAffine, slice]:
-    """Return the kind of rotation in an affine group (0: none), and where its values are in the group."""
+    """Return the rotation type of an affine group (0: none), and the slice of its values."""
     kind = DOFAffine(affine_parts(group)[0]) & DOFAffine.RotationMask
     return kind, slice(group.dof - RaveGetAffineDOF(kind), group.dof)

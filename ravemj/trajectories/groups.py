@@ -1,4 +1,4 @@
-"""Groups of values in a configuration, and what their names say.
+"""Groups of values in a configuration, and the information in their names.
 
 A name is a kind and further words: ``joint_values BODY INDEX...``, ``affine_transform BODY PARTS [AXIS]``,
 ``ikparam_values TYPE``, ``deltatime``. The kinds of derivatives have names of their own.
@@ -16,23 +16,23 @@ JOINTS = ("joint_values", *(f"joint_{rate}" for rate in _RATES))
 AFFINE = ("affine_transform", *(f"affine_{rate}" for rate in _RATES))
 IK = ("ikparam_values", *(f"ikparam_{rate}" for rate in _RATES))
 FAMILIES = (JOINTS, AFFINE, IK)
-"""Kinds with those of their time derivatives behind them."""
+"""Group kinds, each followed by those of its time derivatives."""
 
 DELTATIME = "deltatime"
 INTERPOLATIONS = ("next", "linear", "quadratic", "cubic", "quartic", "quintic", "sextic")
-"""Interpolations in which each is the derivative of the following one."""
+"""Interpolations in increasing order; each is the derivative of the next."""
 
 
 @dataclass(repr=False)
 class Group:
-    """Some values of a configuration that belong together.
+    """Group of related values in a configuration.
 
     Attributes:
-        name: What they are, for instance ``joint_values BarrettWAM 0 1 2``.
-        offset: Where they start in the configuration.
-        dof: How many they are.
-        interpolation: How they change between waypoints: ``previous``, ``next``, ``linear``, ``quadratic``, ``cubic``,
-            ``quartic``, ``quintic``, ``sextic`` or ``max``; empty is ``next``.
+        name: The kind of values and their owner, for instance ``joint_values BarrettWAM 0 1 2``.
+        offset: The index of the first value in the configuration.
+        dof: The number of values.
+        interpolation: The interpolation between waypoints: ``previous``, ``next``, ``linear``, ``quadratic``,
+            ``cubic``, ``quartic``, ``quintic``, ``sextic`` or ``max``; empty is ``next``.
     """
 
     name: str = ""
@@ -46,7 +46,7 @@ class Group:
 
     @property
     def columns(self) -> slice:
-        """Where the values are in the last axis of data."""
+        """Slice of the values in the last axis of data."""
         return slice(self.offset, self.offset + self.dof)
 
     @property
@@ -62,7 +62,7 @@ class Group:
 
 
 def shifted_name(name: str, steps: int) -> str | None:
-    """Return the name of the group's time derivative, or its integral for negative steps; None where there is none."""
+    """Return the name of the group's time derivative, or integral for negative steps; None if there is none."""
     kind, *rest = name.split() or [""]
     for family in FAMILIES:
         if kind in family and 0 <= family.index(kind) + steps < len(family):
@@ -89,10 +89,10 @@ def joint_indices(group: Group) -> list[int]:
 
 
 def affine_parts(group: Group) -> tuple[int, Vec3]:
-    """Return which parts of a pose the values are (``DOFAffine``), and the axis of a turn about an axis.
+    """Return the pose components of the values (``DOFAffine``), and the axis of a rotation about an axis.
 
     Raises:
-        ArgumentError: the name does not say it.
+        ArgumentError: the name does not contain them.
     """
     words = group.name.split()[2:]
     if not words:
@@ -107,10 +107,10 @@ def affine_parts(group: Group) -> tuple[int, Vec3]:
 
 
 def ik_type(group: Group) -> int:
-    """Return the number of the type of goal that the values of a group of inverse kinematics are.
+    """Return the number of the goal type of an IK group.
 
     Raises:
-        ArgumentError: the name does not say it.
+        ArgumentError: the name does not contain it.
     """
     words = group.name.split()[1:2]
     if not words:

@@ -1,9 +1,9 @@
-"""Values between two waypoints: polynomials through their values and derivatives.
+"""Interpolation between two waypoints: polynomials through values and derivatives.
 
-Values and derivatives at the two ends determine a polynomial of odd degree (Hermite's). Those of even degree are the
-integrals of one for the derivatives, from the first waypoint on; they reach the second one if its values fit. A curve
-is an array of coefficients of the powers of the part of the way, from 0 at the first waypoint to 1 at the second,
-lowest first.
+Values and derivatives at both ends determine a Hermite polynomial of odd degree. Polynomials of even degree are
+integrals of one for the derivatives, starting at the first waypoint; they reach the second one if its values are
+consistent. A curve is an array of coefficients, lowest power first, of the fraction t from 0 at the first waypoint to 1
+at the second.
 """
 
 import math
@@ -18,17 +18,17 @@ Ends = tuple[Floats, Floats]
 """Values at the two waypoints."""
 
 ROUNDING = 2.3e-16
-"""Closer to a waypoint than this [s, or as a part of the way] is at the waypoint."""
+"""Tolerance within which a time is at a waypoint [s, or fraction of the segment]."""
 
 HELD = ("", "previous", "next", "max")
-"""Interpolations that take one of the two values."""
+"""Piecewise-constant interpolations, which use one of the two values."""
 
 DERIVATIVES = {"linear": 0, "quadratic": 1, "cubic": 1, "quartic": 2, "quintic": 2, "sextic": 3}
-"""How many derivatives the others need."""
+"""Number of derivatives that each interpolation needs."""
 
 
 def held(interpolation: str, part: float, ends: Ends) -> Floats:
-    """Return one of the two values, by one of the interpolations ``HELD``, at a part of the way."""
+    """Piecewise-constant interpolation ``HELD`` at fraction ``part`` of a segment."""
     first, second = ends
     if interpolation == "previous":
         return second if part > 1 - ROUNDING else first
@@ -38,20 +38,20 @@ def held(interpolation: str, part: float, ends: Ends) -> Floats:
 
 
 def between(ends: Ends, part: float) -> Floats:
-    """Return the values at a part of the straight line; rounding takes them nowhere beyond the ends."""
+    """Linear interpolation at fraction ``part`` of a segment, clipped against rounding errors."""
     first, second = ends
     return np.clip((1.0 - part) * first + part * second, np.minimum(first, second), np.maximum(first, second))
 
 
 def curve(interpolation: str, ends: Ends, derivatives: Sequence[Ends], duration: float) -> Floats:
-    """Return the curve from one waypoint to the next.
+    """Return the interpolating curve between two waypoints.
 
     Args:
         interpolation: One of ``DERIVATIVES``.
-        ends: The values at both.
-        derivatives: Their derivatives at both, the velocities first; as many as are needed. A linear curve may have
-            one, too: then it goes as the second waypoint says.
-        duration: Time from one to the other [s].
+        ends: The values at both waypoints.
+        derivatives: The necessary derivatives at both, velocities first. If a linear curve has one, it uses that of the
+            second waypoint.
+        duration: Duration of the segment [s].
     """
     if interpolation == "linear":
         step = derivatives[0][1] * duration if derivatives else ends[1] - ends[0]
@@ -65,18 +65,18 @@ def curve(interpolation: str, ends: Ends, derivatives: Sequence[Ends], duration:
 
 
 def differentiated(coefficients: Floats, duration: float) -> Floats:
-    """Return the curve of the derivatives by time."""
+    """Return the time derivative of a curve."""
     powers = np.arange(1, len(coefficients))
     return coefficients[1:] * powers[:, None] / duration
 
 
 def value(coefficients: Floats, part: float) -> Floats:
-    """Return the values of a curve."""
+    """Evaluate a curve at fraction ``part``."""
     return part ** np.arange(len(coefficients)) @ coefficients
 
 
 def _through(known: Sequence[Ends], duration: float) -> Floats:
-    """Return the curve through values, and then derivatives, at both ends."""
+    """Return the curve through values and derivatives at both ends."""
     ends = [values[end] * duration**order for end in (0, 1) for order, values in enumerate(known)]
     return _hermite(len(known)) @ np.array(ends)
 
@@ -88,4 +88,4 @@ def _hermite(count: int) -> Floats:
     for order in range(count):
         conditions[order, order] = math.factorial(order)
         conditions[count + order] = [math.perm(power, order) for power in range(2 * count)]
-    return np.round(2 * np.linalg.inv(conditions)) / 2  # whole and half numbers, up to three conditions at each end
+    return np.round(2 * np.linalg.inv(conditions)) / 2  # integers and halves, for up to three conditions at each end

@@ -1,6 +1,6 @@
-"""Lists of groups: finding, adding, merging, deriving.
+"""Operations on lists of groups: find, add, merge, derive.
 
-The functions here read lists of groups, and return new ones; the groups in them are copies.
+The functions return new lists with copies of groups.
 """
 
 from collections.abc import Sequence
@@ -30,12 +30,12 @@ def copied(groups: Sequence[Group]) -> list[Group]:
 
 
 def count(groups: Sequence[Group]) -> int:
-    """Return how many values a configuration has."""
+    """Return the number of values of a configuration."""
     return max((group.offset + group.dof for group in groups), default=0)
 
 
 def packed(groups: Sequence[Group]) -> list[Group]:
-    """Return the groups one behind the other, without gaps."""
+    """Return the groups in sequence, without gaps."""
     result: list[Group] = []
     for group in groups:
         result.append(replace(group, offset=count(result)))
@@ -43,7 +43,7 @@ def packed(groups: Sequence[Group]) -> list[Group]:
 
 
 def flaw(groups: Sequence[Group]) -> str | None:
-    """Return the mistake in a layout (values in two groups or in none, empty groups, repeated names), or None."""
+    """Return the error in a layout (overlaps, gaps, empty groups, repeated names), or None."""
     end = 0
     for group in sorted(groups, key=lambda group: group.offset):
         if group.dof <= 0:
@@ -56,7 +56,7 @@ def flaw(groups: Sequence[Group]) -> str | None:
 
 
 def equal(groups: Sequence[Group], others: Sequence[Group]) -> bool:
-    """Return whether two layouts are the same; the order of the groups in their lists does not matter."""
+    """Return whether two layouts are equal; the order of the groups in their lists does not matter."""
     return sorted(groups, key=_place) == sorted(others, key=_place)
 
 
@@ -65,13 +65,13 @@ def _place(group: Group) -> tuple[int, str]:
 
 
 def find_prefix(groups: Sequence[Group], name: str) -> Group | None:
-    """Return the group with the shortest name that starts so."""
+    """Return the group with the shortest name that starts with a prefix."""
     matching = (group for group in groups if group.name.startswith(name))
     return min(matching, key=lambda group: len(group.name), default=None)
 
 
 def find_compatible(groups: Sequence[Group], name: str, exact: bool = False) -> Group | None:
-    """Return the group that has values of this kind and of this body: that of this name, else the most alike."""
+    """Return the group of the same kind and body: the one of this name, else the most similar."""
     for group in groups:
         if group.name == name:
             return group
@@ -84,7 +84,7 @@ def find_compatible(groups: Sequence[Group], name: str, exact: bool = False) -> 
 
 
 def _likeness(words: list[str], wanted: list[str]) -> int:
-    """Return how similar two names are; 0: they are of different kinds or bodies."""
+    """Return the similarity of two names; 0 for different kinds or bodies."""
     if words[:1] != wanted[:1]:
         return 0
     if len(words) < 2 or len(wanted) < 2:
@@ -102,10 +102,10 @@ def find_shifted(groups: Sequence[Group], name: str, steps: int, exact: bool = F
 
 
 def with_group(groups: Sequence[Group], added: Group) -> list[Group]:
-    """Return the layout with a group behind the others, unless it is there already.
+    """Append a group to the layout, unless it is there already.
 
     Raises:
-        ArgumentError: it has no name or no size, or there is another group of this kind for the same body.
+        ArgumentError: it has no name or size, or there is another group of its kind for the same body.
     """
     if not added.name.split() or added.dof < 0:
         raise ArgumentError(f"group '{added.name}' with {added.dof} values: should have a name and values", _ASSERT)
@@ -123,9 +123,9 @@ _ASSERT = ErrorCode.Assert
 
 
 def with_derivatives(groups: Sequence[Group], order: int, deltatime: bool) -> list[Group]:
-    """Return the layout with the derivatives of all positions, and the time since the last waypoint if it is wanted.
+    """Add the derivatives of all positions, and optionally the time since the last waypoint.
 
-    A group that has them already is kept, or replaced where it has other sizes.
+    Existing groups of derivatives are kept, or replaced if their sizes differ.
     """
     result = copied(groups)
     added: list[Group] = []
@@ -148,7 +148,7 @@ def with_derivatives(groups: Sequence[Group], order: int, deltatime: bool) -> li
 
 
 def derived(groups: Sequence[Group], order: int) -> list[Group]:
-    """Return the layout of the derivatives: positions renamed, interpolations lowered."""
+    """Return the layout of the derivatives: renamed positions with reduced interpolations."""
     return [
         replace(
             group,
@@ -160,25 +160,25 @@ def derived(groups: Sequence[Group], order: int) -> list[Group]:
 
 
 def of_order(groups: Sequence[Group], order: int) -> list[Group]:
-    """Return the groups of this time derivative alone, without gaps."""
+    """Return only the groups of one time derivative, without gaps."""
     kinds = {family[order] for family in FAMILIES}
     return packed([group for group in groups if group.kind in kinds])
 
 
 def without(groups: Sequence[Group], name: str, exact: bool) -> list[Group]:
-    """Return the layout without the groups of this name, or with names that start so; without gaps if any are gone."""
+    """Return the layout without groups of a name, or of a prefix; close gaps if any are removed."""
     kept = [group for group in groups if not (group.name == name if exact else group.name.startswith(name))]
     return packed(kept) if len(kept) < len(groups) else copied(groups)
 
 
 def merged(groups: Sequence[Group], others: Sequence[Group]) -> list[Group]:
-    """Return a layout that holds the values of both, without gaps.
+    """Merge two layouts, without gaps.
 
-    Groups of one kind and body become one: that of ``groups``, with the further values of the other behind its own,
-    and the higher interpolation.
+    Groups of one kind and body become one: the group of ``groups``, extended by the additional values of the other,
+    with the higher interpolation.
 
     Raises:
-        ArgumentError: two groups are of one kind, and nobody knows how to merge them.
+        ArgumentError: two groups of one kind cannot be merged.
     """
     result = copied(groups)
     added: list[Group] = []
@@ -196,7 +196,7 @@ def merged(groups: Sequence[Group], others: Sequence[Group]) -> list[Group]:
 
 
 def _widened(group: Group, other: Group) -> bool:
-    """Add the values of another group to a group in place; return whether both describe the same quantity."""
+    """Extend a group in place by the values of another; return whether both describe the same quantity."""
     of_joints = group.kind in JOINTS or group.kind in {"joint_torques", "grab"}
     if group.kind == "outputSignals":
         present = group.name.split()[1:]

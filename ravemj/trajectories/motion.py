@@ -1,4 +1,4 @@
-"""Motions: joint values over time, with straight lines between them."""
+"""Motions: joint values over time, piecewise linear."""
 
 import math
 from collections.abc import Iterator
@@ -11,12 +11,12 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.trajectories.interpolation import between
 
-_SAME_FRAME = 1e-6  # frames: a motion that ends this close to a frame ends on it
+_SAME_FRAME = 1e-6  # fraction of a frame within which the end of a motion counts as a frame
 
 
 @dataclass(frozen=True, eq=False, init=False, slots=True)
 class Motion:
-    """Joint values at given times, with straight lines between them.
+    """Joint values at given times, with linear interpolation.
 
     Args:
         times: (N,) seconds, N >= 1, strictly increasing.
@@ -34,8 +34,8 @@ class Motion:
     values: Floats
 
     def __init__(self, times: ArrayLike, values: ArrayLike) -> None:
-        rows = _finite(values, "values", "(N, dof)", 2)
-        seconds = _finite(times, "times", "(N,)", 1)
+        rows = finite_array(values, "values", "(N, dof)", 2)
+        seconds = finite_array(times, "times", "(N,)", 1)
         if not 1 <= len(seconds) == len(rows):
             raise ArgumentError(f"expected one time for each row of values, found {len(seconds)} and {len(rows)} rows")
         if not math.isfinite(float(seconds[-1]) - float(seconds[0])):
@@ -49,24 +49,24 @@ class Motion:
 
     @classmethod
     def line(cls, start: ArrayLike, goal: ArrayLike, duration: float = 1.0) -> "Motion":
-        """Return the motion on the straight line in joint space, at constant speed, from time 0 on.
+        """Return the straight motion in joint space at constant speed, starting at time 0.
 
         Args:
             start: (dof,) joint values at time 0 [rad or m].
             goal: (dof,) joint values at the end.
-            duration: Time that the motion takes [s], above 0.
+            duration: Duration of the motion [s], positive.
 
         Raises:
-            ArgumentError: The shapes differ, or a value or the duration makes no sense.
+            ArgumentError: The shapes differ, or a value or the duration is invalid.
         """
-        first, last = (_finite(end, name, "(dof,)", 1) for end, name in ((start, "start"), (goal, "goal")))
+        first, last = (finite_array(end, name, "(dof,)", 1) for end, name in ((start, "start"), (goal, "goal")))
         if first.shape != last.shape:
             raise ArgumentError(f"start and goal must have equally many values, found {len(first)} and {len(last)}")
         return cls((0.0, positive(duration, "duration")), (first, last))
 
     @property
     def duration(self) -> float:
-        """Seconds from the first time to the last; 0 for a single row."""
+        """Duration [s]; 0 for a single row."""
         return float(self.times[-1]) - float(self.times[0])
 
     @property
@@ -75,7 +75,7 @@ class Motion:
         return self.values.shape[1]
 
     def sample(self, t: float) -> Floats:
-        """Return the (dof,) joint values at time t [s]; before the start and after the end, those of the ends.
+        """Return the (dof,) joint values at time t [s], clamped to the start and the end of the motion.
 
         Values between two rows never leave the range of these rows, so they keep joint limits that the rows keep.
         """
@@ -88,11 +88,11 @@ class Motion:
         return between((first, second), float((t - t0) / (t1 - t0)))
 
     def number_of_frames(self, fps: float) -> int:
-        """Return how many frames ``frames(fps)`` yields: as ``number_of_frames`` says."""
+        """Return the number of frames of ``frames(fps)``; see the function ``number_of_frames``."""
         return number_of_frames(self.duration, fps)
 
     def frames(self, fps: float) -> Iterator[Floats]:
-        """Return an iterator over the (dof,) joint values of each frame of a video; it never holds them all.
+        """Return an iterator over the (dof,) joint values of each frame of a video, one at a time.
 
         Frame k shows the time start + k/fps, and the last frame is exactly the end of the motion.
 
@@ -104,10 +104,10 @@ class Motion:
         return (self.sample(start + k / fps) if k < count - 1 else self.values[-1].copy() for k in range(count))
 
     def rescaled(self, duration: float) -> "Motion":
-        """Return the same path, from the same start time, in another duration [s].
+        """Return the same path from the same start time with another ``duration`` [s].
 
         Raises:
-            ArgumentError: The motion has one row only, or the duration is not above 0.
+            ArgumentError: The motion has only one row, or the duration is not positive.
         """
         if not self.duration:
             raise ArgumentError("a motion of one row has no duration that could be rescaled")
@@ -118,8 +118,8 @@ class Motion:
 def number_of_frames(duration: float, fps: float) -> int:
     """Return the number of frames of a video.
 
-    Frames lie 1/fps apart, from the start to the end. An end that is not on this raster gets a frame of its own, so
-    there are ceil(duration * fps) + 1 frames; a motion without duration has one frame.
+    Frames are 1/fps apart, from the start to the end. An end between frames gets an additional frame, so there are
+    ceil(duration * fps) + 1 frames; a motion of zero duration has one frame.
     """
     steps = duration * positive(fps, "fps")
     if not math.isfinite(steps):
@@ -128,14 +128,14 @@ def number_of_frames(duration: float, fps: float) -> int:
 
 
 def positive(number: float, name: str) -> float:
-    """Return a finite number above 0, or raise ``ArgumentError``."""
+    """Return a finite, positive number, or raise ``ArgumentError``."""
     if not (math.isfinite(number) and number > 0):
         raise ArgumentError(f"expected a {name} above 0, found {number}")
     return number
 
 
-def _finite(numbers: ArrayLike, name: str, shape: str, ndim: int) -> Floats:
-    """Return a checked, read-only copy."""
+def finite_array(numbers: ArrayLike, name: str, shape: str, ndim: int) -> Floats:
+    """Return a checked, read-only copy of numbers."""
     try:
         found = np.asarray(numbers)
     except ValueError as error:

@@ -1,10 +1,10 @@
-"""Motions in every form in which users give them: what viewers, videos, pages and commands play."""
+"""Motions in all forms that users may pass to viewers, videos, pages and commands."""
 
 import contextlib
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError, SourceError
 from ravemj.trajectories import serialization
 from ravemj.trajectories.body_motion import BodyMotion
+from ravemj.trajectories.joint_trajectory_files import is_joint_trajectory, read_joint_trajectory
 from ravemj.trajectories.motion import Motion
 from ravemj.trajectories.motion_reading import MOTION_SUFFIXES, MotionTable, problems_in, read_table
 from ravemj.trajectories.waypoints import Waypoints
@@ -22,7 +23,7 @@ _EXPECTED = (
 
 
 class _Trajectory(Protocol):
-    """A trajectory of the API, which stands above this module."""
+    """Protocol of the API's trajectories, which are in a higher layer."""
 
     @property
     def waypoints(self) -> Waypoints: ...
@@ -33,18 +34,19 @@ MotionLike: TypeAlias = Motion | BodyMotion | _Trajectory | str | os.PathLike[st
 
 
 def body_motion(simulation: Simulation, given: MotionLike, body: BodyState | None = None) -> BodyMotion:
-    """Return how bodies move.
+    """Return the motion of bodies in any of the accepted forms.
 
     Args:
         simulation: The world of the bodies.
         given: A ``Motion``; a trajectory, which names its bodies and is copied; rows (time, joint values) or
             (time, value, value, …), [s] and [rad or m]; the pair of times, shape (N,), and joint values,
-            shape (N, dof); or the path of a ``.csv`` or ``.npz`` table or of OpenRAVE's file of a trajectory.
-        body: The body that moves. By default it is the first robot with joints; for a table whose columns have names,
-            it is the first robot that has all these joints.
+            shape (N, dof); or the path of a ``.csv`` or ``.npz`` table, of a ``JointTrajectory``, or of OpenRAVE's
+            file of a trajectory.
+        body: The moving body. By default it is the first robot with joints; for a table whose columns have names, it is
+            the first robot that has all these joints.
 
     Raises:
-        ArgumentError: this is none of these, or does not fit the body.
+        ArgumentError: the motion has another form, or does not fit the body.
         SourceError: the file cannot be read, or names other joints.
     """
     if isinstance(given, BodyMotion):
@@ -52,7 +54,7 @@ def body_motion(simulation: Simulation, given: MotionLike, body: BodyState | Non
     if body is not None and not simulation.holds(body):
         raise ArgumentError(f"robot: '{body.scene.name}' is not in this environment")
     if isinstance(given, str | os.PathLike):
-        return _from_file(simulation, os.fspath(given), body)
+        return followed_file(simulation, read_motion_file(simulation, os.fspath(given), body))
     waypoints = getattr(given, "waypoints", None)
     if isinstance(waypoints, Waypoints):
         return _from_waypoints(simulation, Waypoints(waypoints.groups, waypoints.data.copy()), body)
@@ -61,7 +63,7 @@ def body_motion(simulation: Simulation, given: MotionLike, body: BodyState | Non
 
 
 def first_robot(simulation: Simulation) -> BodyState:
-    """Return the body that moves by default: the first robot with joints.
+    """Return the default moving body: the first robot with joints.
 
     Raises:
         ArgumentError: no robot has joints.
@@ -88,7 +90,7 @@ def _from_waypoints(simulation: Simulation, waypoints: Waypoints, body: BodyStat
 def _from_rows(given: Any, dof: int) -> Motion:  # noqa: ANN401 - whatever users give
     try:
         rows = list(given)
-        with contextlib.suppress(ValueError):  # numpy knows no dimension of rows of different lengths
+        with contextlib.suppress(ValueError):  # numpy gives no dimension for rows of different lengths
             if len(rows) == 2 and np.ndim(rows[1]) == 2:
                 return Motion(rows[0], rows[1])
         table = np.atleast_2d([np.hstack(row) for row in rows])
@@ -108,23 +110,68 @@ def _described(given: object) -> str:
     return f"a {f'{kind.__module__}.{kind.__qualname__}'.removeprefix('builtins.')}"
 
 
-def _from_file(simulation: Simulation, file: str, body: BodyState | None) -> BodyMotion:
-    if Path(file).suffix.lower() not in MOTION_SUFFIXES:
-        with problems_in(file):
-            stored = serialization.read(Path(file).read_bytes())
-            return _from_waypoints(simulation, stored.waypoints, body)
+class MotionFile(NamedTuple):
+    """Motion read from a file.
+
+    Attributes:
+        file: The path.
+        motion: A ``Motion`` of all DOFs of the body, or a trajectory, which names its bodies.
+        body: The moving body; None if a trajectory names it.
+        dofs: The DOF indices of a ``Motion``.
+    """
+
+    file: str
+    motion: Motion | Waypoints
+    body: BodyState | None
+    dofs: list[int]
+
+
+def read_motion_file(
+    simulation: Simulation, file: str, body: BodyState | None, names: Mapping[str, str] | None = None
+) -> MotionFile:
+    """Read the motion of a file in any form.
+
+    Args:
+        simulation: The world of the bodies.
+        file: The path.
+        body: The moving body; None as for ``body_motion``.
+        names: Joint names of the body by names in a ``JointTrajectory``, if they differ.
+
+    Raises:
+        ArgumentError: there is no robot.
+        SourceError: the file cannot be read, or names other joints.
+    """
+    with problems_in(file):
+        if is_joint_trajectory(file):
+            points = read_joint_trajectory(file).renamed(names or {})
+            body = body or _named_robot(simulation, points.joint_names)
+            return MotionFile(file, points.waypoints(body.scene.name, body.scene.dof_names), body, [])
+        if Path(file).suffix.lower() not in MOTION_SUFFIXES:
+            return MotionFile(file, serialization.read(Path(file).read_bytes()).waypoints, body, [])
     table = read_table(file)
-    body = body or _named_robot(simulation, table)
+    columns = list((table.names or {}).values())
+    body = body or _named_robot(simulation, columns)
     _refuse_other_robots(simulation, table, body)
     motion = table.for_joints(body.scene.dof_names, body.kinematics.values())
-    with problems_in(file):
-        return BodyMotion.of_motion(body, motion)
+    columns = [body.scene.dof_names.index(name) for name in columns]
+    return MotionFile(file, motion, body, columns or list(range(body.dof)))
 
 
-def _named_robot(simulation: Simulation, table: MotionTable) -> BodyState:
-    """Return the first robot that has most of the joints that columns are named after."""
-    names = set((table.names or {}).values())
-    return max(_robots(simulation), key=lambda robot: len(names.intersection(robot.scene.dof_names)))
+def followed_file(simulation: Simulation, read: MotionFile) -> BodyMotion:
+    """Return the motion of bodies from a motion file.
+
+    Raises:
+        SourceError: the motion does not fit the bodies.
+    """
+    with problems_in(read.file):
+        if isinstance(read.motion, Motion):
+            return BodyMotion.of_motion(read.body or first_robot(simulation), read.motion)
+        return _from_waypoints(simulation, read.motion, read.body)
+
+
+def _named_robot(simulation: Simulation, names: Sequence[str]) -> BodyState:
+    """Return the first robot with the most joints among some names."""
+    return max(_robots(simulation), key=lambda robot: len(set(names).intersection(robot.scene.dof_names)))
 
 
 def _refuse_other_robots(simulation: Simulation, table: MotionTable, body: BodyState) -> None:

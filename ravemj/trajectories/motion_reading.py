@@ -1,4 +1,4 @@
-"""Files of motions.
+"""Reading of motion files.
 
 A motion file is a table. As ``.csv``, the first line names the columns, ``time`` in seconds and joints in radians
 or metres, in any order; joints without a column keep their value. Empty lines and lines that start with ``#`` are
@@ -38,11 +38,11 @@ _TIME, _VALUES, _JOINTS = "time", "values", "joints"
 
 
 class MotionTable(NamedTuple):
-    """The content of a motion file.
+    """Content of a motion file.
 
     Attributes:
-        source: Where the columns are named.
-        names: The names of the columns by their number in the file, from 1; None if the file does not name them.
+        source: The position of the column names.
+        names: Column names by their number in the file, from 1; None if the file has none.
         motion: The columns over time.
     """
 
@@ -51,7 +51,7 @@ class MotionTable(NamedTuple):
     motion: Motion
 
     def for_joints(self, joint_names: Sequence[str], current: Floats) -> Motion:
-        """Return the motion of some joints; ``read_motion`` says what the arguments are.
+        """Return the motion of some joints; arguments as for ``read_motion``.
 
         Raises:
             SourceError: a column belongs to none of these joints, or unnamed columns are not as many as the joints.
@@ -66,18 +66,18 @@ class MotionTable(NamedTuple):
         for (number, name), column in zip(self.names.items(), self.motion.values.T, strict=True):
             if name not in dofs:
                 found = f"column {number} is named {reprlib.repr(name)}, which is not a joint"
-                raise SourceError(found, self.source, _did_you_mean(name, joint_names))
+                raise SourceError(found, self.source, did_you_mean(name, joint_names))
             values[:, dofs[name]] = column
         return Motion(self.motion.times, values)
 
 
 def read_motion(path: str | os.PathLike[str], joint_names: Sequence[str], current: ArrayLike) -> Motion:
-    """Return the motion of a ``.csv`` or ``.npz`` file; the module's text describes both.
+    """Return the motion of a ``.csv`` or ``.npz`` file; see the module's docstring for both formats.
 
     Args:
         path: The file.
         joint_names: Names of the dof joint values, in the order of the result's columns.
-        current: (dof,) values that joints without a column keep [rad or m].
+        current: (dof,) values of joints without a column [rad or m].
 
     Raises:
         SourceError: The file cannot be read as a motion; ``source`` has the line for ``.csv``.
@@ -100,20 +100,19 @@ def read_table(path: str | os.PathLike[str]) -> MotionTable:
     with problems_in(file):
         if suffix == ".npz":
             return _read_npz(file)
-        with open(file, encoding="utf-8-sig", errors="surrogateescape") as text:
-            return _read_csv(file, text)
+        return read_csv(file)
 
 
 @contextmanager
 def problems_in(file: str) -> Generator[None]:
-    """Turn what Python, numpy and constructors say about a file into ``SourceError``."""
+    """Convert errors of Python, numpy and constructors about a file to ``SourceError``."""
     try:
         yield
     except SourceError:
         raise
     except ArgumentError as error:
         raise SourceError(error.message, Source(file)) from error
-    except (OSError, ValueError) as error:  # ValueError: a path that holds a null byte
+    except (OSError, ValueError) as error:  # ValueError: a path with a null byte
         reason = getattr(error, "strerror", None) or " ".join(str(error).split())
         raise SourceError(f"cannot read the file: {reason[:1].lower()}{reason[1:]}", Source(file)) from error
 
@@ -124,7 +123,7 @@ def _read_npz(file: str) -> MotionTable:
             arrays: dict[str, Any] = {name: archive[name] for name in (_TIME, _VALUES, _JOINTS) if name in archive}
     except OSError:
         raise
-    except Exception as error:  # zipfile, zlib and numpy have a dozen kinds for bytes that make no sense
+    except Exception as error:  # zipfile, zlib and numpy raise a dozen types for invalid bytes
         hint = "write it with numpy.savez(path, time=..., values=...)"
         raise SourceError("the file is not an intact .npz archive of arrays", Source(file), hint) from error
     for name in (_TIME, _VALUES):
@@ -140,22 +139,24 @@ def _read_npz(file: str) -> MotionTable:
     return MotionTable(Source(file), {number: str(name) for number, name in enumerate(names, 1)}, motion)
 
 
-def _read_csv(file: str, text: TextIO) -> MotionTable:
-    lines = _lines(file, text)
-    line, header = next(lines, (0, [""]))
-    source = Source(file, line)
-    _check_header(header, source)
-    time = header.index(_TIME)
-    numbers = _numbers(file, lines, len(header), time)
+def read_csv(file: str, time_name: str = _TIME) -> MotionTable:
+    """Parse a table of numbers; ``time_name`` is the name of the time column [s]."""
+    with open(file, encoding="utf-8-sig", errors="surrogateescape") as text:
+        lines = _lines(file, text)
+        line, header = next(lines, (0, [""]))
+        source = Source(file, line)
+        _check_header(header, source, time_name)
+        time = header.index(time_name)
+        numbers = _numbers(file, lines, len(header), time)
     if not numbers:
         raise SourceError("there are no rows under the names of the columns", source)
     table: Floats = np.frombuffer(numbers).reshape(-1, len(header))
-    names = {number: name for number, name in enumerate(header, 1) if name != _TIME}
+    names = {number: name for number, name in enumerate(header, 1) if name != time_name}
     return MotionTable(source, names, Motion(table[:, time], np.delete(table, time, axis=1)))
 
 
 def _lines(file: str, text: TextIO) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the cells of each line that holds some."""
+    """Yield the number and the cells of each line that is not empty."""
     import csv  # noqa: PLC0415 - slow to import
 
     for number, line in enumerate(text, 1):
@@ -163,7 +164,7 @@ def _lines(file: str, text: TextIO) -> Iterator[tuple[int, list[str]]]:
         if not content or content.startswith("#"):
             continue
         try:
-            content.encode()  # bytes that are not UTF-8 were read as surrogates, which cannot be encoded
+            content.encode()  # invalid UTF-8 was read as surrogates, which cannot be encoded
             cells = next(csv.reader((content,), skipinitialspace=True))
         except (csv.Error, UnicodeEncodeError) as error:
             reason = error if isinstance(error, csv.Error) else "not UTF-8 text"
@@ -171,10 +172,10 @@ def _lines(file: str, text: TextIO) -> Iterator[tuple[int, list[str]]]:
         yield number, [cell.strip() for cell in cells]
 
 
-def _check_header(header: list[str], source: Source) -> None:
-    if _TIME not in header:
-        hint = f"the first line names the columns, separated by commas: {_TIME},<joint>,…"
-        raise SourceError(f"there is no column '{_TIME}'", source, hint)
+def _check_header(header: list[str], source: Source, time_name: str) -> None:
+    if time_name not in header:
+        hint = f"the first line names the columns, separated by commas: {time_name},<joint>,…"
+        raise SourceError(f"there is no column '{time_name}'", source, hint)
     for column, name in enumerate(header):
         if not name:
             raise SourceError(f"column {column + 1} has no name", source)
@@ -182,7 +183,8 @@ def _check_header(header: list[str], source: Source) -> None:
             raise SourceError(f"there are two columns {reprlib.repr(name)}", source)
 
 
-def _did_you_mean(name: str, joint_names: Sequence[str]) -> str:
+def did_you_mean(name: str, joint_names: Sequence[str]) -> str:
+    """Return a hint for an unknown joint: the most similar name, and all names."""
     close = difflib.get_close_matches(name[:100], joint_names, 1)
     guess = f"did you mean '{close[0]}'? " if close else ""
     return f"{guess}the joints are {', '.join(joint_names) or 'none'}"

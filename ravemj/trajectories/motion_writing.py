@@ -1,4 +1,4 @@
-"""Files of motions, as ``motion_reading`` reads them."""
+"""Writing of motion files, which ``motion_reading`` reads."""
 
 import os
 from collections.abc import Sequence
@@ -7,17 +7,18 @@ from pathlib import Path
 import numpy as np
 
 from ravemj.core.output import check_file, new_file, output_error
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.trajectories.motion import Motion
 from ravemj.trajectories.motion_reading import MOTION_SUFFIXES
 
 
 def check_motion_file(path: str | os.PathLike[str]) -> None:
-    """Check that a motion can be written to a path, without touching anything.
+    """Check that a motion can be written to a path; nothing is written.
 
     Raises:
         ArgumentError: the suffix is neither ``.csv`` nor ``.npz``.
-        OutputError: the folder around it is missing or cannot be written, or something is in the way.
+        OutputError: the folder around it is missing or cannot be written, or the path is not a file.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in MOTION_SUFFIXES:
@@ -25,19 +26,22 @@ def check_motion_file(path: str | os.PathLike[str]) -> None:
     check_file(path)
 
 
-def write_motion(path: str | os.PathLike[str], motion: Motion, joint_names: Sequence[str]) -> Path:
-    """Write a motion as ``.csv`` or ``.npz``, by the suffix; ``read_motion`` reads back the very numbers.
+def write_motion(
+    path: str | os.PathLike[str], motion: Motion, joint_names: Sequence[str], notes: Sequence[str] = ()
+) -> Path:
+    """Write a motion as ``.csv`` or ``.npz``; ``read_motion`` restores the exact numbers. Return the path.
 
     Args:
         path: The file.
         motion: The motion.
         joint_names: Names of its columns.
+        notes: Lines that readers ignore: comments at the end of a table, else the array ``notes``.
 
     Returns:
-        The path, as it was given.
+        The given path.
 
     Raises:
-        ArgumentError: the suffix is neither ``.csv`` nor ``.npz``, or there are not as many names as columns.
+        ArgumentError: the suffix is neither ``.csv`` nor ``.npz``, or the numbers of names and columns differ.
         OutputError: the file cannot be written.
 
     Example:
@@ -51,20 +55,28 @@ def write_motion(path: str | os.PathLike[str], motion: Motion, joint_names: Sequ
         try:
             if Path(path).suffix.lower() == ".npz":
                 with temporary.open("wb") as file:
-                    np.savez(file, time=motion.times, values=motion.values, joints=np.array(joint_names, dtype=str))
+                    names, texts = np.array(joint_names, dtype=str), np.array(notes, dtype=str)
+                    np.savez(file, time=motion.times, values=motion.values, joints=names, notes=texts)
             else:
-                temporary.write_text(_table(motion, joint_names), encoding="utf-8")
+                table = csv_table(["time", *joint_names], np.column_stack([motion.times, motion.values]))
+                temporary.write_text(table + comments(notes), encoding="utf-8")
         except OSError as error:
             raise output_error(path, error) from error
     return Path(path)
 
 
-def _table(motion: Motion, joint_names: Sequence[str]) -> str:
+def csv_table(header: Sequence[str], table: Floats) -> str:
+    """Return a table of numbers as CSV."""
     import csv  # noqa: PLC0415 - slow to import
     import io  # noqa: PLC0415
 
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(["time", *joint_names])
-    rows.writerows(np.column_stack([motion.times, motion.values]).tolist())
+    rows.writerow(header)
+    rows.writerows(table.tolist())
     return text.getvalue()
+
+
+def comments(notes: Sequence[str]) -> str:
+    """Return lines of text as comments of tables and of YAML."""
+    return "".join(f"# {line}\n" for note in notes for line in note.splitlines())

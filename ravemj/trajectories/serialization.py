@@ -1,4 +1,4 @@
-"""Trajectories and their layouts as text, and trajectories as bytes, in OpenRAVE's formats."""
+"""Trajectories and layouts in OpenRAVE's text and binary formats."""
 
 import struct
 from collections.abc import Sequence
@@ -16,15 +16,16 @@ if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.tree import Element
 
 AS_TEXT = 0x8000
-"""The option that asks for text."""
+"""Option that selects text."""
 
 _MAGIC = b"\xff\x62"
 _VERSION = 2
 _READABLE_VERSIONS = range(1, 4)
+_LARGEST = 2**31 - 1  # largest of OpenRAVE's integers
 
 
 class Stored(NamedTuple):
-    """What is kept of a trajectory.
+    """Serialized content of a trajectory.
 
     Attributes:
         waypoints: Its configurations.
@@ -36,7 +37,7 @@ class Stored(NamedTuple):
 
 
 def to_text(stored: Stored, kind: str) -> str:
-    """Return a trajectory of a type as XML, with all digits."""
+    """Return a trajectory as XML, with all digits."""
     numbers = "".join(f"{_digits(number)} " for number in stored.waypoints.data.ravel().tolist())
     quoted = stored.description.replace("]]>", "]]]]><![CDATA[>")
     description = f"<description><![CDATA[{quoted}]]></description>\n" if quoted else ""
@@ -74,10 +75,10 @@ def _packed(text: str) -> bytes:
 
 
 def read(data: bytes | str) -> Stored:
-    """Return the trajectory in bytes or text of either form; text may also hold the bytes as letters.
+    """Parse a trajectory from bytes or text of either form; text may also contain the bytes as characters.
 
     Raises:
-        ArgumentError: they are no trajectory.
+        ArgumentError: the data is not a trajectory.
     """
     if not isinstance(data, str | bytes):  # pyright: ignore[reportUnnecessaryIsInstance] - users give it
         raise ArgumentError(f"data: is of type {type(data).__name__}, and should be bytes or a text")
@@ -108,7 +109,7 @@ def _numbers(element: "Element") -> Floats:
 
 
 def _from_bytes(data: bytes) -> Stored:
-    reader = _Reader(data)
+    reader = _ByteReader(data)
     version, number = reader.unpack("<2xHH")
     if version not in _READABLE_VERSIONS:
         raise ArgumentError(f"data: is a trajectory of version {version}, and 1 to 3 can be read")
@@ -118,18 +119,18 @@ def _from_bytes(data: bytes) -> Stored:
         offset, dof = reader.unpack("<ii")
         groups.append(Group(name, offset, dof, reader.text()))
     (size,) = reader.unpack("<I")
-    numbers = np.frombuffer(reader.take(8 * size), dtype="<f8").astype(np.float64)
+    numbers = np.frombuffer(reader.next_bytes(8 * size), dtype="<f8").astype(np.float64)
     return Stored(Waypoints(groups, _rows(numbers, groups)), reader.text())
 
 
-class _Reader:
-    """Takes one thing after the other from bytes."""
+class _ByteReader:
+    """Sequential reader of bytes."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
         self._at = 0
 
-    def take(self, size: int) -> bytes:
+    def next_bytes(self, size: int) -> bytes:
         taken = self._data[self._at : self._at + size]
         if len(taken) < size:
             raise ArgumentError(f"data: is not a whole trajectory; it breaks off after {len(self._data)} bytes")
@@ -137,24 +138,25 @@ class _Reader:
         return taken
 
     def unpack(self, form: str) -> tuple[int, ...]:
-        return struct.unpack(form, self.take(struct.calcsize(form)))
+        return struct.unpack(form, self.next_bytes(struct.calcsize(form)))
 
     def text(self) -> str:
         (size,) = self.unpack("<H")
-        return self.take(size).decode(errors="replace")
+        return self.next_bytes(size).decode(errors="replace")
 
 
 def _rows(numbers: Floats, groups: Sequence[Group]) -> Floats:
+    wrong = flaw(groups)
+    if wrong is not None:
+        raise ArgumentError(f"data: is not a trajectory; {wrong}")
     width = count(groups)
-    if any(group.offset < 0 or group.dof < 0 for group in groups):
-        raise ArgumentError("data: is not a trajectory; groups have negative offsets or sizes")
     if numbers.size % width if width else numbers.size:
         raise ArgumentError(f"data: has {numbers.size} numbers, and should have a multiple of {width}")
     return numbers.reshape(-1, width) if width else np.empty((0, 0))
 
 
 def layout_text(groups: Sequence[Group]) -> str:
-    """Return the ``<configuration>`` element of a layout, a group a line."""
+    """Return the ``<configuration>`` element of a layout, with one line per group."""
     from xml.sax.saxutils import quoteattr  # noqa: PLC0415 - imports urllib, which is slow
 
     lines = [
@@ -166,10 +168,10 @@ def layout_text(groups: Sequence[Group]) -> str:
 
 
 def read_layout(text: str) -> list[Group]:
-    """Return the layout in a text.
+    """Parse the layout in a text.
 
     Raises:
-        ArgumentError: the text is no layout, or values are in two groups of it or in none.
+        ArgumentError: the text is not a layout, or its groups overlap or have gaps.
     """
     root = read_element(text, "configuration")
     groups = groups_of(root)
@@ -180,10 +182,10 @@ def read_layout(text: str) -> list[Group]:
 
 
 def read_element(text: str, tag: str) -> "Element":
-    """Return the root element of a text.
+    """Parse a text, and return its root element.
 
     Raises:
-        ArgumentError: the text is no XML, or its root has another name.
+        ArgumentError: the text is not XML, or its root has another name.
     """
     from ravemj.formats.openrave_xml.tree import parse  # noqa: PLC0415 - slow to import
 
@@ -200,7 +202,7 @@ def groups_of(configuration: "Element") -> list[Group]:
     """Return the groups in a ``<configuration>`` element.
 
     Raises:
-        ArgumentError: an offset or a number of values is no integer.
+        ArgumentError: an offset or a number of values is not an integer.
     """
     groups: list[Group] = []
     for child in configuration.children:
@@ -210,5 +212,7 @@ def groups_of(configuration: "Element") -> list[Group]:
                 offset, dof = int(given.get("offset", "0")), int(given.get("dof", "0"))
             except ValueError:
                 raise ArgumentError(f"{child.source}: offset and dof should be integers") from None
+            if max(offset, dof) > _LARGEST:
+                raise ArgumentError(f"{child.source}: offset and dof should be at most {_LARGEST}")
             groups.append(Group(given.get("name", ""), offset, dof, given.get("interpolation", "")))
     return groups

@@ -1,7 +1,7 @@
-"""Configurations over time."""
+"""Waypoints: configurations over time."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -39,15 +39,15 @@ _ORDER = (
     *(f"{part}_{rate}" for rate in ("snaps", "jerks", "accelerations", "velocities") for part in ("joint", "affine")),
     *("joint_values", "affine_transform", "joint_torques"),
 )
-"""The order in which trajectories list their groups, as in OpenRAVE; other kinds come last."""
+"""Order of the groups in trajectories, as in OpenRAVE; other kinds come last."""
 
 
 class Waypoints:
-    """Configurations in the order of time, and how to find those between them.
+    """Configurations in the order of time, with interpolation.
 
     Attributes:
-        groups: What the numbers of a configuration are.
-        data: A configuration in each row.
+        groups: The layout of a configuration.
+        data: One configuration per row.
     """
 
     def __init__(self, groups: Sequence[Group], data: Floats | None = None) -> None:
@@ -62,18 +62,18 @@ class Waypoints:
     def insert(
         self, index: int, numbers: Floats, groups: Sequence[Group], *, overwrite: bool, find_body: FindBody
     ) -> None:
-        """Insert configurations, or write over those that are there.
+        """Insert configurations, or overwrite existing ones.
 
         Args:
-            index: The waypoint before which they go.
-            numbers: The configurations, one behind the other.
-            groups: Their layout. Where it lacks values, older waypoints keep theirs; new ones get the
-                present values of other joints of the same group, else zeros.
-            overwrite: Whether to write over waypoints; what reaches beyond the last one is appended.
+            index: The waypoint before which they are inserted.
+            numbers: The configurations, concatenated.
+            groups: Their layout. Existing waypoints keep values that it lacks; in new ones these are the present values
+                for joints of the same group, else zeros.
+            overwrite: Whether to overwrite waypoints; data beyond the last one is appended.
             find_body: Finds the bodies of the groups.
 
         Raises:
-            ArgumentError: the number of numbers does not fit, or there is no such place.
+            ArgumentError: the data does not fill whole configurations, or the index is out of range.
         """
         if not numbers.size:
             return
@@ -107,19 +107,19 @@ class Waypoints:
             raise ArgumentError(message, ErrorCode.Assert)
 
     def rows(self, start: int, end: int) -> Floats:
-        """Return the waypoints from ``start`` to before ``end``; a copy."""
+        """Return a copy of the waypoints from ``start`` to before ``end``."""
         self._check_range(start, end)
         return self.data[start:end].copy()
 
     def as_layout(self, rows: Floats, groups: Sequence[Group], find_body: FindBody) -> Floats:
-        """Return configurations in another layout; what they lack is the bodies' present state."""
+        """Return configurations in another layout; the bodies' present state supplies missing values."""
         return converted(self.groups, rows, groups, np.zeros((len(rows), count(groups))), find_body)
 
     def times(self) -> Floats:
-        """Return when the waypoints are [s]; empty where the layout has no time.
+        """Return the times of the waypoints [s]; empty if the layout has no time.
 
         Raises:
-            RavemjError: time runs backwards.
+            RavemjError: the times decrease.
         """
         if self._times is None:
             if self._time_column is None:
@@ -133,27 +133,28 @@ class Waypoints:
         return self._times
 
     def duration(self) -> float:
-        """Return when the last waypoint is [s]; 0 without time."""
+        """Return the time of the last waypoint [s]; 0 if the layout has no time."""
         times = self.times()
         return float(times[-1]) if len(times) else 0.0
 
     def first_after(self, time: float) -> int:
-        """Return the first waypoint at a time or later; from the end on, the number of waypoints."""
+        """Return the index of the first waypoint at a time or later; after the end, the number of waypoints."""
         self._timed()
         if math.isnan(time):
             raise ArgumentError("time: is nan, and should be a number", ErrorCode.Assert)
         return len(self) if time >= self.duration() else int(np.searchsorted(self.times(), time))
 
     def sample(self, time: float, *, restamped: bool, find_body: FindBody = nobody) -> Floats:
-        """Return the configuration at a time; from the end on, the last one.
+        """Return the configuration at a time; after the end, the last one.
 
         Args:
             time: Time [s] since the start.
             restamped: Whether ``deltatime`` is the time since the last waypoint; else that of the next waypoint.
-            find_body: Finds the bodies of the groups, whose circular joints go the short way round.
+            find_body: Finds the bodies of the groups, whose circular joints take the shorter arc.
 
         Raises:
-            ArgumentError: the layout has no time, there is no waypoint, or the interpolation lacks derivatives.
+            ArgumentError: the layout has no time, there are no waypoints, or derivatives for the interpolation are
+                missing.
         """
         column = self._timed()
         if not time >= -ROUNDING:
@@ -193,11 +194,37 @@ class Waypoints:
             configuration[group.columns] = values
         return configuration
 
+    def pieces(self, groups: Sequence[Group], find_body: FindBody = nobody) -> Iterator[tuple[float, float, Floats]]:
+        """Yield the polynomials of some groups between consecutive waypoints.
+
+        Yields:
+            Start and end [s], and the coefficients of powers of the fraction of the segment, lowest first, shape (k,
+            n).
+
+        Raises:
+            ArgumentError: the layout has no time, a group jumps, or derivatives for the interpolation are missing.
+        """
+        column, times = self._timed(), self.times()
+        for index in range(1, len(self)):
+            duration = float(self.data[index, column])
+            ways = [self._way(group, index, duration, find_body) for group in groups]
+            degree = max(len(way) for way in ways)
+            rows = [np.vstack([way, np.zeros((degree - len(way), way.shape[1]))]) for way in ways]
+            yield float(times[index - 1]), float(times[index]), np.hstack(rows)
+
+    def _way(self, group: Group, index: int, duration: float, find_body: FindBody) -> Floats:
+        first, second = self._ends(group, index)
+        if duration > 0 and group.interpolation not in HELD:
+            return self._curve(group, group.interpolation, index, duration, find_body)
+        if (first != second).any():
+            raise ArgumentError(f"group '{group.name}': jumps at {self.times()[index]:.6g} s")
+        return first[None]
+
     def _ends(self, group: Group, index: int) -> Ends:
         return self.data[index - 1, group.columns], self.data[index, group.columns]
 
     def _unwound(self, group: Group, ends: Ends, find_body: FindBody) -> Ends:
-        """Return both ends, with circular joints of the second moved by full turns next to the first."""
+        """Return the values at both ends; circular joints at the second end are shifted by turns to the first."""
         first, second = ends
         body = find_body(group.body or "") if group.kind == JOINTS[0] else None
         if body is None:
@@ -208,7 +235,7 @@ class Waypoints:
         return first, np.where(circular, second - 2 * np.pi * turns, second)
 
     def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
-        """Return how a group changes on the way to a waypoint, by its derivatives, or as the derivative of another."""
+        """Return the curve of a group to a waypoint, from its derivatives, or as the derivative of another group."""
         if group.kind == IK[0]:
             what = f"'{interpolation}' interpolation of goals of inverse kinematics"
             raise UnsupportedError(f"sampling of '{group.name}'", what)
@@ -217,7 +244,7 @@ class Waypoints:
         derivatives = [self._ends(derivative, index) for derivative in self._derivatives(group, interpolation)]
         if len(derivatives) >= DERIVATIVES[interpolation]:
             ends = self._ends(group, index)
-            if interpolation not in {"linear", "quadratic"}:  # those go as their velocities say, or the long way round
+            if interpolation not in {"linear", "quadratic"}:  # these follow their velocities, or the longer arc
                 ends = self._unwound(group, ends, find_body)
             return curve(interpolation, ends, derivatives, duration)
         integral = find_shifted(self.groups, group.name, -1, exact=True)
@@ -228,7 +255,7 @@ class Waypoints:
         return differentiated(self._curve(integral, higher, index, duration, find_body), duration)
 
     def _derivatives(self, group: Group, interpolation: str) -> list[Group]:
-        """Return the groups with the derivatives of another, as far as they are interpolated as derivatives of it."""
+        """Return the groups with the derivatives of another group, as far as the interpolations are consistent."""
         found: list[Group] = []
         while interpolation != INTERPOLATIONS[0]:
             derivative = find_shifted(self.groups, group.name, len(found) + 1, exact=True)
@@ -240,7 +267,7 @@ class Waypoints:
 
 
 def _goal_between(kind: int, ends: Ends, part: float) -> Floats:
-    """Return a goal of inverse kinematics on the way to another; rotations turn the short way."""
+    """Interpolate between two IK goals; rotations take the shorter arc."""
     values = between(ends, part)
     if kind in {IkParameterizationType.Transform6D, IkParameterizationType.Rotation3D}:
         values[:4] = InterpolateQuatSlerp(ends[0][:4], ends[1][:4], part)

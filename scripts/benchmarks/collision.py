@@ -59,7 +59,8 @@ def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
     both, floor = free.measure(lambda: env.CheckCollision(panda) or panda.CheckSelfCollision())
     label = f"{what}: SetDOFValues + CheckCollision + CheckSelfCollision : mj_kinematics + mj_collision"
     yield Row(label, "µs", both, floor)
-    yield _world_row(what, panda, free, 3.5)
+    yield _world_row(what, panda, free, 2.6)
+    yield from _report_rows(what, panda)
     with env, panda:
         collides = moving_test(panda.simulation_state, range(panda.GetDOF()))
         tested, floor = free.measure(collides=collides)
@@ -80,6 +81,30 @@ def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
             )
         what_for = f"{what}: configurations a second, batch_collides on {processors} : a loop over MuJoCo"
         yield Row(what_for, "1/s", _BATCH / batch * 1e6, _BATCH / loop * 1e6, limit, more_is_better=True)
+
+
+def _report_rows(what: str, robot: ravemj.Robot) -> Iterator[Row]:
+    """Compare reports with answers alone: with contacts if it collides, with the distance if it does not."""
+    env, report = robot.GetEnv(), ravemj.CollisionReport()
+    checker, options = env.GetCollisionChecker(), ravemj.CollisionOptions
+    assert checker is not None
+    random, limits = np.random.default_rng(5), robot.GetDOFLimits()
+    for option, hits, limit in ((options.Contacts, True, 3.0), (options.Distance, False, 8.0)):
+        chosen: list[Floats] = []
+        while len(chosen) < _COUNT:
+            robot.SetDOFValues(random.uniform(*limits))
+            if env.CheckCollision(robot) == hits:
+                chosen.append(robot.GetDOFValues())
+
+        def ask(*wanted: ravemj.CollisionReport, chosen: list[Floats] = chosen) -> None:
+            for values in chosen:
+                robot.SetDOFValues(values)
+                env.CheckCollision(robot, *wanted)
+
+        checker.SetCollisionOptions(option)
+        told, alone = take_turns([microseconds(lambda ask=ask: ask(report), 3), microseconds(ask, 3)], 100)
+        checker.SetCollisionOptions(0)
+        yield Row(f"{what}: a report of {option.name} : the answer alone", "µs", told / _COUNT, alone / _COUNT, limit)
 
 
 @contextmanager

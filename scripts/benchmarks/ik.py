@@ -18,6 +18,13 @@ from ravemj.ik.numeric import CompiledKinematics
 
 MANY = 20000
 POSES = 200
+_BETWEEN = [
+    [-1.87, -1.69, -0.3, -0.75, 1.75, 1.79, 2.84],
+    [-2.23, -1.57, -2.32, -3.06, 1.55, 1.72, 2.45],
+    [-0.74, -1.6, 1.56, -0.6, -2.27, 1.69, -2.85],
+    [0.18, -1.49, 2.78, -1.05, 2.06, 1.79, 2.87],
+]
+"""Configurations of a Panda whose poses have no solution at any sample of its free joint from 0 outwards."""
 _IDLE = "the limit is that of µs on an idle machine, where the floor is 1"
 
 
@@ -27,6 +34,7 @@ def rows() -> list[Row]:
     found = [_derived(name, chain) for name, chain in (("PUMA", puma), ("Panda", panda), ("UR-like", parallel))]
     found += [_batch("PUMA", puma, 8.0), _batch("UR-like", parallel, None), _batch("six general joints", _odd(), None)]
     found += [_one("PUMA", puma, 250.0), _one("UR-like", parallel, None), _eaik("PUMA", puma), _first(panda)]
+    found += _hard(panda)
     return found + _searches("PUMA", puma) + _searches("Panda", panda)
 
 
@@ -132,6 +140,20 @@ def _first(chain: Chain) -> Row:
     median, share = _median([lambda pose=pose: solver.nearest(pose, np.zeros(chain.dof)) for pose in poses])
     what = "Panda: nearest solution within limits, median : mj_kinematics"
     return _single(what, chain, values, median, 1000.0, f"{share:.1%} of the poses; ")
+
+
+def _hard(chain: Chain) -> list[Row]:
+    """Measure all solutions of poses between the samples of the free joint, and of poses out of reach."""
+    solver, values = make_solver(chain), np.resize(_BETWEEN, (POSES, chain.dof))
+    near = chain.forward(values)
+    far = near.copy()
+    far[:, :3, 3] *= 3
+    rows: list[Row] = []
+    for what, poses in (("between two samples", near), ("out of reach", far)):
+        median, _ = _median([lambda pose=pose: solver.solve_one(pose) for pose in poses])
+        label = f"Panda: all solutions of a pose {what}, median : mj_kinematics"
+        rows.append(_single(label, chain, values, median, 3000.0, ""))
+    return rows
 
 
 def _searches(name: str, chain: Chain) -> list[Row]:

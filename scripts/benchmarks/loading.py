@@ -1,5 +1,7 @@
 """From a model file to a compiled model."""
 
+import tempfile
+
 import mujoco
 
 import ravemj
@@ -35,6 +37,7 @@ def rows() -> list[Row]:
         ],
         200,
     )
+    gains, convert, from_files = _converting()
     return [
         Row("load, translate, compile env.xml : MjModel.from_xml_string", "µs", whole, bare, 3.5),
         Row("  the same with the state : MjModel.from_xml_string, MjData", "µs", stated, bare_stated, 3.5),
@@ -42,4 +45,22 @@ def rows() -> list[Row]:
         Row("  writing MJCF alone", "µs", write, bare_again),
         Row("  writing MJCF, MjSpec, MjModel, MjData", "µs", compiled, bare_again),
         Row("  MjData alone, which the floor does not make", "µs", make_data, bare_again),
+        Row("load, write_mjcf of the SCARA with servos : MjModel.from_xml_path", "µs", convert, from_files),
+        Row("  gains of its servos alone", "µs", gains, from_files),
     ]
+
+
+def _converting() -> list[float]:
+    """Return the times of gains, of a conversion with meshes, and of MuJoCo with the result."""
+    path = ravemj.model_path("scara")
+    robot = ravemj.load(path).GetRobots()[0]
+    with tempfile.TemporaryDirectory() as folder:
+        made = ravemj.load(path).write_mjcf(f"{folder}/scara", actuators="position")
+        return take_turns(
+            [
+                microseconds(robot.servo_gains),
+                microseconds(lambda: ravemj.load(path).write_mjcf(f"{folder}/scara", actuators="position")),
+                microseconds(lambda: mujoco.MjModel.from_xml_path(made)),
+            ],
+            20,
+        )

@@ -15,7 +15,7 @@ from ravemj.core.transforms import Floats, Ints
 from ravemj.manipulation.bodies import Bodies
 from ravemj.planning.edges import Edges, length
 from ravemj.planning.retiming.polynomials import Parabolic
-from ravemj.planning.retiming.segments import Limits, retime
+from ravemj.planning.retiming.segments import PathLimits, retime
 from ravemj.planning.rrt import Budget, Search, connect
 from ravemj.planning.shortcuts import shorten
 from ravemj.planning.space import Coordinates, Space
@@ -318,6 +318,6 @@ def _retiming() -> Row:
     points = np.random.default_rng(5).uniform(-2, 2, (10, _DOFS))
     ones = np.ones(_DOFS)
     plain = Coordinates(np.zeros(_DOFS, dtype=bool))
-    limits = Limits(plain, -3 * ones, 3 * ones, 2 * ones, 5 * ones, 100 * ones)
+    limits = PathLimits(plain, -3 * ones, 3 * ones, 2 * ones, 5 * ones, 100 * ones)
     (measured,) = take_turns([microseconds(lambda: retime(Parabolic(), points, limits))], 20)
     return Row("parabolic times for ten waypoints of seven joints", "ms", measured / 1e3, 1.0, 1.0, note="limit in ms")

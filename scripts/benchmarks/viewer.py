@@ -81,12 +81,12 @@ def _picture_rows(name: str, env: ravemj.Environment) -> list[Row]:
         begin, used = time.monotonic(), time.process_time()
         width, height = (int(level.scale * length) for length in _LARGE)
         env.renderer.render(camera, (1.0, 1.0, 1.0), Format(width, height, samples=level.samples))
-        sharpness.drew(level, time.monotonic() - begin)
+        sharpness.add_measurement(level, time.monotonic() - begin)
         return 1e3 * (time.process_time() - used)
 
     for _ in range(_WARM):
-        draw(sharpness.moving(0.0))
-    level = sharpness.moving(0.0)
+        draw(sharpness.level_while_moving(0.0))
+    level = sharpness.level_while_moving(0.0)
     moving = statistics.median(draw(level) for _ in range(_PICTURES))
     resting = statistics.median(draw(CRISP) for _ in range(_PICTURES))
     note = f"{_LARGE[0]}x{_LARGE[1]}; moving at {level.scale:g} of that, {level.samples} samples"

@@ -18,7 +18,7 @@ from typing import Any
 
 from ravemj.graphics.shown_path import ShownPath
 
-PAGES = ("tutorial", "tip", "obstacle")
+PAGES = ("tutorial", "tip", "obstacle", "pick", "humanoids")
 """Names of the tutorials in ``docs/``; the pictures of each begin with its name."""
 
 _BLOCK = re.compile(r"^```(python|ipython|sh|xml (?=\S)|text) *(\S*)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
@@ -28,7 +28,7 @@ _FRAME = re.compile(r"^<iframe .*</iframe>\n*", re.MULTILINE)  # notebooks show 
 
 _PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([\w.-]+)\)\n*")
 _MAKES = r'(?:\.save\(|ravemj\.record\(.*)"{}"'  # a line that makes a picture
-_SAVES = re.compile(r'^(.*)\.save\("[\w-]+\.png"\)$|^\w+ = (ravemj\.record\(.*\))$', re.MULTILINE)
+_SAVES = re.compile(r'^( *)(.*)\.save\("[\w-]+\.png"\)$|^\w+ = (ravemj\.record\(.*\))$', re.MULTILINE)
 
 Cell = dict[str, Any]
 
@@ -57,7 +57,7 @@ def notebook(page: str, pictures: Path) -> str:
     for cell in cells:
         cell["source"] = _PICTURE.sub("", cell["source"]).strip()
         if cell["cell_type"] == "code":
-            cell["source"] = _SAVES.sub(r"display(\1\2)", cell["source"])
+            cell["source"] = _SAVES.sub(r"\1display(\2\3)", cell["source"])
     return as_json([cell for cell in cells if cell["source"]])
 
 

@@ -54,6 +54,7 @@ def take(folder: Path) -> None:
     env.Destroy()
     take_forces(folder / "window-forces.png")
     take_branches(folder / "window-branches.png")
+    take_pins(folder / "window-pins.png")
 
 
 BOXES = """<Environment>
@@ -95,6 +96,33 @@ def take_branches(file: Path) -> None:
     x, y = next((x + i, y + j) for i in range(-20, 21) for j in range(-20, 21) if link_at(viewer, x + i, y + j) == 6)
     for event in (Key("escape"), Press(x, y, ctrl=True, shift=True), Move(x + 10, y - 10), Move(x + 20, y - 15)):
         viewer.interaction.handle(event)
+    grab(viewer, file)
+    env.Destroy()
+
+
+def take_pins(file: Path) -> None:
+    """Pin the feet of a humanoid, pull a hand, and take a picture."""
+    env = ravemj.load("models/biped.robot.xml")
+    robot = env.GetRobots()[0]
+    viewer = opened(env, [1.7, -1.3, 1.0], [0.05, 0, 0.5])
+    viewer.interaction.handle(Key("escape"))
+
+    def at(name: str) -> tuple[float, float]:
+        """Return a point of the window where a link is seen."""
+        ((x, y),), _ = viewer.interaction.view.camera.project([robot.GetLink(name).ComputeAABB().pos()], *SIZE)
+        return x, y
+
+    for foot in ("LFoot", "RFoot"):
+        while link_at(viewer, *at(foot)) != robot.GetLink(foot).GetIndex():
+            time.sleep(0.05)
+        x, y = at(foot)
+        for event in (Press(x, y), Release(x, y), Operate("pin"), Press(5, 300), Release(5, 300)):
+            viewer.interaction.handle(event)
+    x, y = at("RHand")
+    for event in (Press(x, y, ctrl=True, shift=True), Move(x - 30, y + 40), Release(x - 60, y + 90)):
+        viewer.interaction.handle(event)
+    viewer.interaction.handle(Press(5, 300))  # selects nothing
+    viewer.interaction.handle(Release(5, 300))
     grab(viewer, file)
     env.Destroy()
 

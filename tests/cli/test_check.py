@@ -139,3 +139,21 @@ def test_json_has_stable_keys_and_where_a_file_was_included(folder):
     assert found[-1]["code"] == "fatal"
     assert found[-1]["included_from"] is None
     assert json.loads(ravemj_command(folder, "check", "--json", MODELS / "env.xml").stdout) == []
+
+
+@pytest.mark.parametrize(
+    ("shape", "mass", "told"),
+    [
+        ('<Geom type="sphere"><radius>0</radius></Geom>', "<density>1000</density>", True),
+        ('<Geom type="trimesh"><data>flat.off</data></Geom>', "<density>1000</density>", True),
+        ('<Geom type="box"><extents>1 1 0</extents></Geom>', "<density>1000</density>", True),
+        ('<Geom type="box"><extents>1 1 1</extents></Geom>', "<density>1000</density>", False),
+        ('<Geom type="box"><extents>1 1 0</extents></Geom>', "<density>0</density>", False),
+        ("", "<density>1000</density>", False),
+    ],
+)
+def test_a_density_that_fills_nothing_is_reported(shape, mass, told, tmp_path):
+    (tmp_path / "flat.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    body = f'<Body name="a">{shape}<Mass type="mimicgeom">{mass}</Mass></Body>'
+    (tmp_path / "thin.xml").write_text(f'<KinBody name="k">{body}</KinBody>')
+    assert ("no-volume" in {code for _, code, _ in codes(tmp_path / "thin.xml")}) == told

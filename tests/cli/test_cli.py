@@ -1,5 +1,6 @@
 """The commands as users run them: what they print, what they write, how they fail."""
 
+import base64
 import json
 import os
 import re
@@ -8,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import zlib
 from pathlib import Path
 
 import av
@@ -213,6 +215,16 @@ def test_progress_makes_room_for_the_result(folder):
 # Pictures, tables and translations
 
 
+def test_render_writes_a_page_whose_sliders_move_the_joints(folder):
+    printed = said(ravemj_command(folder, "render", "env.xml", "-o", "arm.html", "--q", "0.5,0.25"))
+    assert printed == "wrote arm.html (any browser shows it, with a slider for each joint)\n"
+    packed = re.search(r'<script id="scene" type="text/plain">([^<]*)</script>', (folder / "arm.html").read_text())[1]
+    content = zlib.decompress(base64.b64decode(packed))
+    document = json.loads(content[4 : 4 + int.from_bytes(content[:4], "little")])
+    sliders = [(slider["name"], slider["value"]) for slider in document["mechanism"]["sliders"]]
+    assert sliders == [("Joint0", 0.5), ("Joint1", 0.25)]
+
+
 def test_render_draws_the_pose_from_the_camera(folder):
     words = (
         "-o",
@@ -234,6 +246,22 @@ def test_render_draws_the_pose_from_the_camera(folder):
     elbow = 0.2 * np.array([0, np.sin(q), -np.cos(q)])
     assert colour_at(picture, tuple(elbow / 2)) == "red"
     assert colour_at(picture, tuple(elbow + 0.1 * np.array([0, np.sin(2 * q), -np.cos(2 * q)]))) == "blue"
+
+
+@pytest.mark.parametrize(
+    ("model", "reason"), [("<Body/>", "the model has no shapes"), ("away", "turn the camera"), ("there", "")]
+)
+def test_a_picture_of_nothing_is_reported(model, reason, tmp_path):
+    shape = '<Body name="a"><Geom type="box"><extents>1 1 1</extents></Geom></Body>'
+    text = f'<KinBody name="k">{model if model.startswith("<") else shape}</KinBody>'
+    (tmp_path / "k.xml").write_text(text)
+    z = -5 if model == "there" else 5  # the camera looks along its z axis
+    T_world_camera = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, z], [0, 0, 0, 1]]
+    (tmp_path / "camera.json").write_text(json.dumps(T_world_camera))
+    camera = [] if model.startswith("<") else ["--camera", "camera.json"]
+    done = ravemj_command(tmp_path, "render", "k.xml", "-o", "k.png", "--size", "64x48", *camera)
+    assert (done.returncode, done.stdout) == (0, "wrote k.png\n")
+    assert (f"nothing is in view: {reason}" in done.stderr) == bool(reason)
 
 
 @pytest.mark.parametrize(("variable", "note"), [("", RAYS_DREW), ("disable", "")])
@@ -421,7 +449,74 @@ def test_ik_starts_from_values_of_a_file_and_takes_other_types(folder):
 def test_ik_out_of_reach(folder):
     done = ravemj_command(folder, "ik", "puma560", "--to", "9,9,9,1,0,0,0")
     assert (done.returncode, done.stderr) == (1, "")
-    assert "out of reach" in done.stdout
+    assert re.search(r"out of reach; the nearest that it reaches is 1[\d.]+ m and [\d.]+° away", done.stdout)
+    point = ravemj_command(folder, "ik", "puma560", "--to", "9,0,0")
+    assert re.search(r"the nearest that it reaches is [78]\.\d+ m away", point.stdout)
+    plan = ravemj_command(folder, "plan", "puma560", "--pose", "9,0,0")
+    assert re.search(r"no motion: .* the nearest that it reaches is [78]\.\d+ m away", plan.stderr)
+
+
+def test_ik_between_the_samples_of_a_free_joint(folder):
+    """A pose of a Panda for which no sample of its last joint has a solution within the limits."""
+    robot = ravemj.load(ravemj.model_path("panda")).GetRobots()[0]
+    robot.SetDOFValues([-1.87, -1.69, -0.3, -0.75, 1.75, 1.79, 2.84], range(7))
+    w, x, y, z, *place = robot.GetActiveManipulator().GetTransformPose()
+    goal = ",".join(map(str, [*place, w, x, y, z]))
+    found = json.loads(said(ravemj_command(folder, "ik", "panda", "--to", goal, "--json")))
+    assert any(one["valid"] and one["branch"].startswith("j7=") for one in found)
+
+
+FEET = ("--keep", "left_foot,right_foot")
+
+
+def test_ik_reaches_with_a_whole_body(folder):
+    done = ravemj_command(
+        folder, "ik", "biped", "--reach", "left_hand=0.35,0.2,0.5", *FEET, "-o", "biped.png", "--size", "80x60"
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith("all goals are met\nwrote biped.png\n")
+    assert "base x,y,z" in done.stdout
+    with Image.open(folder / "biped.png") as picture:
+        assert picture.size == (80, 60)
+    found = json.loads(
+        said(ravemj_command(folder, "ik", "biped", "--reach", "left_hand=0.35,0.2,0.5", *FEET, "--json"))
+    )
+    robot = ravemj.load(ravemj.model_path("biped")).GetRobots()[0]
+    feet = robot.GetManipulator("left_foot").GetTransform()
+    robot.SetDOFValues(found["values"])
+    *place, w, x, y, z = found["base"]
+    robot.SetTransform([w, x, y, z, *place])
+    assert np.allclose(robot.GetManipulator("left_foot").GetTransform(), feet, atol=1e-8)
+    assert np.allclose(robot.GetManipulator("left_hand").GetTransform()[:3, 3], [0.35, 0.2, 0.5], atol=1e-4)
+
+
+def test_ik_of_a_whole_body_says_what_is_missed(folder):
+    words = ("ik", "biped", "--reach", "left_hand=2,0,1", "--reach", "right_hand=0.2,-0.2,0.6,1,0,0,0", *FEET)
+    done = ravemj_command(folder, *words)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert "left_hand is" in done.stdout.splitlines()[-1]
+    fixed = json.loads(said(ravemj_command(folder, "ik", "panda", "--reach", "arm=0.3,0.1,0.5", "--json")))
+    assert fixed["base"] == [0, 0, 0, 1, 0, 0, 0], "without --keep the base stays"
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--reach", "hand=1,2,3"), "'Biped' has no manipulator or link 'hand'; its manipulators: left_foot"),
+        (("--reach", "left_hand=1,2"), "--reach: found 2 values for 'left_hand', expected x,y,z"),
+        (("--reach", "left_hand"), "'left_hand' is not NAME=x,y,z"),
+        (("--reach", "left_hand=1,2,x"), "'x' is not a finite number"),
+        (("--reach", "left_hand=0,0,0,0,0,0,0"), "the quaternion is 0 0 0 0"),
+        (("--to", "1,2,3", "--keep", "left_foot"), "--keep: goes with --reach"),
+        (("--reach", "left_hand=1,2,3", "--manip", "left_hand"), "--type and --manip go with --to"),
+        (("--reach", "left_hand=1,2,3", "--keep", "wheel"), "no manipulator or link 'wheel'"),
+    ],
+)
+def test_ik_of_a_whole_body_refuses(words, message, folder):
+    done = ravemj_command(folder, "ik", "biped", *words)
+    assert done.returncode in (1, 2)
+    assert message in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 PENDULUM_AND = '<Environment><Robot file="double-pendulum.xml"/>{}</Environment>'
@@ -440,7 +535,9 @@ def walled(folder) -> Path:
 @pytest.mark.parametrize("name", ["plan.csv", "plan.npz"])
 def test_plan_writes_a_motion_round_a_wall_that_play_takes(walled, name):
     printed = said(ravemj_command(walled, *ROUND_THE_WALL, "-o", name))
-    found = r"found after \d+ iterations in [\d.]+ s: [\d.]+ s of motion, \d+ waypoints\nwrote "
+    found = (
+        r"found after \d+ iterations in [\d.]+ s: [\d.]+ s of motion, \d+ waypoints\ncertified: smallest gap .*\nwrote "
+    )
     assert re.fullmatch(found + name + "\n", printed)
     env = ravemj.load(walled / "walled.xml")
     robot = env.GetRobots()[0]
@@ -470,7 +567,9 @@ def test_plan_draws_trees_also_of_a_search_in_vain(walled):
     in_vain = ("plan", "walled.xml", "--to", "3.14,0", "--time-limit", "0.2")
     done = ravemj_command(walled, *in_vain, *picture)
     assert (done.returncode, done.stdout) == (1, "wrote a.png\n")
-    why = r"ravemj: error: no motion: the time was used up after \d+ iterations, with \d+ configurations\n"
+    why = r"ravemj: error: no motion: the time was used up after \d+ iterations, "
+    why += r"with trees of \d+ and \d+ configurations; most lines "
+    why += r"were stopped by link '\w+' of '\w+' with link 'wall\S+' of 'wall\S+'\n"
     assert re.fullmatch(why, done.stderr)
     done = ravemj_command(walled, *in_vain, "-o", "a.mp4")
     assert (done.returncode, done.stdout) == (1, "")
@@ -600,7 +699,7 @@ BAD_MODELS = {
     "open.xml": ("<Robot>\n<KinBody>\n</Robot>\n", "open.xml:3: error: "),
     "body.xml": (JOINT.format("<Body>a</Body><Body>c</Body>"), r"body.xml:\d: error: .*'c'"),
     "include.xml": ('<Environment>\n<Robot file="gone.xml"/>\n</Environment>', r"include.xml:2: error: .*gone\.xml"),
-    "mjcf.xml": ("<mujoco/>", "mjcf.xml:1: error: this is MJCF.*mujoco.MjModel.from_xml_path"),
+    "mjcf.xml": ("<mujoco/>", "mjcf.xml:1: error: there is no body in it"),
     "urdf.xml": (URDF.format('<parent link="a"/>'), "urdf.xml:1: error: joint 'j' has no <child>"),
     "links.xml": (URDF.format(""), "links.xml:1: error: joint 'j' has no <parent>"),
     "latin.xml": (
@@ -670,7 +769,7 @@ BAD_WORDS = [
     ("run --py script.py --py", 2, "ravemj run: error: unknown: --py; did you mean --py2"),
     ("run", 2, "ravemj run: error: the following arguments are required: SCRIPT; see"),
     ("info pendlum", 1, "pendlum: error: there is no such file; .* did you mean pendulum, which comes with ravemj"),
-    ("convert env.xml --base foxed", 2, "ravemj convert: error: .*'foxed' is none of fixed, openrave"),
+    ("convert env.xml --base foxed", 2, "ravemj convert: error: .*'foxed' is none of fixed, free, openrave"),
     ("play", 2, "ravemj play: error: .*MODEL"),
     ("render env.xml", 2, "ravemj render: error: .*-o"),
     ("alias", 2, "ravemj alias: error: .*--install"),
@@ -710,16 +809,20 @@ BAD_WORDS = [
     ("play env.xml -o env.xml/a.mp4", 1, "ravemj: error: .*env.xml"),
     ("play env.xml -o .", 1, "ravemj: error: "),
     ("play env.xml -o a.gif --fps 100", 1, "ravemj: error: .*50 frames"),
-    ("play env.xml -o a.ogg", 1, "ravemj: error: .*'.ogg' is none of .html, .mp4"),
+    ("play env.xml -o a.ogg", 1, "ravemj: error: .*'.ogg' is none of .html, .yaml, .*.mp4"),
     ("plan puma560 --to 0,0,0,0,0,0 -o a.ogg", 1, "ravemj: error: .*'.ogg' is none of .csv, .npz, .png"),
     ("render env.xml -o a.bmp", 1, "ravemj: error: .*a.bmp.*png"),
     ("render env.xml -o a", 1, "ravemj: error: .* no suffix.*png"),
     ("render env.xml -o gone/a.png", 1, "ravemj: error: .*gone"),
     ("render env.xml -o a.png --q 1,2,3", 1, "ravemj: error: --q: found 3, expected 2: .*'Pendulum': Joint0, Joint1$"),
     ("convert env.xml -o gone/a.xml", 1, "ravemj: error: .*gone"),
-    ("convert env.xml -o a.png", 1, "ravemj: error: cannot write a.png: '.png' is none of .dae, .zae, .json, .xml"),
+    (
+        "convert env.xml -o a.png",
+        1,
+        "ravemj: error: cannot write a.png: '.png' is none of .dae, .zae, .urdf, .json, .xml",
+    ),
     ("plan env.xml --to 1,1 -o a.xyz", 1, "ravemj: error: cannot write .*'.xyz' is none of .csv, .npz, .png, .*.mp4"),
-    ("play env.xml -o a.xyz", 1, "ravemj: error: cannot write a.xyz: '.xyz' is none of .html, .mp4"),
+    ("play env.xml -o a.xyz", 1, "ravemj: error: cannot write a.xyz: '.xyz' is none of .html, .yaml, .*.mp4"),
     ("convert env.xml -o .", 1, "ravemj: error: "),
     ("ik puma560 --to 1,2", 1, "ravemj: error: --to: found 2, expected x,y,z,qw,qx,qy,qz"),
     ("ik puma560 --to 0,0,1,0,0,0,0", 1, "ravemj: error: --to: the quaternion"),

@@ -12,7 +12,6 @@ import ravemj
 from ravemj.compat import alias, legacy, metaclass, names
 from ravemj.rave import environment, library
 from ravemj.rave.modules import MISSING as MISSING_MODULES
-from ravemj.rave.planning.names import MISSING as MISSING_PLANNERS
 
 
 @pytest.fixture
@@ -172,17 +171,12 @@ def test_native_plugins_and_unknown_things_fail_softly(env, caplog):
 
 
 @pytest.mark.parametrize(
-    ("kind", "name", "capability"),
-    [
-        (kind, name, capability)
-        for kind, names in (("module", MISSING_MODULES), ("planner", MISSING_PLANNERS))
-        for name, capability in names.items()
-    ],
+    ("name", "capability"),
+    MISSING_MODULES.items(),
 )
-def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
-    create = {"planner": ravemj.RaveCreatePlanner, "module": ravemj.RaveCreateModule}[kind]
+def test_openraves_own_plugins_say_what_is_missing(env, name, capability):
     with pytest.raises(NotImplementedError, match=capability) as caught:
-        create(env, name.upper() + " with arguments")
+        ravemj.RaveCreateModule(env, name.upper() + " with arguments")
     assert caught.value.capability == capability
     assert caught.value.GetCode() == "NotImplemented"
 
@@ -274,11 +268,11 @@ def test_local_files(tmp_path, monkeypatch):
 
 
 def test_models_are_made_have_nothing_and_say_what_is_missing(robot):
-    grasping = ravemj.databases.grasping.GraspingModel(robot)
-    assert grasping.has() is False
-    with pytest.raises(ravemj.openrave_exception, match=r"GraspingModel.computeValidGrasps: .* planning of grasps"):
-        grasping.computeValidGrasps()
-    assert not hasattr(grasping, "__array__")
+    reachability = ravemj.databases.kinematicreachability.ReachabilityModel(robot)
+    assert reachability.has() is False
+    with pytest.raises(ravemj.openrave_exception, match=r"ReachabilityModel.generate: .* maps of what arms reach"):
+        reachability.generate()
+    assert not hasattr(reachability, "__array__")
 
 
 def test_convex_decomposition_does_nothing(robot):
@@ -288,7 +282,7 @@ def test_convex_decomposition_does_nothing(robot):
     assert model.load() is True
 
 
-@pytest.mark.parametrize("name", ["TaskCaging", "VisualFeedback", "Grasper"])
+@pytest.mark.parametrize("name", ["TaskCaging", "VisualFeedback"])
 def test_interfaces_say_what_is_missing(name, robot):
     with pytest.raises(NotImplementedError, match=f"{name}: ravemj does no"):
         getattr(ravemj.interfaces, name)(robot)

@@ -3,15 +3,17 @@
 import itertools
 import math
 
+import mujoco
 import numpy as np
 import pytest
-from conftest import MODELS
+from conftest import MODELS, one_in
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from strategies import examples
 
 import ravemj
 from ravemj import CollisionOptions, CollisionReport, KinBody, Ray
-from ravemj.engine.collision import pairs, world
+from ravemj.engine.collision import pairs
 from ravemj.engine.collision.moving import moving_test
 from ravemj.geometry_functions import CheckOBBCollision, OrientedBox
 
@@ -255,9 +257,11 @@ def test_meshes_report_where_they_are_deepest_in_each_other(env):
     wedges = mesh(env, "wedges", both, np.vstack([faces, faces + 6]))
     report = CollisionReport()
     assert env.CheckCollision(wedges, one, report)
-    (contact,) = report.contacts
+    contact, *others = report.contacts
     assert contact.depth == pytest.approx(0.06, abs=1e-6)
     np.testing.assert_allclose(contact.pos[[0, 2]], [0.4, -0.93], atol=1e-6)
+    assert all(other.depth <= contact.depth for other in others)
+    assert any(other.pos[0] < 0 and other.depth == pytest.approx(0.02, abs=1e-6) for other in others)
 
 
 def test_meshes_that_stand_on_each_other_touch(env):
@@ -678,6 +682,10 @@ class TestManyPairs:
 
     @pytest.fixture
     def snake(self, env):
+        return self.snake_among_boxes(env)
+
+    @staticmethod
+    def snake_among_boxes(env):
         env.LoadData(f'<Environment><Robot name="snake"><KinBody>{SNAKE}</KinBody></Robot></Environment>')
         random = np.random.default_rng(7)
         for number in range(12):
@@ -720,7 +728,7 @@ class TestManyPairs:
                 self.overlap(self.solids(snake, [one]), self.solids(snake, [other])) for one, other in tested
             )
 
-    @pytest.mark.parametrize("seed", range(4))
+    @pytest.mark.parametrize("seed", one_in(4, range(4)))
     def test_everything_can_move(self, env, snake, seed):
         random = np.random.default_rng(seed)
         bodies = [body for body in env.GetBodies() if body != snake]
@@ -737,6 +745,86 @@ class TestManyPairs:
             steps[random.choice(list(steps))]()
             self.check(env, snake)
 
+    @staticmethod
+    def touching(env):
+        """Return the pairs of links that a fresh MuJoCo model of all enabled boxes, each free to move, finds."""
+        spec, links = mujoco.MjSpec(), []
+        for body in env.GetBodies():
+            for link in filter(KinBody.Link.IsEnabled, body.GetLinks()):
+                part = spec.worldbody.add_body(pos=link.GetTransformPose()[4:], quat=link.GetTransformPose()[:4])
+                part.add_freejoint()
+                for geometry in link.GetGeometries():
+                    wxyz, place = np.split(ravemj.poseFromMatrix(geometry.GetTransform()), [4])
+                    size = geometry.GetBoxExtents()
+                    part.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=size, pos=place, quat=wxyz)
+                links.append(link)
+        model = spec.compile()
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_collision(model, data)
+        owners = model.geom_bodyid[data.contact.geom] - 1
+        return {frozenset((links[one], links[other])) for one, other in owners.tolist()}
+
+    def compare(self, env, snake, random):
+        """Compare a question, its report and the one about the snake itself with a fresh model."""
+        touching = self.touching(env)
+        group = [snake, *snake.GetGrabbed()]
+        others = [body for body in env.GetBodies() if body not in group]
+        left_out = [body for body in others if random.random() < 0.2]
+        links = [link for link in snake.GetLinks() if random.random() < 0.2]
+        hits = {pair for pair in touching if len({one.GetParent() in group for one in pair}) == 2}
+        assert env.CheckCollision(snake) == bool(hits)
+        report = CollisionReport()
+        assert env.CheckCollision(snake, report) == bool(hits)
+        options = env.GetCollisionChecker().GetCollisionOptions()
+        assert hits or options & CollisionOptions.Distance or not report.collisionInfos
+        if hits and options & CollisionOptions.AllLinkCollisions:
+            assert {frozenset(pair) for pair in report.vLinkColliding} == hits
+        counted = [pair for pair in hits if not any(one in links or one.GetParent() in left_out for one in pair)]
+        assert env.CheckCollision(snake, left_out, links) == bool(counted)
+        one = random.choice(others)
+        assert env.CheckCollision(snake, one) == any(one in {link.GetParent() for link in pair} for pair in hits)
+        bodies = [{link.GetParent() for link in pair} for pair in touching]
+        assert env.CheckCollision(one) == any(one in pair and len(pair) == 2 for pair in bodies)
+        assert env.CheckCollision(snake) == bool(hits)  # as before other questions came between
+        if len(group) == 1:
+            tested = {frozenset(snake.GetLinks()[index] for index in pair) for pair in snake.GetNonAdjacentLinks()}
+            assert snake.CheckSelfCollision() == bool(tested & touching)
+            assert snake.CheckSelfCollision(report) == bool(tested & touching)
+
+    @examples(40)
+    @given(seed=st.integers(0, 2**32), count=st.integers(5, 25))
+    def test_answers_in_any_order_are_those_of_a_fresh_model(self, seed, count):
+        env = ravemj.Environment()
+        snake, random = self.snake_among_boxes(env), np.random.default_rng(seed)
+        bodies, checker = [body for body in env.GetBodies() if body != snake], env.GetCollisionChecker()
+        options = [CollisionOptions.Contacts, CollisionOptions.Distance, CollisionOptions.AllLinkCollisions, 0]
+        steps = [
+            lambda: snake.SetDOFValues(random.uniform(-1.5, 1.5, snake.GetDOF())),
+            lambda: place(snake, random.uniform(-1, 1, 3), random.uniform(-1, 1, 3)),
+            lambda: place(random.choice(bodies), random.uniform(-1.5, 1.5, 3), random.uniform(-1, 1, 3)),
+            lambda: snake.GetLinks()[8].SetTransform(random.choice(bodies).GetTransform()),
+            lambda: random.choice(snake.GetLinks()).Enable(bool(random.integers(2))),
+            lambda: random.choice(bodies).Enable(bool(random.integers(3))),
+            lambda: snake.Grab(random.choice(bodies), snake.GetLinks()[6]),
+            snake.ReleaseAllGrabbed,
+            lambda: snake.SetAdjacentLinks(*(int(link) for link in random.choice(snake.GetNonAdjacentLinks()))),
+            lambda: checker.SetCollisionOptions(int(random.choice(options[:3]) | random.choice(options))),
+            lambda: snake.batch_collides(random.uniform(-1, 1, (60, snake.GetDOF())), bool(random.integers(2))),
+            lambda: self.ask_as_planners(env, snake, random),
+        ]
+        for _ in range(count):
+            random.choice(steps)()
+            self.compare(env, snake, random)
+        env.Destroy()
+
+    @staticmethod
+    def ask_as_planners(env, snake, random):
+        with env, snake:
+            collides = moving_test(snake.simulation_state, range(snake.GetDOF()))
+            if collides is not None:
+                collides(random.uniform(-1, 1, snake.GetDOF()))
+
     def test_as_planners_ask(self, env, snake):
         values = np.random.default_rng(3).uniform(-2.5, 2.5, (60, snake.GetDOF()))
         before = snake.GetLinkTransformations()
@@ -751,10 +839,11 @@ class TestManyPairs:
 
     def test_the_masks_of_the_model_are_back(self, env, snake):
         """A user may step the model, in which everything collides."""
-        before = env.model.body_contype.copy(), env.model.body_conaffinity.copy()
+        before, flags = [env.model.body_contype.copy(), env.model.body_conaffinity.copy()], env.model.opt.disableflags
         self.check(env, snake)
         snake.batch_collides(np.zeros((60, snake.GetDOF())))
         np.testing.assert_array_equal([env.model.body_contype, env.model.body_conaffinity], before)
+        assert env.model.opt.disableflags == flags
         assert (env.model.body_contype[1:] > 0).all()
 
     def test_more_contacts_than_fit_into_memory(self, env, snake, monkeypatch):
@@ -765,7 +854,7 @@ class TestManyPairs:
 
 
 @pytest.mark.parametrize("place", [(0.45, 0.1, 0.5), (0, 0, -0.05)], ids=["before it", "under its base"])
-def test_batch_follows_mimic_and_displaced_joints(place, monkeypatch):
+def test_batch_follows_mimic_and_displaced_joints(place):
     env = ravemj.load(MODELS / "panda.xml")
     panda = env.GetRobots()[0]
     box(env, "box", place, (0.15, 0.15, 0.15))
@@ -780,10 +869,9 @@ def test_batch_follows_mimic_and_displaced_joints(place, monkeypatch):
         others = env.CheckCollision(panda)
         assert answers == [others, others or panda.CheckSelfCollision()]
     assert sum(found[False]) == len(values) if place[0] == 0 else 0 < sum(found[False]) < len(values)
-    with monkeypatch.context() as patch:
-        for processors in (1, 2):
-            patch.setattr(world, "_processors", lambda processors=processors: processors)
-            assert panda.batch_collides(values).tolist() == found[True]
+    for threads in (1, 2, 0):
+        ravemj.set_batch_threads(threads)
+        assert panda.batch_collides(values).tolist() == found[True]
     env.GetKinBody("box").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 9, 9, 9]))
     assert not panda.batch_collides(values, itself_too=False).any()
 
@@ -806,6 +894,7 @@ def test_batch_agrees_with_single_questions(env, texts):
     arm.SetDOFValues([0.1, 0.2, 0.3])
     before, held = arm.GetLinkTransformations(), thing.GetTransform()
     with_itself, without = arm.batch_collides(values), arm.batch_collides(values, itself_too=False)
+    itself, gaps = arm.batch_self_collides(values), [arm.batch_distances(values, both) for both in (False, True)]
     np.testing.assert_array_equal(arm.GetLinkTransformations(), before)
     np.testing.assert_array_equal(arm.GetDOFValues(), [0.1, 0.2, 0.3])
     np.testing.assert_array_equal(thing.GetTransform(), held)
@@ -813,6 +902,16 @@ def test_batch_agrees_with_single_questions(env, texts):
         arm.SetDOFValues(row)
         assert env.CheckCollision(arm) == hits
         assert (env.CheckCollision(arm) or arm.CheckSelfCollision()) == all_hits
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.Distance)
+    for row, hits, *near in zip(values, itself, *gaps, strict=True):
+        arm.SetDOFValues(row)
+        reports = CollisionReport(), CollisionReport()
+        env.CheckCollision(arm, reports[0])
+        assert arm.CheckSelfCollision(reports[1]) == hits
+        distances = [report.minDistance for report in reports]
+        np.testing.assert_allclose(np.maximum(near, 0), [distances[0], min(distances)], atol=1e-12)
+    np.testing.assert_array_equal(np.array(gaps) <= 1e-9, [without, with_itself])
+    assert 0 < itself.sum() < len(values)
     assert 0 < without.sum() < with_itself.sum() < len(values)
     assert arm.batch_collides(np.zeros((0, 3))).shape == (0,)
     with pytest.raises(ravemj.openrave_exception, match="shape"):

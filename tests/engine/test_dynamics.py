@@ -9,6 +9,7 @@ from test_properties import SMOOTH, Kinematics, draw_smooth, draw_values, is_det
 
 import ravemj
 from ravemj.engine import batch
+from ravemj.engine.affine import left_jacobian
 from ravemj.engine.dynamics import rotation_rate
 
 Nothing = ravemj.CheckLimitsAction.Nothing
@@ -235,6 +236,48 @@ def test_active_jacobians(robot, rotation):
     np.testing.assert_allclose(velocity[3:], robot.CalculateActiveAngularVelocityJacobian(2) @ rates, atol=1e-9)
 
 
+def test_stacked_jacobians_are_those_of_the_single_calls(models):
+    """Also of a mimic joint, of chosen columns, and of a base that moves, against the active ones."""
+    for name in ("scara.dae", "panda.xml", "pr2.robot.xml"):
+        if not (models / name).exists():
+            continue
+        robot = ravemj.load(models / name).GetRobots()[0]
+        lower, upper = robot.GetDOFLimits()
+        robot.SetDOFValues(np.clip(np.linspace(-0.7, 0.6, robot.GetDOF()), lower, upper))
+        robot.SetTransform(ravemj.matrixFromPose([0.5, 0.5, -0.5, 0.5, 1, -2, 3]))
+        links = [len(robot.GetLinks()) - 1, 1, 0]
+        points = np.array([[0.3, 0.1, -0.4], [1.0, 2.0, 3.0], [0.0, 0.0, 0.0]])
+        found = robot.jacobians(links, points, base=True)
+        robot.SetActiveDOFs(range(robot.GetDOF()), 7 | 16)
+        robot.SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 1, -2, 3]))  # rates of a rotation vector are a twist
+        level = robot.jacobians(links, points, base=True)
+        for index, (link, point) in enumerate(zip(links, points, strict=True)):
+            close(level[index, :3], robot.CalculateActiveJacobian(link, point), 1e-12)
+            close(level[index, 3:], robot.CalculateActiveAngularVelocityJacobian(link), 1e-12)
+        robot.SetTransform(ravemj.matrixFromPose([0.5, 0.5, -0.5, 0.5, 1, -2, 3]))
+        for index, (link, point) in enumerate(zip(links, points, strict=True)):
+            close(found[index, :3, :-6], robot.ComputeJacobianTranslation(link, point), 1e-12)
+            close(found[index, 3:, :-6], robot.ComputeJacobianAxisAngle(link), 1e-12)
+        close(robot.jacobians(links, points.T.copy().T, [1, 0]), found[:, :, [1, 0]], 1e-15)
+        origins = [robot.GetLinks()[link].GetTransform()[:3, 3] for link in links]
+        close(robot.jacobians(links), robot.jacobians(links, origins), 1e-15)
+        assert robot.jacobians([], base=True).shape == (0, 6, robot.GetDOF() + 6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (([99],), "linkindex"),
+        (([1], [[0, 0, 0], [0, 0, 1]]), "points: are 2, and should be 1"),
+        (([1], [[0, np.nan, 0]]), "finite"),
+        (([1], None, [7]), "indices"),
+    ],
+)
+def test_stacked_jacobians_refuse(robot, arguments, message):
+    with pytest.raises((ravemj.openrave_exception, IndexError), match=message):
+        robot.jacobians(*arguments)
+
+
 class TestAccelerations:
     @examples(60)
     @given(scenes(SMOOTH), choices())
@@ -428,6 +471,7 @@ def test_rate_of_a_rotation_vector(size):
     """Against quaternions, and the derivative against difference quotients."""
     vector = size * np.array([2, -1, 2]) / 3
     rate, changes = rotation_rate(vector)
+    np.testing.assert_allclose(left_jacobian(vector.tolist()), rate.T, atol=1e-14)
     now = ravemj.quatFromAxisAngle(vector)
     for column, d in zip(rate.T, np.eye(3) * 1e-6, strict=True):
         after, before = ravemj.quatFromAxisAngle(vector + d), ravemj.quatFromAxisAngle(vector - d)

@@ -18,6 +18,7 @@ from ravemj.model.scene import Box, Cylinder, TriMesh
 COLLADA = DATA / "collada"
 ARM = (COLLADA / "arm.dae").read_text("utf8")
 DEGREE = math.pi / 180
+_WITHOUT_GRAVITY = re.sub("<gravity>.*?</gravity>", "", ARM)
 
 
 def changed(*replacements: tuple[str, str], text: str = ARM) -> str:
@@ -216,6 +217,64 @@ class TestTraps:
         body = arm(("<locked><bool>false", "<locked><bool>true"))
         assert (body.joints[0].axes[0].lower, body.joints[0].axes[0].upper) == (0, 0)
         assert body.joints[0].static
+
+    @pytest.mark.parametrize("limits", [("30", "-30"), ("5", "5"), ("1e-9", "0")])
+    def test_limits_that_leave_no_room_are_a_weld(self, limits):
+        lower, upper = limits
+        old = "<limits><min><param>low</param></min><max><float>45</float></max></limits>"
+        new = f"<limits><min><float>{lower}</float></min><max><float>{upper}</float></max></limits>"
+        body = arm((old, new))
+        assert (body.joints[0].axes[0].lower, body.joints[0].axes[0].upper) == (0, 0)
+        assert body.joints[0].static
+        turned = body.joints[0].T_parent_child.apply((0.0, 0.0, 1.0))
+        z = np.subtract(turned, body.joints[0].T_parent_child.position)
+        np.testing.assert_allclose(body.joints[0].axes[0].direction, z, atol=1e-15)
+
+    @pytest.mark.parametrize(
+        ("ambient", "diffuse", "transparency", "expected"),
+        [
+            ("", "0.5 0.25 0 0.3", "", (0.5, 0.25, 0, 0.7)),
+            ("", "0.5 0.25 0 0", "", (0.5, 0.25, 0, 0)),
+            ("", "0.5 0.25 0 1", "", (0.5, 0.25, 0, 0)),
+            ("", "0.5 0.25 0", "", (0.5, 0.25, 0, 0)),
+            ("1 0 0 0.4", "0.5 0.25 0 0.3", "", (0.5, 0.25, 0, 0.7)),
+            ("1 0 0 0.4", "", "", (1, 1, 1, 0.6)),
+            ("", "0.5 0.25 0 0.3", "0.8", (0.5, 0.25, 0, 0.2)),
+            ("", "", "0.8", (1, 1, 1, 0.2)),
+            ("", "texture", "", (1, 1, 1, 0)),
+        ],
+    )
+    def test_colours_of_phong(self, ambient, diffuse, transparency, expected):
+        given = {"ambient": ambient, "diffuse": diffuse}
+        parts = [f"<{tag}><color>{text}</color></{tag}>" for tag, text in given.items() if text and text != "texture"]
+        parts += ['<diffuse><texture texture="a" texcoord="b"/></diffuse>'] if diffuse == "texture" else []
+        parts += [f"<transparency><float>{transparency}</float></transparency>"] if transparency else []
+        text = re.sub("<phong>.*?</phong>", f"<phong>{''.join(parts)}</phong>", ARM, flags=re.DOTALL)
+        wedge = read_data(text).scene.bodies[0].links[1].geometries[0]
+        assert (*wedge.diffuse, wedge.transparency) == pytest.approx(expected)
+
+    @pytest.mark.parametrize("shader", ["blinn", "lambert"])
+    def test_the_fourth_number_counts_for_phong_only(self, shader):
+        text = ARM.replace("phong>", f"{shader}>").replace("0.5 0.25 0 1", "0.5 0.25 0 0.3")
+        text = re.sub("<transparency>.*?</transparency>", "", text)
+        assert read_data(text).scene.bodies[0].links[1].geometries[0].transparency == 0
+
+    def test_a_joint_without_a_name_is_numbered(self):
+        text = changed(('<joint name="elbow" sid', '<joint id="elbow" sid'), ('<joint name="grip" sid', "<joint sid"))
+        names = [joint.name for joint in read_data(text).scene.bodies[0].all_joints]
+        assert names == ["dummy0", "dummy1"]
+
+    @pytest.mark.parametrize("up", ["X_UP", "Y_UP", "Z_UP", " Y_UP "])
+    def test_gravity_is_along_the_up_axis(self, up):
+        scene = read_data(re.sub("<up_axis>.*?</up_axis>", f"<up_axis>{up}</up_axis>", _WITHOUT_GRAVITY)).scene
+        axis = "XYZ".index(up.strip()[0])
+        assert scene.gravity == (
+            None if axis == 2 else tuple(-9.797930195020351 if i == axis else 0.0 for i in range(3))
+        )
+
+    def test_a_written_gravity_counts(self):
+        text = re.sub("<up_axis>.*?</up_axis>", "<up_axis>Y_UP</up_axis>", ARM)
+        assert read_data(text).scene.gravity == read_data(ARM).scene.gravity
 
     def test_an_inactive_axis_has_no_dof(self):
         body = arm(("<active><bool>true", "<active><bool>false"))

@@ -229,8 +229,8 @@ def test_commands(way, names, capsys, tmp_path):
     info = json.loads(capsys.readouterr().out.partition("\n")[2])
     assert [body["name"] for body in info["bodies"]] == ["scara"]
     assert main(["convert", name, "-o", str(tmp_path / "out")]) == 0
-    (written,) = (tmp_path / "out").glob("*.xml")
-    assert written.stem == ("main" if way == "xml" else "scara")
+    written = tmp_path / "out" / ("main.xml" if way == "xml" else "scara.xml")
+    assert {file.name for file in written.parent.glob("*.xml")} == {written.name, "scene.xml"}
     assert mujoco.MjModel.from_xml_path(str(written)).nq == 4
     assert main(["render", name, "-o", str(tmp_path / "seen.png"), *SMALL]) == 0
     assert len(np.unique(np.asarray(Image.open(tmp_path / "seen.png")).reshape(-1, 3), axis=0)) > 20

@@ -118,6 +118,9 @@ EQUAL = {
     ("Geometry", "render_file"): "the triangles are compared, wherever they come from",
     ("Geometry", "collision_file"): "the triangles are compared, wherever they come from",
     ("Mesh", "known_digest"): "it follows from the numbers",
+    ("Joint", "keeps_moving"): "scripts set it, and no file says it",
+    ("KinBody", "element"): "it is where the body stands in its file",
+    ("Manipulator", "ik_solver"): "it says how poses are reached; COLLADA does not have it",
     **dict.fromkeys(
         (("KinBody", "configurations"), ("NamedConfiguration", "name"), ("NamedConfiguration", "values")),
         "states of an SRDF are names of joint values, and no part of the robot; other formats do not have them",

@@ -208,3 +208,77 @@ def test_a_body_without_a_name_is_refused():  # gap-18, random-api-82
             env.LoadData(text)
         assert caught.value.GetCode() == "Failed"
     assert len(env.GetBodies()) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [
+        ('<KinBody><Body name="a"/></KinBody>', []),
+        ('<Robot><KinBody><Body name="a"/></KinBody></Robot>', []),
+        ('<Environment><KinBody><Body/></KinBody><KinBody name="k"><Body name="b"/></KinBody></Environment>', []),
+        ('<Environment><KinBody name="k"><Body/></KinBody><KinBody><Body name="a"/></KinBody></Environment>', ["k"]),
+        ('<Environment><KinBody name="k"><Body/></KinBody><Robot><KinBody/></Robot></Environment>', ["k"]),
+    ],
+)
+def test_a_file_with_a_body_without_a_name_does_not_load(text, kept, tmp_path):
+    """OpenRAVE's ``Load`` of a file keeps what came before; only ``LoadData`` raises."""
+    (tmp_path / "unnamed.xml").write_text(text)
+    env = ravemj.Environment()
+    assert not env.Load(str(tmp_path / "unnamed.xml"))
+    assert [body.GetName() for body in env.GetBodies()] == kept
+
+
+_BOX = '<Body name="{}"><Translation>{} 0 0</Translation><Geom type="sphere"><radius>0.1</radius></Geom></Body>'
+_JOINT = '<Joint name="j"><Body>a</Body><Body>b</Body><axis>0 0 1</axis></Joint>'
+_PARTS = _BOX.format("a", 0) + _BOX.format("b", 1) + _JOINT
+_OTHER = _BOX.format("c", 2)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "adjacent"),
+    [
+        (None, None, True),
+        (0, None, True),
+        (None, 0, False),
+        (0, 0, False),
+        (0, 1, True),
+        (1, 0, False),
+    ],
+)
+@pytest.mark.parametrize("form", ["nested", "nested first", "included", "including"])
+def test_the_last_kinbody_to_open_decides_about_joined_links(first, second, adjacent, form, tmp_path, monkeypatch):
+    """An element that names a file opens after the root of that file."""
+    monkeypatch.chdir(tmp_path)
+    outer, inner = ("" if flag is None else f'makejoinedlinksadjacent="{flag}"' for flag in (first, second))
+    root = f"<KinBody {outer if form == 'including' else inner}>{_OTHER}</KinBody>"
+    (tmp_path / "other.xml").write_text(root)
+    text = {
+        "nested": f'<KinBody name="k" {outer}>{_PARTS}{root}</KinBody>',
+        "nested first": f'<KinBody name="k" {outer}>{root}{_PARTS}</KinBody>',
+        "included": f'<Robot name="k"><KinBody {outer}>{_PARTS}</KinBody><KinBody file="other.xml" {inner}/></Robot>',
+        "including": f'<Robot name="k"><KinBody>{_PARTS}</KinBody><KinBody file="other.xml" {inner}/></Robot>',
+    }[form]
+    env = ravemj.Environment()
+    assert env.LoadData(text)
+    assert ((0, 1) in {tuple(sorted(pair)) for pair in _named_pairs(env.GetBodies()[0])}) == adjacent
+
+
+def _named_pairs(body):
+    names = [link.GetName() for link in body.GetLinks()]
+    order = {"a": 0, "b": 1, "c": 2}
+    return [(order[names[one]], order[names[two]]) for one, two in body.GetAdjacentLinks()]
+
+
+@pytest.mark.parametrize("axis", ["1e-320 0 0", "0 1e-310 1e-312", "1e-160 0 0", "1e-200 1e-200 0", "1e308 1e308 0"])
+@pytest.mark.parametrize("kind", ["hinge", "slider"])
+def test_axes_of_any_length(axis, kind):
+    env = ravemj.Environment()
+    follower = f'<Joint name="m" type="{kind}" enable="false" mimic_pos="2*j"><Body>b</Body><Body>c</Body>'
+    follower += f"<axis>{axis}</axis></Joint>"
+    assert env.LoadData(f'<KinBody name="k">{_PARTS.replace("</Joint>", "</Joint>" + _OTHER + follower)}</KinBody>')
+    direction = np.array([float(word) for word in axis.split()])
+    direction = direction / np.abs(direction).max()
+    (joint,) = env.GetBodies()[0].GetPassiveJoints()
+    np.testing.assert_allclose(joint.GetAxis(0), direction / np.linalg.norm(direction), atol=1e-9)
+    env.GetBodies()[0].SetDOFValues([1.0])
+    assert np.isfinite(env.GetBodies()[0].GetLinks()[2].GetTransform()).all()

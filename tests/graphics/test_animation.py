@@ -255,8 +255,79 @@ def assert_same_silhouette(player: Player, env) -> None:
     assert not (expected & ~dilated(drawn, 2)).any()
 
 
+MOVED = """<Robot name="moved"><KinBody>
+<Body name="a"><Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>
+<Body name="b"><offsetfrom>a</offsetfrom><translation>0.1 0 0.3</translation><rotationaxis>1 2 3 40</rotationaxis>
+  <Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>
+<Body name="c"><offsetfrom>b</offsetfrom><translation>0.3 0.1 0</translation>
+  <Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>
+<Body name="d"><offsetfrom>c</offsetfrom><translation>0 0.2 0</translation>
+  <Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>
+<Joint name="turn" type="hinge"><Body>a</Body><Body>b</Body><offsetfrom>a</offsetfrom><anchor>0.05 0.02 0.1</anchor>
+  <axis>1 1 0</axis><limitsdeg>-50 120</limitsdeg></Joint>
+<Joint name="slide" type="slider"><Body>b</Body><Body>c</Body><offsetfrom>b</offsetfrom><axis>0 1 1</axis>
+  <limits>-0.1 0.4</limits></Joint>
+<Joint name="follow" type="hinge" MIMIC_POS><Body>c</Body><Body>d</Body><offsetfrom>c</offsetfrom><axis>0 0 1</axis>
+  <limits>-3 3</limits></Joint>
+</KinBody></Robot>"""
+"""A base, a hinge, a slider, and a hinge that may follow."""
+
+
+def moved(equation):
+    env = ravemj.Environment()
+    env.LoadData(MOVED.replace("MIMIC_POS", f'mimic_pos="{equation}" mimic_vel="|turn 1"' if equation else ""))
+    env.GetRobots()[0].SetTransform(ravemj.matrixFromPose([0.5, -0.5, 0.7, 0.1, 1, 2, 3]))
+    return env
+
+
+def test_sliders_have_the_limits_and_values_of_the_joints():
+    env = moved("2*turn")
+    robot = env.GetRobots()[0]
+    robot.SetDOFValues([0.4, 0.1])
+    before = robot.GetLinkTransformations()
+    sliders = Page(env.animation().html).document["mechanism"]["sliders"]
+    assert [(one["name"], one["unit"], one["value"]) for one in sliders] == [("turn", "rad", 0.4), ("slide", "m", 0.1)]
+    limits = np.array([(one["low"], one["high"]) for one in sliders])
+    np.testing.assert_allclose(limits.T, robot.GetDOFLimits())
+    np.testing.assert_array_equal(robot.GetLinkTransformations(), before)
+
+
+def test_pages_of_motions_have_no_sliders(env):
+    assert Page(env.animation(swing(env)).html).document["mechanism"] is None
+
+
 class TestInABrowser:
     pytestmark = NEEDS_A_BROWSER
+
+    @pytest.mark.filterwarnings("ignore:.*follows several joints")
+    @pytest.mark.parametrize("equation", ["", "2*turn-0.3", "turn*turn", "sin(turn)+0.5*slide"])
+    def test_sliders_move_the_links_as_forward_kinematics_does(self, opened, equation):
+        env, random = moved(equation), np.random.default_rng(3)
+        robot = env.GetRobots()[0]
+        robot.SetDOFValues(0.1 * np.ones(robot.GetDOF()))
+        page = opened(env.animation().html).page
+        exact = 1e-12 if "turn*" not in equation and "sin" not in equation else 2e-4  # from a table of 129 values
+        for values in random.uniform(*robot.GetDOFLimits(), (4, robot.GetDOF())):
+            for slider, value in zip(page.locator("#values input").all(), values, strict=True):
+                slider.evaluate("(box, value) => { box.value = value; box.dispatchEvent(new Event('input')); }", value)
+            robot.SetDOFValues(page.evaluate("ravemj.jointValues()"))
+            await_that(lambda: not page.evaluate("ravemj.isDue"))
+            shown = np.array(page.evaluate("ravemj.renderer.poses"))[-4:].reshape(4, 3, 4)
+            np.testing.assert_allclose(shown[1:], np.array(robot.GetLinkTransformations())[1:, :3], atol=exact)
+            np.testing.assert_allclose(robot.GetDOFValues(), values, atol=1e-6)
+
+    def test_frames_of_the_links_are_shown(self, opened):
+        env = moved("")
+        player = opened(env.animation().html)
+        player.page.get_by_role("button", name="Frames of the links").click()
+        lines = player.page.evaluate("(() => { const { corners } = ravemj.frameLines(); return [...corners]; })()")
+        T_world_link = np.array(env.GetRobots()[0].GetLinkTransformations())
+        ends = np.array(lines).reshape(4, 3, 2, 3)
+        np.testing.assert_allclose(ends[:, :, 0], np.repeat(T_world_link[:, None, :3, 3], 3, axis=1), atol=1e-6)
+        axes = ends[:, :, 1] - ends[:, :, 0]
+        length = np.linalg.norm(axes[0, 0])
+        np.testing.assert_allclose(axes / length, T_world_link[:, :3, :3].transpose(0, 2, 1), atol=1e-5)
+        await_that(lambda: player.page.evaluate("ravemj.renderer.groups.get('frames')?.strokes.length") == 1)
 
     @pytest.mark.parametrize("viewport", [(390, 844), (844, 390), (600, 650)])
     @pytest.mark.parametrize("camera", [None, NEAR])
@@ -340,6 +411,7 @@ class TestInABrowser:
         assert found == [bodies[y, x] for x, y in inside]
         assert set(found) == {-1, 1, 2, 3}
         y, x = np.argwhere(dilated(bodies != 3, 3) == 0)[0].tolist()
+        player.page.evaluate("document.getElementById('values').hidden = true")  # or sliders are under the pointer
         player.page.mouse.move(x, y)
         assert player.page.inner_text("#label") == "Arm1"
         player.page.mouse.move(3, 3)

@@ -11,7 +11,7 @@ from waiting import PATIENCE
 
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import open_renderer
-from ravemj.graphics.rendering.contexts import GL_BACKENDS, requested_backend
+from ravemj.graphics.rendering.contexts import GL_BACKENDS, remedy, requested_backend
 from ravemj.graphics.rendering.doctor import probe, probe_backends
 
 DRAW = """
@@ -182,6 +182,15 @@ def test_probes_survive_a_driver_that_ends_the_process(monkeypatch):
     assert not egl.works
     assert egl.detail == "the driver ended the process (SIGABRT)"
     assert egl.install
+
+
+@pytest.mark.parametrize("device", ["3", "x", ""])
+def test_a_number_of_no_gpu_gets_no_advice_to_install(monkeypatch, device):
+    monkeypatch.setenv("MUJOCO_EGL_DEVICE_ID", device)
+    assert remedy("egl") == "unset MUJOCO_EGL_DEVICE_ID, or set it to the number of a GPU"
+    assert "libosmesa6" in remedy("osmesa")
+    monkeypatch.delenv("MUJOCO_EGL_DEVICE_ID")
+    assert "libegl1" in remedy("egl")
 
 
 def test_probes_wait_only_so_long(monkeypatch):

@@ -97,7 +97,7 @@ def test_a_page_sends_a_model_with_its_meshes_in_pieces(env, notices):
     for name, content in (("mug.stl", STL), ("mug.kinbody.xml", MUG.encode())):
         for start in range(0, len(content), 50):
             message = piece(name, content[start : start + 50])
-            assert upload.take(message.name, message.data)
+            assert upload.append(message.name, message.data)
     folder = upload.paths[0].rpartition("/")[0]
     with env:
         upload.add_to(env, notices)
@@ -111,8 +111,8 @@ def test_a_page_sends_a_model_with_its_meshes_in_pieces(env, notices):
 def test_an_upload_has_an_end(monkeypatch):
     monkeypatch.setattr(Upload, "_LARGEST", 10)
     upload = Upload()
-    assert upload.take("a", b"12345")
-    assert not upload.take("a", b"123456")
+    assert upload.append("a", b"12345")
+    assert not upload.append("a", b"123456")
 
 
 @pytest.mark.parametrize("name", ["", "../a.xml", "a//b.xml", ".bashrc", "a\\b", "a\x00", "x" * 101, 7, None])
@@ -211,7 +211,7 @@ def test_pages_send_files_of_folders(env, notices, package):
     for file in ("urdf/r.urdf", "meshes/part.stl"):
         data = base64.b64encode((package / file).read_bytes()).decode()
         piece = parse(json.dumps({"type": "piece", "name": f"pack/{file}", "data": data, "last": False}))
-        assert upload.take(piece.name, piece.data)
+        assert upload.append(piece.name, piece.data)
     upload.add_to(env, notices)
     said(notices, "Added r.urdf")
     assert shown_triangles(env) == 1

@@ -18,7 +18,7 @@ START, WAY = (100, 100), (150, 130)
 
 @pytest.fixture
 def gui(env) -> Interaction:
-    gui = Interaction(env.simulation, Camera(FROM_FRONT), SIZE)
+    gui = Interaction.first_view(env.simulation, Camera(FROM_FRONT), SIZE)
     gui.look_from(Camera(FROM_FRONT), 1.0)
     return gui
 

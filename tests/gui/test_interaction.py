@@ -18,12 +18,12 @@ from ravemj.gui.interaction import (
     Press,
     Release,
     Resize,
-    Tool,
     Use,
-    View,
+    ViewButton,
+    Viewpoint,
     Wheel,
+    button_rects,
     pick,
-    tools,
 )
 from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import JointHandle
@@ -42,10 +42,10 @@ class Hand:
 
     def __init__(self, env, T_world_camera=FROM_FRONT, **more):
         self.env = env
-        self.gui = Interaction(env.simulation, Camera(T_world_camera), SIZE, **more)
+        self.gui = Interaction.first_view(env.simulation, Camera(T_world_camera), SIZE, **more)
 
     @property
-    def view(self) -> View:
+    def view(self) -> Viewpoint:
         return self.gui.view
 
     @property
@@ -108,7 +108,7 @@ def about(point, axis, angle):
 
 def test_rays_go_through_the_points_that_project_there(hand):
     rng = np.random.default_rng(1)
-    view = View(Camera(ravemj.matrixFromPose([0.5, 0.5, 0.5, 0.5, 1, 2, 3])), 1.0, SIZE)
+    view = Viewpoint(Camera(ravemj.matrixFromPose([0.5, 0.5, 0.5, 0.5, 1, 2, 3])), 1.0, SIZE)
     for x, y in rng.uniform([0, 0], SIZE, (20, 2)):
         ray = view.ray(x, y)
         assert np.linalg.norm(ray.direction) == pytest.approx(1)
@@ -192,12 +192,12 @@ def test_the_wheels_on_the_screen_turn_and_zoom_in_both_modes(hand):
     for _ in range(2):
         hand.gui.look_from(Camera(FROM_FRONT), 1.0)
         for tool, way, expected in (
-            (Tool.ROT_X, (30, 60), about(np.zeros(3), [0, 1, 0], -math.pi / 10)),
-            (Tool.ROT_Y, (60, 30), about(np.zeros(3), [0, 0, 1], -math.pi / 10)),
-            (Tool.DOLLY, (0, 60), np.diag([math.exp(-0.4), 1, 1, 1])),
+            (ViewButton.ROT_X, (30, 60), about(np.zeros(3), [0, 1, 0], -math.pi / 10)),
+            (ViewButton.ROT_Y, (60, 30), about(np.zeros(3), [0, 0, 1], -math.pi / 10)),
+            (ViewButton.DOLLY, (0, 60), np.diag([math.exp(-0.4), 1, 1, 1])),
         ):
             hand.gui.look_from(Camera(FROM_FRONT))
-            rect = tools(SIZE)[tool]
+            rect = button_rects(SIZE)[tool]
             start = rect.x + 5, rect.y + 5
             hand.drag(start, (start[0] + way[0], start[1] + way[1]))
             position = expected @ FROM_FRONT[:, 3]
@@ -235,15 +235,15 @@ def test_escape_and_the_buttons_switch_modes(hand):
     hand.gui.handle(Key("escape", False))
     hand.press_key("escape")
     assert hand.gui.mode is Mode.CAMERA
-    rects = tools(SIZE)
-    for tool, mode in ((Tool.INTERACT, Mode.INTERACTION), (Tool.CAMERA, Mode.CAMERA)):
+    rects = button_rects(SIZE)
+    for tool, mode in ((ViewButton.INTERACT, Mode.INTERACTION), (ViewButton.CAMERA, Mode.CAMERA)):
         hand.click((rects[tool].x + 3, rects[tool].y + 3))
         assert hand.gui.mode is mode
 
 
 def test_buttons_and_wheels_are_on_the_view_apart_from_each_other():
     for size in ((400, 300), (1920, 1080)):
-        rects = list(tools(size).values())
+        rects = list(button_rects(size).values())
         assert len(rects) == 5
         for rect in rects:
             assert rect.x >= 0
@@ -252,7 +252,7 @@ def test_buttons_and_wheels_are_on_the_view_apart_from_each_other():
             assert rect.y + rect.height <= size[1]
             centre = rect.x + rect.width / 2, rect.y + rect.height / 2
             assert sum(other.contains(*centre) for other in rects) == 1
-    assert tools((200, 150)) == {}
+    assert button_rects((200, 150)) == {}
     hand = Hand(ravemj.Environment())
     hand.gui.handle(Resize(1920, 1080))
     labels = [panel.text for panel in hand.gui.overlay().panels if panel.text]
@@ -289,7 +289,7 @@ def test_the_version_tells_when_to_draw_again(hand):
 
 
 def test_what_is_invisible_is_not_picked(boxes):
-    ray = View(Camera(FROM_FRONT), 1.0, SIZE).ray(*Hand(boxes).at([0, 0.3, 0]))
+    ray = Viewpoint(Camera(FROM_FRONT), 1.0, SIZE).ray(*Hand(boxes).at([0, 0.3, 0]))
     assert pick(boxes.simulation, ray).body.scene.name == "right"
     boxes.GetKinBody("right").GetLinks()[0].SetVisible(False)
     assert pick(boxes.simulation, ray) is None
@@ -466,6 +466,31 @@ def test_dragging_the_cylinder_turns_the_joint(env, robot, T_camera, angles):
     np.testing.assert_allclose(robot.GetDOFValues(), [0.3, 0.2 + angles[-1]], atol=1e-6)
 
 
+@pytest.mark.parametrize("is_mirror", [False, True])
+def test_nothing_is_dragged_where_that_is_forbidden(boxes, is_mirror):
+    body = boxes.GetKinBody("right")
+    hand = Hand(boxes).in_interaction()
+    if is_mirror:
+        hand.gui.forbid_drags()
+    hand.gui = hand.gui.another_view()
+    hand.click(hand.at(body.GetTransform()[:3, 3]))
+    before = body.GetTransform()
+    face = hand.at((before @ [0.115, 0.01, 0.02, 1])[:3])
+    hand.drag(face, (face[0] + 20, face[1]), (face[0] + 60, face[1] + 30))
+    assert np.array_equal(body.GetTransform(), before) == is_mirror
+    assert hand.selection is not None
+
+
+@pytest.mark.parametrize("is_mirror", [False, True])
+def test_no_slider_moves_a_joint_where_that_is_forbidden(hand, robot, is_mirror):
+    if is_mirror:
+        hand.gui.forbid_drags()
+    hand.gui.controls.operate("joints")
+    for name, value in (("dof 0", 0.5), ("random", 0.0), ("zero", 0.0), ("dof 1", 0.25)):
+        hand.gui.controls.operate(name, value)
+    np.testing.assert_array_equal(robot.GetDOFValues(), [0, 0] if is_mirror else [0, 0.25])
+
+
 def test_ctrl_and_a_click_on_the_cylinder_change_its_size(hand, robot):
     hand.in_interaction().click(hand.at([0.01, 0, -0.3]), ctrl=True)
     widths = []
@@ -596,14 +621,14 @@ def test_shells_with_buttons_of_their_own_use_the_same_tools(hand):
     other = hand.gui.another_view(has_tools=False)
     assert hand.gui.overlay().panels
     assert other.overlay().panels == ()
-    rect = tools(SIZE)[Tool.ROT_X]
+    rect = button_rects(SIZE)[ViewButton.ROT_X]
     at = rect.x + 5, rect.y + 5
-    other.handle(Use(Tool.INTERACT))
+    other.handle(Use(ViewButton.INTERACT))
     assert other.mode is Mode.INTERACTION
-    other.handle(Use(Tool.CAMERA))
+    other.handle(Use(ViewButton.CAMERA))
     assert other.mode is Mode.CAMERA
-    for tool in (Tool.ROT_X, Tool.ROT_Y, Tool.DOLLY):
-        rect = tools(SIZE)[tool]
+    for tool in (ViewButton.ROT_X, ViewButton.ROT_Y, ViewButton.DOLLY):
+        rect = button_rects(SIZE)[tool]
         at = rect.x + 5, rect.y + 5
         hand.drag(at, (at[0] + 30, at[1] + 30))
         other.handle(Use(tool, 30))

@@ -10,7 +10,20 @@ from test_interaction import ASLANT, FROM_FRONT, Hand
 
 import ravemj
 from ravemj.graphics.rendering import Camera, bounding_sphere
-from ravemj.gui.interaction import Button, Fingers, Key, Mode, Move, Operate, Press, Release, Resize, Tool, Use, Wheel
+from ravemj.gui.interaction import (
+    Button,
+    Fingers,
+    Key,
+    Mode,
+    Move,
+    Operate,
+    Press,
+    Release,
+    Resize,
+    Use,
+    ViewButton,
+    Wheel,
+)
 from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.figures import figures
 from ravemj.gui.interaction.joint_handle import JointHandle
@@ -34,8 +47,8 @@ def roll(camera) -> float:
 def go(hand, key):
     """Press a key, and let the view glide to its end."""
     hand.press_key(key)
-    hand.gui.pass_time(100.0)
-    hand.gui.pass_time(100.0 + GLIDE)
+    hand.gui.advance(100.0)
+    hand.gui.advance(100.0 + GLIDE)
 
 
 def test_home_is_the_first_view_or_that_of_a_script(hand):
@@ -129,7 +142,7 @@ def test_the_view_glides_and_scripts_read_its_end_at_once(hand):
     end = hand.view.camera.T_world_camera
     versions, angles = [], []
     for part in (0, 0.25, 0.5, 0.75, 1.0, 1.5):
-        hand.gui.pass_time(7.0 + part * GLIDE)
+        hand.gui.advance(7.0 + part * GLIDE)
         versions.append(hand.gui.appearance)
         drawn = hand.gui.drawn_view.camera
         np.testing.assert_allclose(drawn.rotation.T @ drawn.rotation, np.eye(3), atol=1e-9)
@@ -144,7 +157,7 @@ def test_the_view_glides_and_scripts_read_its_end_at_once(hand):
 
 def test_a_hand_on_the_view_ends_its_gliding(hand):
     hand.press_key("1")
-    hand.gui.pass_time(1.0)
+    hand.gui.advance(1.0)
     hand.gui.handle(Wheel(1))
     assert hand.gui.drawn_view is hand.view
 
@@ -264,11 +277,11 @@ def held(hand):
 
 def test_the_camera_moves_while_others_have_the_bodies(held):
     gui = held.gui
-    events = [Press(400, 300), Move(450, 310), Release(450, 310), Wheel(2), Use(Tool.ROT_X, 10)]
+    events = [Press(400, 300), Move(450, 310), Release(450, 310), Wheel(2), Use(ViewButton.ROT_X, 10)]
     events += [Fingers(400, 300, 5, 5, 1.1), Resize(500, 400), Key("1"), Key("1", False), Key("f"), Operate("home")]
     for event in events:
         before = gui.view
-        assert gui.steer([event]) == []
+        assert gui.handle_view_events([event]) == []
         if not isinstance(event, Press | Release) and getattr(event, "pressed", True):
             assert gui.view is not before, event
     np.testing.assert_allclose(gui.view.camera.T_world_camera, ROLLED, atol=1e-12)
@@ -277,21 +290,21 @@ def test_the_camera_moves_while_others_have_the_bodies(held):
 def test_the_view_turns_about_the_scene_also_where_no_focus_was_set(held):
     center, _ = held.sphere
     depth = float((center - ROLLED[:3, 3]) @ ROLLED[:3, 2])
-    held.gui.steer([Use(Tool.ROT_X, 10)])
+    held.gui.handle_view_events([Use(ViewButton.ROT_X, 10)])
     assert held.view.distance == pytest.approx(depth, rel=1e-3)
 
 
 def test_modes_change_and_clicks_wait_while_others_have_the_bodies(held):
     gui = held.gui
     click = [Press(400, 300), Release(400, 300)]
-    assert gui.steer([Key("escape"), Key("escape", False), *click]) == click
+    assert gui.handle_view_events([Key("escape"), Key("escape", False), *click]) == click
     assert gui.mode is Mode.INTERACTION
-    assert gui.steer([*click, Move(3, 3)]) == [*click, Move(3, 3)]
-    assert gui.steer([*click, Key("1")]) == [], "it would point at what was there before"
-    assert gui.steer([*click, Operate("joints")]) == [*click, Operate("joints")]
+    assert gui.handle_view_events([*click, Move(3, 3)]) == [*click, Move(3, 3)]
+    assert gui.handle_view_events([*click, Key("1")]) == [], "it would point at what was there before"
+    assert gui.handle_view_events([*click, Operate("joints")]) == [*click, Operate("joints")]
     turn = [Press(400, 300), Move(420, 300), Release(420, 300)]
     before = gui.view
-    assert gui.steer([*click, Key("escape"), Key("escape", False), *turn]) == []
+    assert gui.handle_view_events([*click, Key("escape"), Key("escape", False), *turn]) == []
     assert gui.view is not before
 
 
@@ -302,17 +315,17 @@ def test_what_is_dragged_is_let_go_only_once_the_bodies_are_free(env):
     at = hand.at(JointHandle.at(hand.selection.body, 1).center)
     hand.gui.handle(Press(*at))
     hand.gui.handle(Move(at[0] + 30, at[1]))
-    thread = threading.Thread(target=lambda: waiting.extend(hand.gui.steer(events)))
+    thread = threading.Thread(target=lambda: waiting.extend(hand.gui.handle_view_events(events)))
     waiting: list[object] = []
     thread.start()
     thread.join(60)
     assert waiting == events
     hand.gui.handle(Release(3, 3))
-    assert hand.gui.steer(events) == []
+    assert hand.gui.handle_view_events(events) == []
 
 
 def test_a_key_that_waited_is_up_again_afterwards(hand):
-    for event in hand.gui.steer([Key("g"), Key("g", False)]):
+    for event in hand.gui.handle_view_events([Key("g"), Key("g", False)]):
         hand.gui.handle(event)
     assert hand.gui.controls.display.shown == {"floor"}
     hand.press_key("g")
@@ -321,11 +334,11 @@ def test_a_key_that_waited_is_up_again_afterwards(hand):
 
 def test_right_clicks_and_panels_wait(held):
     gui = held.gui
-    rect = next(iter(gui._hand.layout.places.values()))
+    rect = next(iter(gui._controller.layout.places.values()))
     on_panel = Press(rect.x + 2, rect.y + 2)
-    assert gui.steer([on_panel]) == [on_panel]
+    assert gui.handle_view_events([on_panel]) == [on_panel]
     pull = Press(400, 300, Button.RIGHT)
-    assert gui.steer([pull]) == [pull]
+    assert gui.handle_view_events([pull]) == [pull]
 
 
 def test_static_bodies_have_no_ellipsoids_which_would_cover_all(hand):
@@ -384,7 +397,7 @@ def test_a_window_has_all_of_the_help_which_scrolls_and_goes_away_by_a_click(han
     hand.gui.handle(Move(size[0] / 2, size[1] / 2))
     seen = set()
     for _ in range(100):
-        texts = [panel for panel in hand.gui._hand.layout.help if panel.text]
+        texts = [panel for panel in hand.gui._controller.layout.help if panel.text]
         seen |= {word for panel in texts for word in panel.text.split()}
         for panel in texts:
             assert panel.rect.y + panel.rect.height <= size[1]
@@ -426,7 +439,7 @@ def test_what_is_shown_is_switched_by_its_key_and_its_button(hand, shortcut):
 def test_a_press_is_for_what_is_there_now(env):
     other, hand = Hand(env), Hand(env)
     other.gui.overlay()
-    rect = next(rect for control, rect in other.gui._hand.layout.places.items() if control.name == "view")
+    rect = next(rect for control, rect in other.gui._controller.layout.places.items() if control.name == "view")
     hand.click((rect.x + 2, rect.y + 2))  # before anything was drawn
     assert "home" in {control.name for control in hand.gui.overlay().controls}
 

@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 import ravemj
 from ravemj.gui.interaction import pick
-from ravemj.gui.interaction.viewpoint import Ray
+from ravemj.gui.interaction.viewpoint import ViewRay
 
 HALF = np.array([0.1, 0.2, 0.3])
 RADIUS, HEIGHT = 0.15, 0.5
@@ -102,7 +102,7 @@ def test_rays_meet_every_shape_where_it_begins(kind, aside, towards):
     direction = (target - start) / np.linalg.norm(target - start)
     inside = SHAPES[kind][0]
     expected, length = passage(inside, start, direction)
-    hit = pick(world(kind).simulation, Ray(start, direction))
+    hit = pick(world(kind).simulation, ViewRay(start, direction))
     if hit is None or length == 0:
         assert length < 3e-3, "only a ray that hardly touches it may miss it"
         return
@@ -125,9 +125,9 @@ def test_the_nearest_of_several_bodies_is_hit_and_nothing_behind_the_eye():
         env.Add(body)
         body.SetTransform([1, 0, 0, 0, number, 0, 0])
     for start, direction, name, x in ((-1, 1, "at 0", -0.1), (0.5, 1, "at 1", 0.9), (0.5, -1, "at 0", 0.1)):
-        hit = pick(env.simulation, Ray(np.array([start, 0.0, 0]), np.array([direction, 0.0, 0])))
+        hit = pick(env.simulation, ViewRay(np.array([start, 0.0, 0]), np.array([direction, 0.0, 0])))
         assert hit.body.scene.name == name
         np.testing.assert_allclose(hit.position, [x, 0, 0], atol=1e-9)
         np.testing.assert_allclose(hit.normal, [-direction, 0, 0], atol=1e-9)
-    assert pick(env.simulation, Ray(np.array([2.5, 0.0, 0]), np.array([1.0, 0, 0]))) is None
-    assert pick(ravemj.Environment().simulation, Ray(np.zeros(3), np.array([1.0, 0, 0]))) is None
+    assert pick(env.simulation, ViewRay(np.array([2.5, 0.0, 0]), np.array([1.0, 0, 0]))) is None
+    assert pick(ravemj.Environment().simulation, ViewRay(np.zeros(3), np.array([1.0, 0, 0]))) is None

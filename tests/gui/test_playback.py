@@ -29,7 +29,7 @@ from ravemj.gui.interaction import (
     Request,
     Resize,
     Wheel,
-    tools,
+    button_rects,
 )
 from ravemj.gui.interaction.control_layout import shortened
 from ravemj.gui.interaction.viewpoint import camera_line
@@ -59,8 +59,8 @@ class Panel(Hand):
 
     @property
     def layout(self) -> ControlLayout:
-        self.gui._hand.look()
-        return self.gui._hand.layout
+        self.gui._controller.update_layout()
+        return self.gui._controller.layout
 
     def control(self, name) -> Control:
         return next(control for control in self.gui.overlay().controls if control.name == name)
@@ -380,7 +380,7 @@ def test_mimic_joints_follow_a_slider():
       <Joint name="j" type="slider"><Body>a</Body><Body>b</Body><axis>1 0 0</axis><limits>0 0.5</limits></Joint>
       <Joint name="k" type="slider" mimic_pos="2*j" mimic_vel="|j 2" mimic_accel="|j 0" enable="false">
         <Body>b</Body><Body>c</Body><axis>1 0 0</axis><limits>0 1</limits></Joint></KinBody></Robot>""")
-    gui = Interaction(env.simulation, Camera(np.eye(4)), SIZE)
+    gui = Interaction.first_view(env.simulation, Camera(np.eye(4)), SIZE)
     gui.handle(Operate("joints"))
     assert [control.name for control in gui.overlay().controls][-1] == "dof 0"
     gui.handle(Operate("dof 0", 0.2))
@@ -408,7 +408,7 @@ def test_sliders_of_joints_that_go_far_cover_a_part(kind, limits, expected):
     joint = env.GetRobots()[0].GetJoints()[0]
     lower, upper = map(float, limits.split())
     joint.SetLimits([lower], [upper])
-    gui = Interaction(env.simulation, Camera(np.eye(4)), SIZE)
+    gui = Interaction.first_view(env.simulation, Camera(np.eye(4)), SIZE)
     gui.handle(Operate("joints"))
     control = gui.overlay().controls[-1]
     assert (control.lower, control.upper) == pytest.approx(expected)
@@ -443,8 +443,8 @@ def test_what_only_a_window_can_do_is_left_to_it(panel):
     for name in ("picture", "video", "camera", "picture"):
         panel.press(name)
     line = camera_line(panel.view.camera)
-    assert panel.gui.controls.take_requests() == [Request.PICTURE, Request.VIDEO, line, Request.PICTURE]
-    assert panel.gui.controls.take_requests() == []
+    assert panel.gui.controls.pop_requests() == [Request.PICTURE, Request.VIDEO, line, Request.PICTURE]
+    assert panel.gui.controls.pop_requests() == []
 
 
 def test_controls_that_are_not_there_do_nothing(panel, viewer, robot):
@@ -483,13 +483,13 @@ def test_views_share_the_motion_and_unfold_their_own_sliders(panel, viewer):
 
 def test_only_what_changes_is_drawn_again(panel, viewer):
     playback = viewer.play(SWING)
-    panel.gui.pass_time(1.0)
+    panel.gui.advance(1.0)
     before = panel.gui.appearance
-    panel.gui.pass_time(1.1)
+    panel.gui.advance(1.1)
     assert panel.gui.appearance != before
     playback.pause()
     before = panel.gui.appearance
-    panel.gui.pass_time(1.2)
+    panel.gui.advance(1.2)
     assert panel.gui.appearance == before
 
 
@@ -510,9 +510,9 @@ def test_notices_go_away_by_themselves(panel):
     now = time.monotonic()
     assert panel.lines() == ("Saved a.png", "Saved b.png")
     before = panel.gui.appearance
-    panel.gui.pass_time(now + 1)
+    panel.gui.advance(now + 1)
     assert panel.gui.appearance == before
-    panel.gui.pass_time(now + 600)
+    panel.gui.advance(now + 600)
     assert panel.gui.appearance != before
     assert panel.gui.overlay().lines == ("Saved b.png",)
 
@@ -538,8 +538,8 @@ def test_controls_are_on_the_view_apart_from_each_other_and_from_the_wheels(size
     playing += [Control("seek", "Time", "0", 0.0, 0.0, 1.0, group="playing")]
     playing += [Control("speed", "Speed", "1x", group="playing")]
     others = [Control(name, name, name) for name in ("picture", "video", "camera", "view", "display", "help", "joints")]
-    layout = ControlLayout.of((*playing, *others, *sliders), size)
-    rects = [*layout.places.values(), *tools(size).values()]
+    layout = ControlLayout.arrange((*playing, *others, *sliders), size)
+    rects = [*layout.places.values(), *button_rects(size).values()]
     for rect in rects:
         assert rect.width > 0
         assert rect.height > 0
@@ -588,7 +588,7 @@ def test_many_joints_scroll():
 def test_a_narrow_view_has_whole_sliders_with_shorter_names():
     sliders = [Control(f"dof {i}", f"a_joint_with_a_name_{i}", "0 rad", 0, -1, 1, group="joints") for i in range(3)]
     for size, longest in (((320, 480), 15), ((960, 720), 26)):
-        layout = ControlLayout.of((Control("joints", "DOFs", "DOFs"), *sliders), size)
+        layout = ControlLayout.arrange((Control("joints", "DOFs", "DOFs"), *sliders), size)
         names = [panel.text for panel in layout.panels() if "joint" in panel.text or ".." in panel.text]
         assert len(set(names)) == 3
         assert max(map(len, names)) <= longest
@@ -617,7 +617,7 @@ def test_joints_go_to_zero_to_random_values_and_are_copied(panel, robot):
     panel.press("joints")
     robot.SetDOFValues([0.5, -0.25])
     panel.press("values")
-    (line,) = panel.gui.controls.take_requests()
+    (line,) = panel.gui.controls.pop_requests()
     robot.SetDOFValues([0, 0])
     eval(line, {"env": panel.env})
     np.testing.assert_allclose(robot.GetDOFValues(), [0.5, -0.25])
@@ -630,7 +630,7 @@ def test_joints_go_to_zero_to_random_values_and_are_copied(panel, robot):
     assert (robot.GetDOFValues() <= upper).all()
     panel.press("zero")
     assert not robot.GetDOFValues().any()
-    assert panel.gui.controls.take_requests() == []
+    assert panel.gui.controls.pop_requests() == []
 
 
 def test_angles_are_shown_in_degrees_if_wanted(panel, robot):

@@ -227,3 +227,59 @@ def test_with_the_button_a_plain_drag_pulls(arm):
     after = robot.GetDOFValues()
     arm.drag(arm.at(target), arm.at(point))
     np.testing.assert_array_equal(robot.GetDOFValues(), after)
+
+
+@pytest.fixture
+def biped():
+    env = ravemj.load(model_path("biped"))
+    hand = Hand(env)
+    camera = ravemj.transformLookat(lookat=[0, 0, 0.5], camerapos=[1.6, -1.2, 0.9], cameraup=[0, 0, -1])
+    hand.gui.look_from(ravemj.graphics.rendering.Camera(camera), 2.0)
+    return hand.in_interaction()
+
+
+def pin(hand, robot, name):
+    """Press K over a link."""
+    hand.lines(hand.at(robot.GetLink(name).ComputeAABB().pos()))
+    assert hand.gui.hover.link == robot.GetLink(name).GetIndex()
+    hand.press_key("a")
+
+
+def test_pinned_feet_stay_and_the_base_moves(biped):
+    robot = biped.env.GetRobots()[0]
+    without = len(biped.gui.overlay().primitives.spheres.sizes)
+    for foot in ("LFoot", "RFoot"):
+        pin(biped, robot, foot)
+    assert len(biped.gui.overlay().primitives.spheres.sizes) == without + 2, "pins are shown"
+    feet = [robot.GetLink(name).GetTransform() for name in ("LFoot", "RFoot")]
+    base = robot.GetTransform()
+    point = robot.GetLink("RHand").ComputeAABB().pos()
+    target = point + 0.1 * biped.view.camera.rotation[:, 0] + 0.1 * biped.view.camera.rotation[:, 1]
+    pull(biped, point, target)
+    for name, before in zip(("LFoot", "RFoot"), feet, strict=True):
+        np.testing.assert_allclose(robot.GetLink(name).GetTransform(), before, atol=1e-6)
+    now = robot.GetLink("RHand").ComputeAABB().pos()
+    assert np.linalg.norm(now - target) < 0.05
+    assert np.abs(robot.GetTransform() - base).max() > 1e-3
+    pull(biped, now, now + 1.5 * biped.view.camera.rotation[:, 0])
+    assert any("RHand gives in" in line for line in biped.gui.overlay().lines)
+
+
+def test_without_pins_the_base_stays(biped):
+    robot = biped.env.GetRobots()[0]
+    base = robot.GetTransform()
+    pin(biped, robot, "LFoot")
+    pin(biped, robot, "LFoot")
+    point = robot.GetLink("RHand").ComputeAABB().pos()
+    pull(biped, point, point + 0.1 * biped.view.camera.rotation[:, 1])
+    np.testing.assert_array_equal(robot.GetTransform(), base)
+
+
+def test_the_button_pins_what_is_selected(biped):
+    robot = biped.env.GetRobots()[0]
+    assert "pin" not in [control.name for control in biped.gui.overlay().controls]
+    biped.click(biped.at(robot.GetLink("LFoot").ComputeAABB().pos()))
+    for is_on in (False, True, False):
+        (button,) = [control for control in biped.gui.overlay().controls if control.name == "pin"]
+        assert button.is_on is is_on
+        biped.gui.handle(Operate("pin"))

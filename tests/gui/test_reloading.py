@@ -65,10 +65,10 @@ def test_a_file_that_is_included_is_saved_and_camera_values_and_selection_stay(s
     shown.gui.handle(Press(x, y, ctrl=True))
     shown.gui.handle(Release(x, y))
     assert shown.viewer.GetSelectedJoint().GetName() == "turn"
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.width == pytest.approx(0.05)
     shown.save(BODY.format(width=0.08, limit=90))
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.width == pytest.approx(0.08)
     assert np.array_equal(shown.viewer.GetCameraTransform(), camera)
     np.testing.assert_allclose(shown.env.GetRobots()[0].GetDOFValues(), [0.5])
@@ -81,20 +81,20 @@ def test_a_file_that_is_included_is_saved_and_camera_values_and_selection_stay(s
 def test_values_stop_at_new_limits(shown):
     shown.env.GetRobots()[0].SetDOFValues([1.5])
     shown.save(BODY.format(width=0.05, limit=30))
-    shown.reloader.look()
+    shown.reloader.update()
     np.testing.assert_allclose(shown.env.GetRobots()[0].GetDOFValues(), [np.radians(30)])
 
 
 def test_an_error_is_shown_with_file_and_line_until_it_is_mended(shown):
     shown.save(BODY.format(width=0.08, limit=90).replace("</KinBody>", "</KinBdy>"))
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.width == pytest.approx(0.05), "the last good model stays"
     (error,) = shown.lines
     assert "arm.kinbody.xml:7" in error or "arm.kinbody.xml:8" in error, error
-    shown.gui.pass_time(1e12)
+    shown.gui.advance(1e12)
     assert shown.lines == (error,)
     shown.save(BODY.format(width=0.07, limit=90))
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.width == pytest.approx(0.07)
     assert error not in shown.lines
 
@@ -102,11 +102,11 @@ def test_an_error_is_shown_with_file_and_line_until_it_is_mended(shown):
 def test_a_file_that_is_gone_for_a_moment_is_an_error_for_a_moment(shown):
     text = shown.part.read_text()
     shown.part.unlink()
-    shown.reloader.look()
+    shown.reloader.update()
     assert "arm.kinbody.xml" in shown.lines[0]
     assert shown.env.GetRobots()
     shown.save(text)
-    shown.reloader.look()
+    shown.reloader.update()
     assert not any("arm.kinbody.xml" in line for line in shown.lines)
 
 
@@ -117,7 +117,7 @@ def test_a_selection_that_is_gone_is_forgotten(shown):
     shown.gui.handle(Release(x, y))
     assert shown.viewer.GetSelectedBody().GetName() == "arm"
     shown.save(BODY.format(width=0.05, limit=90).replace('"base"', '"foot"').replace(">base<", ">foot<"))
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.viewer.GetSelectedBody() is None
     assert [link.GetName() for link in shown.env.GetRobots()[0].GetLinks()] == ["foot", "upper"]
 
@@ -125,7 +125,7 @@ def test_a_selection_that_is_gone_is_forgotten(shown):
 def test_with_physics_the_base_is_held_again(shown):
     shown.env.SetPhysicsEngine("mujoco")
     shown.save(BODY.format(width=0.02, limit=90))
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.width == 0.02
     assert [link.IsStatic() for link in shown.env.GetRobots()[0].GetLinks()] == [True, False]
 
@@ -134,10 +134,10 @@ def test_a_key_reads_it_again_and_nothing_else_does_without_watching(tmp_path, m
     monkeypatch.chdir(tmp_path)
     shown = Shown(tmp_path, watches=False)
     shown.save(BODY.format(width=0.08, limit=90))
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.width == pytest.approx(0.05)
     shown.gui.another_view().handle(Key("r"))
-    shown.reloader.look()
+    shown.reloader.update()
     assert shown.width == pytest.approx(0.08)
     shown.env.Destroy()
 

@@ -16,8 +16,8 @@ def draw_moving(sharpness, crisp_cost, pictures=60):
     """Draw at 30 Hz on a machine where crisp pictures take so long; return the levels."""
     levels = []
     for number in range(pictures):
-        level = sharpness.moving(number / 30)
-        sharpness.drew(level, crisp_cost * level.cost)
+        level = sharpness.level_while_moving(number / 30)
+        sharpness.add_measurement(level, crisp_cost * level.cost)
         levels.append(level)
     return levels
 
@@ -41,7 +41,7 @@ def test_the_second_picture_fits_already():
 
 def test_a_first_picture_that_takes_long_is_forgotten():
     sharpness = Sharpness()
-    sharpness.drew(sharpness.moving(0.0), 0.6)
+    sharpness.add_measurement(sharpness.level_while_moving(0.0), 0.6)
     assert draw_moving(sharpness, 0.002)[-1] is CRISP
 
 
@@ -50,8 +50,8 @@ def test_noise_does_not_change_the_sharpness_with_every_picture():
     draw_moving(sharpness, 0.071)
     levels = []
     for number in range(100):
-        level = sharpness.moving(number / 30)
-        sharpness.drew(level, (0.065, 0.077)[number % 2] * level.cost)
+        level = sharpness.level_while_moving(number / 30)
+        sharpness.add_measurement(level, (0.065, 0.077)[number % 2] * level.cost)
         levels.append(level)
     assert sum(one is not other for one, other in itertools.pairwise(levels)) < 3
 
@@ -61,10 +61,10 @@ def test_what_rests_is_drawn_crisp_once_and_soon():
     assert not sharpness.is_due(0.0), "nothing was drawn yet"
     draw_moving(sharpness, 0.1, 10)
     rests_at = 10 / 30
-    sharpness.drew(sharpness.moving(rests_at), 0.02)
+    sharpness.add_measurement(sharpness.level_while_moving(rests_at), 0.02)
     assert not sharpness.is_due(rests_at + 0.5 * REST)
     assert sharpness.is_due(rests_at + 0.15), "crisp within 150 ms"
-    sharpness.drew(CRISP, 0.1)
+    sharpness.add_measurement(CRISP, 0.1)
     assert not sharpness.is_due(rests_at + 60)
 
 
@@ -82,13 +82,13 @@ def test_who_waits_for_changes_looks_less_often_once_nothing_has_changed_for_lon
 def test_a_page_is_looked_after_at_once_again_when_something_changes(env, monkeypatch):
     viewer, now = env.serve_viewer(), time.monotonic()
     client = Client(env.simulation, viewer._renderer, viewer.interaction, Scenes())
-    client.take_in([json.dumps({"type": "draws", "itself": True}), '{"type": "ready"}'], pytest.fail)
+    client.queue_messages([json.dumps({"type": "draws", "itself": True}), '{"type": "ready"}'], pytest.fail)
     periods = []
     for seconds, values in ((0, [0, 0]), (0.5, [0, 0]), (5, [0, 0]), (6, [0.1, 0]), (20, [0.1, 0])):
         monkeypatch.setattr(time, "monotonic", lambda seconds=seconds: now + seconds)
         env.GetRobots()[0].SetDOFValues(values)
-        client.attend(Deaf(), PageStyle(Look(), None, "ravemj"))
-        client.take_in(['{"type": "ready"}'], pytest.fail)
+        client.handle_messages(Deaf(), PageStyle(Look(), None, "ravemj"))
+        client.queue_messages(['{"type": "ready"}'], pytest.fail)
         periods.append(client.patience)
     assert periods == [1 / 60, 1 / 60, 1 / 30, 1 / 60, 1 / 30]
 

@@ -11,7 +11,7 @@ from waiting import await_that
 import ravemj
 from ravemj.engine.physics import Spring
 from ravemj.gui.interaction import Button, Key, Leave, Move, Operate, Press, Release
-from ravemj.gui.interaction.hand import WITHOUT_PHYSICS
+from ravemj.gui.interaction.pointer_controller import WITHOUT_PHYSICS
 
 WORLD = """<Environment>
 <KinBody name="floor"><Body type="static">
@@ -120,18 +120,18 @@ def test_time_at_half_pace_takes_twice_as_long(env):
 def test_it_is_measured_how_fast_time_passes(env, hand):
     env.clock.pace = 1e-6  # the thread waits; this test lets time pass
     env.clock.resume()
-    hand.gui.pass_time(100.0)
+    hand.gui.advance(100.0)
     assert control(hand, "clock").text.endswith("s, 0.00x")
     seen = hand.gui.appearance
     steps(env, 40)
-    hand.gui.pass_time(100.5)
+    hand.gui.advance(100.5)
     assert control(hand, "clock").text.endswith("s, 0.80x")
     assert hand.gui.appearance != seen
     seen = hand.gui.appearance
-    hand.gui.pass_time(100.6)
+    hand.gui.advance(100.6)
     assert hand.gui.appearance == seen  # nothing to be drawn anew
     env.StopSimulation()
-    hand.gui.pass_time(101.5)
+    hand.gui.advance(101.5)
     assert control(hand, "clock").text.endswith(" s")
 
 

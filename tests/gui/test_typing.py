@@ -116,7 +116,7 @@ def test_a_number_of_a_body_that_is_gone_is_not_set(keyboard, env, robot):
 def test_letters_wait_while_others_have_the_simulation(keyboard, robot):
     keyboard.click_number("dof 0")
     events = [Key("1"), Type("1"), Key("1", False), Key("enter")]
-    waiting = keyboard.gui.steer(events)
+    waiting = keyboard.gui.handle_view_events(events)
     assert waiting == events
     for event in waiting:
         keyboard.gui.handle(event)

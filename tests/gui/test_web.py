@@ -27,14 +27,14 @@ from websockets.sync.client import connect
 import ravemj
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import Camera
-from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Tool, Use, Wheel
+from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Use, ViewButton, Wheel
 from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.viewers.sharpness import LEVELS, Sharpness
 from ravemj.gui.viewers.viewer import LOCKED
 from ravemj.gui.viewers.web import WebViewer, client, server
 from ravemj.gui.viewers.web import viewer as viewers
-from ravemj.gui.viewers.web.frame_pacing import Link
-from ravemj.gui.viewers.web.messages import Draws, Ready, Shape, parse
+from ravemj.gui.viewers.web.frame_pacing import ConnectionPacing
+from ravemj.gui.viewers.web.messages import DrawingSide, PageSize, Ready, parse
 
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 SIZE = 400, 300
@@ -53,11 +53,11 @@ class Clocks:
 
 @pytest.fixture(autouse=True)
 def _clocks(monkeypatch):
-    monkeypatch.setattr(client, "Link", lambda: Link(lambda: Clocks.way))
+    monkeypatch.setattr(client, "ConnectionPacing", lambda: ConnectionPacing(lambda: Clocks.way))
     monkeypatch.setattr(client, "time", SimpleNamespace(monotonic=lambda: Clocks.rest))
     # Time that is turned on while a picture is drawn is no time that drawing takes.
-    drew = Sharpness.drew
-    monkeypatch.setattr(Sharpness, "drew", lambda self, level, seconds: drew(self, level, 0.0))
+    drew = Sharpness.add_measurement
+    monkeypatch.setattr(Sharpness, "add_measurement", lambda self, level, seconds: drew(self, level, 0.0))
 
 
 @pytest.fixture
@@ -216,7 +216,7 @@ class TestLink:
 
     @pytest.fixture
     def link(self, clock):
-        link = Link(lambda: clock[0])
+        link = ConnectionPacing(lambda: clock[0])
         link.shown()
         return link
 
@@ -226,7 +226,7 @@ class TestLink:
         link.shown()
 
     def test_two_pictures_are_under_way(self, link):
-        assert not Link().is_free
+        assert not ConnectionPacing().is_free
         for _ in range(2):
             assert link.is_free
             link.sent(is_moving=True)
@@ -279,7 +279,7 @@ def test_pages_that_are_slow_are_sent_less(env, viewer):
 
 def test_points_are_as_wide_in_coarse_pictures_as_in_crisp_ones(env, viewer, monkeypatch):
     half = next(level for level in LEVELS if level.scale == 0.5)
-    monkeypatch.setattr(Sharpness, "moving", lambda self, now: half)
+    monkeypatch.setattr(Sharpness, "level_while_moving", lambda self, now: half)
     point = env.plot3([0.3, 0, 0], 20, [0, 1, 0])
     with Page(viewer) as page:
         for scale, picture in ((0.5, page.picture()), (1, page.settled())):
@@ -641,12 +641,12 @@ def test_closing_ends_all_pages_and_main(env, viewer):
         ('{"type":"move","x":1,"y":2}', Move(1, 2)),
         ('{"type":"wheel","steps":-1}', Wheel(-1)),
         ('{"type":"fingers","x":5,"y":6,"right":1,"down":-2,"spread":1.5}', Fingers(5, 6, 1, -2, 1.5)),
-        ('{"type":"use","tool":"RotX","amount":-3}', Use(Tool.ROT_X, -3)),
+        ('{"type":"use","tool":"RotX","amount":-3}', Use(ViewButton.ROT_X, -3)),
         ('{"type":"key","name":"s","pressed":true}', Key("s")),
         ('{"type":"leave"}', Leave()),
         ('{"type":"ready"}', Ready()),
-        ('{"type":"draws","itself":false}', Draws(False)),
-        ('{"type":"shape","width":3,"height":4,"ratio":1.5}', Shape(3, 4, 1.5)),
+        ('{"type":"draws","itself":false}', DrawingSide(False)),
+        ('{"type":"shape","width":3,"height":4,"ratio":1.5}', PageSize(3, 4, 1.5)),
     ],
 )
 def test_messages(text, message):

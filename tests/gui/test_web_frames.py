@@ -56,7 +56,7 @@ USUAL = {
 class TestWhoMayShowIt:
     def test_pages_of_this_machine_and_those_that_are_named(self, env, viewer, monkeypatch):
         assert ancestors(viewer) == USUAL
-        viewer.server.let_embed("https://*.lab.example:*")  # as helpers for hosted notebooks do
+        viewer.server.allow_embedding("https://*.lab.example:*")  # as helpers for hosted notebooks do
         assert ancestors(viewer) == {*USUAL, "https://*.lab.example:*"}
         one = env.serve_viewer(embed="https://lab.example")
         assert ancestors(one) == {*USUAL, "https://lab.example"}
@@ -226,7 +226,7 @@ class TestInABrowser:
             page.goto(around.url)
             if host == "127.0.0.2":
                 await_that(lambda: "frame-ancestors" in "".join(said), "it is shown")
-                viewer.server.let_embed(around.url.rstrip("/"))
+                viewer.server.allow_embedding(around.url.rstrip("/"))
                 page.reload()
             frames(page)
 

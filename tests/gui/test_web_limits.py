@@ -18,7 +18,7 @@ from ravemj.gui.viewers.dropping import Upload
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.web import uploads
 from ravemj.gui.viewers.web.limits import Guesses
-from ravemj.gui.viewers.web.messages import Piece, parse
+from ravemj.gui.viewers.web.messages import UploadChunk, parse
 from ravemj.gui.viewers.web.uploads import PageUploads, UploadQuota
 
 TOKEN = "robots-2026"
@@ -305,43 +305,45 @@ class TestPageUploads:
     def test_all_pages_share_the_bytes(self):
         quota = UploadQuota()
         one, other = PageUploads(quota), PageUploads(quota)
-        assert one.add(Piece("a", 60 * b"x", False)) == ""
-        assert other.add(Piece("a", 40 * b"x", False)) == ""
-        assert "256 MiB" in other.add(Piece("a", b"x", False))
-        assert other.add(Piece("a", 40 * b"x", True)) == "", "it is said once"
+        assert one.add(UploadChunk("a", 60 * b"x", False)) == ""
+        assert other.add(UploadChunk("a", 40 * b"x", False)) == ""
+        assert "256 MiB" in other.add(UploadChunk("a", b"x", False))
+        assert other.add(UploadChunk("a", 40 * b"x", True)) == "", "it is said once"
         assert other.complete == []
         one.close()
-        assert other.add(Piece("b", 80 * b"x", True)) == ""
-        assert "256 MiB" in one.add(Piece("a", 60 * b"x", False)), "complete ones count until their files are removed"
+        assert other.add(UploadChunk("b", 80 * b"x", True)) == ""
+        assert "256 MiB" in one.add(UploadChunk("a", 60 * b"x", False)), (
+            "complete ones count until their files are removed"
+        )
         other.complete.clear()
-        assert one.add(Piece("c", b"", True)) == "", "this is the end of what was refused"
-        assert one.add(Piece("a", 60 * b"x", True)) == ""
+        assert one.add(UploadChunk("c", b"", True)) == "", "this is the end of what was refused"
+        assert one.add(UploadChunk("a", 60 * b"x", True)) == ""
         (path,) = one.complete[0].paths
         assert os.path.getsize(path) == 60
 
     def test_an_upload_that_is_too_large_leaves_no_half_of_it(self):
         page = PageUploads(UploadQuota())
-        assert page.add(Piece("a", 80 * b"x", False)) == ""
-        assert "too large" in page.add(Piece("a", b"x", False))
+        assert page.add(UploadChunk("a", 80 * b"x", False)) == ""
+        assert "too large" in page.add(UploadChunk("a", b"x", False))
         for _ in range(3):
-            assert page.add(Piece("a", b"x", False)) == ""
-        assert page.add(Piece("a", b"x", True)) == ""
+            assert page.add(UploadChunk("a", b"x", False)) == ""
+        assert page.add(UploadChunk("a", b"x", True)) == ""
         assert page.complete == []
-        assert page.add(Piece("b", b"x", True)) == ""
+        assert page.add(UploadChunk("b", b"x", True)) == ""
         assert len(page.complete) == 1
 
     def test_500_drops_one_after_the_other(self):
         page = PageUploads(UploadQuota())
         for number in range(500):
-            assert page.add(Piece(f"{number}.xml", b"", True)) == ""
+            assert page.add(UploadChunk(f"{number}.xml", b"", True)) == ""
             page.complete.clear()
 
     def test_a_file_that_cannot_be_written_is_said(self, monkeypatch):
         def fail(self, name, data):
             raise OSError(28, "No space left on device")
 
-        monkeypatch.setattr(Upload, "take", fail)
-        assert PageUploads(UploadQuota()).add(Piece("a.xml", b"x", False)) == "a.xml: No space left on device"
+        monkeypatch.setattr(Upload, "append", fail)
+        assert PageUploads(UploadQuota()).add(UploadChunk("a.xml", b"x", False)) == "a.xml: No space left on device"
 
 
 @pytest.mark.parametrize(

@@ -299,8 +299,10 @@ def test_a_video_ends_with_the_last_tab_and_the_tab_that_comes_back_gets_it(desk
     other.close()
     await_that(lambda: len(desk.viewer._clients) == 1, "the other tab stays")
     assert notices.recording, "a tab is there"
+    desk.page.goto("about:blank")
+    await_that(lambda: not desk.viewer._clients, "the last tab stays")
     with desk.page.expect_download() as download:
-        desk.page.reload()
+        desk.page.go_back()
     assert download.value.suggested_filename.endswith(".mp4")
     await_that(lambda: not notices.recording, "the recording goes on")
     assert list(tmp_path.iterdir()) == []

@@ -75,7 +75,7 @@ def test_points_are_as_wide_while_pictures_are_coarse_as_when_they_are_crisp(dis
     (folder / "coarse.py").write_text("""
 import ravemj
 from ravemj.gui.viewers import sharpness
-sharpness.Sharpness.moving = lambda self, now: sharpness.LEVELS[-1]
+sharpness.Sharpness.level_while_moving = lambda self, now: sharpness.LEVELS[-1]
 sharpness.Sharpness.is_due = lambda self, now: False
 env = ravemj.Environment()
 env.SetViewer('window')

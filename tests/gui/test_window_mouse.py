@@ -10,7 +10,7 @@ from screens import NEEDS_A_SCREEN
 from test_interaction import SLIDING
 from waiting import await_that
 
-from ravemj.gui.interaction import Button, Key, Resize, Tool, tools
+from ravemj.gui.interaction import Button, Key, Resize, ViewButton, button_rects
 from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle
 from ravemj.gui.interaction.shortcuts import KEYS
@@ -99,7 +99,7 @@ def left_and_middle(desk):
 
 def on_wheel(tool, right, down):
     def drag(desk):
-        rect = tools(SIZE)[tool]
+        rect = button_rects(SIZE)[tool]
         start = rect.x + 6, rect.y + 6
         desk.drag(start, (start[0] + right, start[1] + down))
 
@@ -108,14 +108,14 @@ def on_wheel(tool, right, down):
 
 CAMERA_ROWS = {
     "left drag rotates": (lambda desk: desk.drag((320, 100), (350, 120), (400, 130)), is_turned),
-    "RotX rotates": (on_wheel(Tool.ROT_X, 40, 50), is_turned_about_image_right),
-    "RotY rotates": (on_wheel(Tool.ROT_Y, 50, 40), is_turned_about_image_down),
+    "RotX rotates": (on_wheel(ViewButton.ROT_X, 40, 50), is_turned_about_image_right),
+    "RotY rotates": (on_wheel(ViewButton.ROT_Y, 50, 40), is_turned_about_image_down),
     "Shift + left translates": (lambda desk: desk.drag((320, 100), (340, 90), (370, 80), keys=["shift"]), is_shifted),
     "middle translates": (lambda desk: desk.drag((320, 100), (300, 90), button=Button.MIDDLE), is_shifted),
     "wheel zooms in": (lambda desk: desk.wheel(3), is_nearer),
     "wheel zooms out": (lambda desk: desk.wheel(-3), is_farther),
     "left + middle zooms": (left_and_middle, is_nearer),
-    "Dolly zooms": (on_wheel(Tool.DOLLY, 20, 40), is_nearer),
+    "Dolly zooms": (on_wheel(ViewButton.DOLLY, 20, 40), is_nearer),
 }
 
 
@@ -178,11 +178,11 @@ def test_what_the_camera_was_gives_the_same_picture_in_another_session(desk):
 
 def chosen(desk) -> str:
     """The mode by the brighter one of the two buttons."""
-    rects = tools(SIZE)
+    rects = button_rects(SIZE)
     picture = desk.picture()
     bright = [
         tool.value
-        for tool in (Tool.CAMERA, Tool.INTERACT)
+        for tool in (ViewButton.CAMERA, ViewButton.INTERACT)
         if picture[int(rects[tool].y) + 2, int(rects[tool].x) + 2].min() > 200
     ]
     return " and ".join(bright)
@@ -190,24 +190,24 @@ def chosen(desk) -> str:
 
 def test_escape_and_the_two_buttons_switch_modes(desk):
     desk.ask("viewer.SetBkgndColor([0.2, 0.2, 0.2])")
-    rects = tools(SIZE)
+    rects = button_rects(SIZE)
     centres = {tool: (rect.x + rect.width / 2, rect.y + rect.height / 2) for tool, rect in rects.items()}
-    assert centres[Tool.INTERACT][1] < centres[Tool.CAMERA][1], "the arrow is above the camera"
+    assert centres[ViewButton.INTERACT][1] < centres[ViewButton.CAMERA][1], "the arrow is above the camera"
 
     def await_mode(tool):
         await_that(lambda: chosen(desk) == tool.value, f"the {tool.value} button is not lit")
         assert desk.ask("viewer.interaction.mode.value") == tool.value.split()[0].lower()
 
-    await_mode(Tool.CAMERA)
-    arrow = tools(SIZE)[Tool.INTERACT]
+    await_mode(ViewButton.CAMERA)
+    arrow = button_rects(SIZE)[ViewButton.INTERACT]
     inside = desk.picture()[int(arrow.y) : int(arrow.y + arrow.height), int(arrow.x) : int(arrow.x + arrow.width)]
     assert ((inside[..., 0] > 150) & (inside[..., 1] < 90)).sum() > 100, "the arrow is red"
     for _ in range(2):
         desk.escape()
-        await_mode(Tool.INTERACT)
+        await_mode(ViewButton.INTERACT)
         desk.escape()
-        await_mode(Tool.CAMERA)
-    for tool in (Tool.INTERACT, Tool.INTERACT, Tool.CAMERA):
+        await_mode(ViewButton.CAMERA)
+    for tool in (ViewButton.INTERACT, ViewButton.INTERACT, ViewButton.CAMERA):
         desk.click(centres[tool])
         await_mode(tool)
     assert np.allclose(desk.camera, ASLANT, atol=1e-6)

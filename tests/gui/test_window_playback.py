@@ -66,7 +66,7 @@ class Desk:
             Control(found, found, lower=lower, upper=upper, group=group)
             for found, lower, upper, group in ast.literal_eval(text)
         )
-        places = ControlLayout.of(controls, SIZE).places
+        places = ControlLayout.arrange(controls, SIZE).places
         return next(rect for control, rect in places.items() if control.name == name)
 
     def point(self, name, part: float = 0.5) -> tuple[str, str]:

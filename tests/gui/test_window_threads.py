@@ -12,7 +12,7 @@ from waiting import await_that
 
 import ravemj
 from ravemj.graphics.rendering import Camera
-from ravemj.gui.interaction import View
+from ravemj.gui.interaction import Viewpoint
 from ravemj.gui.interaction.cube import Cube
 
 pytestmark = NEEDS_A_SCREEN
@@ -119,7 +119,7 @@ def drag_about(display, window, moves) -> None:
     env = ravemj.Environment()
     exec(BOX, {"env": env, "ravemj": ravemj})
     box = env.GetKinBody("box")
-    view = View(Camera(ASLANT), DISTANCE, SIZE)
+    view = Viewpoint(Camera(ASLANT), DISTANCE, SIZE)
     place = ["mousemove", "--window", str(window)]
 
     def at(point):

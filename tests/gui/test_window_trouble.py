@@ -9,7 +9,7 @@ from desk import SIZE, Desk
 from screens import NEEDS_A_SCREEN, Started, virtual_screen
 from waiting import await_that
 
-from ravemj.gui.interaction import Tool, tools
+from ravemj.gui.interaction import ViewButton, button_rects
 from ravemj.gui.interaction.cube import Cube
 
 pytestmark = NEEDS_A_SCREEN
@@ -207,6 +207,9 @@ def test_two_windows_on_one_environment_are_driven_apart(process):
     await_that(lambda: desk.display.tool(*search), "there is no other window")
     (other,) = (int(word) for word in desk.display.tool(*search).split())
     await_that(lambda: "X=640" in desk.display.tool("getwindowgeometry", "--shell", str(other)), "it does not move")
+    desk.move(320, 100)
+    under_pointer = "getmouselocation", "--shell"
+    await_that(lambda: f"WINDOW={desk.window}\n" in desk.display.tool(*under_pointer) + "\n", "it is in the way")
     desk.drag((320, 100), (360, 130))
     desk.await_camera()
     assert not np.allclose(desk.camera, before, atol=1e-3)
@@ -231,7 +234,7 @@ def test_small_pixels_have_large_buttons_and_letters(tmp_path):
             desk.ask("[viewer.SetSize(1280, 960), viewer.Move(0, 0), viewer.SetBkgndColor([0, 0, 0])]")
             await_that(lambda: desk.ask("viewer.interaction.view.size") == str(SIZE), "a point is not two pixels")
             await_that(lambda: desk.picture().shape == (960, 1280, 3), "the window has another size")
-            arrow = tools(SIZE)[Tool.INTERACT]
+            arrow = button_rects(SIZE)[ViewButton.INTERACT]
             place = [str(round(2 * (start + 10))) for start in (arrow.x, arrow.y)]
             desk.display.tool("mousemove", "--window", desk.window, *place, "click", "1")
             await_that(lambda: desk.ask("viewer.interaction.mode.value") == "interaction", "the button is elsewhere")

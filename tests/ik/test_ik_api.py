@@ -425,7 +425,7 @@ def test_robots_without_arms_and_joints_outside_of_them_say_so(puma):
     with pytest.raises(LookupError, match="nobody"):
         InverseKinematicsModel(puma.GetRobot(), Type.Transform6D, freejoints=["nobody"])
     with pytest.raises(InverseKinematicsError, match="iktype"):
-        InverseKinematicsModel(puma.GetRobot()).load()
+        InverseKinematicsModel(puma.GetRobot()).GetDefaultIndices()
 
 
 @pytest.mark.parametrize("wrong", [np.full((4, 4), np.nan), np.diag([1, -1, 1, 1.0]), np.zeros((4, 4)), "x"])
@@ -466,3 +466,73 @@ def test_solvers_of_removed_arms_and_of_other_environments_say_so(puma):
     assert robot.RemoveManipulator(puma)
     with pytest.raises(ravemj.openrave_exception, match="removed"):
         solver.Solve(goal, None, 0)
+
+
+# Between the samples of a free joint, and out of reach
+
+
+NARROW = [-1.87, -1.69, -0.3, -0.75, 1.75, 1.79, 2.84]
+"""Of a Panda: no sample of the free joint from 0 outwards has a solution for its pose."""
+
+
+@pytest.mark.parametrize("options", [0, UNCHECKED, IkFilterOptions.CheckEnvCollisions])
+def test_a_pose_between_samples_is_found_by_all_functions(options):
+    panda = arm_of("panda.xml")
+    T = at(panda, NARROW)
+    rows = panda.FindIKSolutions(T, options)
+    assert len(rows)
+    assert all(reaches(panda, row, T) for row in [*rows, panda.FindIKSolution(T, options)])
+    assert [answer.GetAction() for answer in panda.FindIKSolutions(T, options, ikreturn=True)] == [0] * len(rows)
+    assert panda.FindIKSolution(T, options, ikreturn=True).GetAction() == 0
+
+
+def test_a_filter_is_asked_between_the_samples_of_a_free_joint():
+    panda = arm_of("panda.xml")
+    T = at(panda, [0.3, 0.5, 0.4, -1.5, 0.2, 1.8, 0.1])
+    samples = panda.FindIKSolutions(T, UNCHECKED)[:, 6]
+    free, asked = np.unique(samples), []
+
+    def between(values, manipulator, goal):
+        asked.append(values[6])
+        return IkReturnAction.Success if np.abs(values[6] - free).min() > 0.02 else IkReturnAction.Reject
+
+    handle = panda.GetIkSolver().RegisterCustomFilter(0, between)
+    rows = panda.FindIKSolutions(T, UNCHECKED)
+    assert len(rows)
+    assert all(reaches(panda, row, T) for row in rows)
+    np.testing.assert_array_equal(asked[: len(samples)], samples)
+    one = panda.FindIKSolution(T, UNCHECKED)
+    assert reaches(panda, one, T)
+    assert between(one, panda, None) == IkReturnAction.Success
+    handle.Close()
+    asked.clear()
+    reject = panda.GetIkSolver().RegisterCustomFilter(0, lambda *one: asked.append(one) or IkReturnAction.Reject)
+    assert not len(panda.FindIKSolutions(T, UNCHECKED))
+    assert len(samples) < len(asked) < 2 * len(samples) + 300
+    reject.Close()
+
+
+def test_a_quit_ends_the_search_before_the_intervals():
+    panda, asked = arm_of("panda.xml"), []
+    T = at(panda, [0.3, 0.5, 0.4, -1.5, 0.2, 1.8, 0.1])
+    handle = panda.GetIkSolver().RegisterCustomFilter(0, lambda *one: asked.append(one) or IkReturnAction.Quit)
+    assert not len(panda.FindIKSolutions(T, UNCHECKED))
+    assert panda.FindIKSolution(T, UNCHECKED) is None
+    assert len(asked) == 2
+    handle.Close()
+
+
+def test_a_scaled_rotation_is_solved_as_in_openrave_with_a_warning(puma):
+    T = at(puma, CONFIGURATION)
+    T[:3, :3] *= 1.1
+    with pytest.warns(ravemj.RavemjWarning, match="scaled by 1.1") as told:
+        found = puma.FindIKSolution(T, UNCHECKED)
+    assert [one.message.code for one in told] == ["scaled-rotation"]
+    with pytest.warns(ravemj.RavemjWarning, match="scaled by 1.1"):
+        goal = IkParameterization(T, Type.Transform6D)
+    np.testing.assert_array_equal(puma.FindIKSolution(goal, UNCHECKED), found)
+    with pytest.raises(ravemj.openrave_exception, match="scale or shear"):
+        puma.ik(T)
+    T[:3, :3] *= 1.0001 / 1.1
+    assert len(puma.FindIKSolutions(T, UNCHECKED))
+    assert puma.ik(T).valid.any()

@@ -8,7 +8,7 @@ import pytest
 from conftest import MODELS
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ik_arms import PANDA, PUMA, UR5, WAM, arm
+from ik_arms import PANDA, PANDA_LIMITED, PUMA, UR5, WAM, arm
 
 from ravemj import ik
 from ravemj.formats.readers import read_file
@@ -26,11 +26,6 @@ LIMITED = replace(
     PUMA,
     lower=np.array([-160, -225, -45, -110, -100, -266.0]) * DEGREES,
     upper=np.array([160, 45, 225, 170, 100, 266.0]) * DEGREES,
-)
-PANDA_LIMITED = replace(
-    PANDA,
-    lower=np.array([-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973]),
-    upper=np.array([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]),
 )
 
 
@@ -443,8 +438,10 @@ class TestScenes:
             chain_of(body, replace(body.manipulators[0], effector=body.manipulators[0].base))
 
 
-def test_the_old_name_of_arm_solutions_warns():
+def test_old_names_warn():
     with pytest.warns(DeprecationWarning, match=r"now called ravemj\.ik\.ArmSolutions"):
         assert ik.IKSolver is ik.ArmSolutions
+    with pytest.warns(DeprecationWarning, match=r"now called ravemj\.ik\.Validation"):
+        assert ik.Certificate is ik.Validation
     with pytest.raises(AttributeError, match="no attribute 'IkSolver'"):
         _ = ik.IkSolver

@@ -9,7 +9,7 @@ from ik_arms import PANDA, PUMA, arm, pose
 from ravemj.ik import Chain, NumericSolver, Task, make_solver
 from ravemj.ik.derive import random_values
 from ravemj.ik.reductions import ReducedForm
-from ravemj.ik.residuals import ToolMotion, residual_and_jacobian
+from ravemj.ik.residuals import ToolState, residual_and_jacobian
 from ravemj.ik.tasks import goal_poses
 
 LOCAL = np.array([0.1, -0.2, 0.05])
@@ -187,7 +187,7 @@ def test_jacobians_of_tasks_are_derivatives(task):
 
     def missing(at):
         T, jacobian = chain.forward(at), chain.forward_and_jacobian(at[None])[1][0]
-        return residual_and_jacobian(chain, task, goal, ToolMotion(T[:3, :3], T[:3, 3], jacobian), scale)
+        return residual_and_jacobian(chain, task, goal, ToolState(T[:3, :3], T[:3, 3], jacobian), scale)
 
     if task in (Task.TRANSFORM, Task.ROTATION, Task.RAY, Task.LOOK_AT):
         values = wanted + 1e-9  # Jacobians of rotation vectors and projections are exact where nothing is missing

@@ -1,7 +1,5 @@
 """The search for joint values and the tests of configurations, on bodies of the engine alone."""
 
-from contextlib import nullcontext
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from ravemj.ik import Task
 from ravemj.ik.arms import ArmSolver
 from ravemj.manipulation.arm_search import ArmSearch, Checks, Reason
 from ravemj.manipulation.bodies import ENV_COLLISION, FREE, USER, Bodies, Conditions, space_of
-from ravemj.manipulation.motions import RefusedError, allowed_ends
+from ravemj.manipulation.refusals import RefusedError, allowed_ends
 from ravemj.manipulation.tool import Tool
 from ravemj.model import scene
 from ravemj.model.shape_bodies import named_body, shape_geometry
@@ -31,7 +29,7 @@ class PlainChecker:
         self.simulation = simulation
 
     def world(self):
-        return nullcontext(self.simulation.collisions())
+        return self.simulation.collisions()
 
     def collides(self, world, pairs):
         return world.collide(pairs)
@@ -67,7 +65,7 @@ class Noting(ArmSearch):
 
 def search(puma, T_world_tool, **checks):
     arm = puma.scene.manipulators[0]
-    solver = ArmSolver(Task.TRANSFORM).of(puma.scene, arm)
+    solver = ArmSolver(Task.TRANSFORM).solver_for(puma.scene, arm)
     T_world_base = puma.link_transform(arm.base)
     goal = np.linalg.inv(T_world_base) @ T_world_tool
     made = Noting(puma, arm, solver, goal, Checks(**checks), PlainChecker(puma.simulation))
@@ -81,7 +79,7 @@ def obstacle(simulation, position):
 
 
 def test_the_nearest_joint_values_reach_the_goal_and_nothing_moves(puma):
-    tool = Tool.of(puma.scene.manipulators[0])
+    tool = Tool.for_arm(puma.scene.manipulators[0])
     goal, before = tool.pose(puma), puma.kinematics.values()
     made = search(puma, goal, others=True)
     np.testing.assert_allclose(made.nearest(ANGLES + 0.05), ANGLES, atol=1e-6)
@@ -96,7 +94,7 @@ def test_the_nearest_joint_values_reach_the_goal_and_nothing_moves(puma):
 
 
 def test_an_obstacle_at_the_tool_ends_the_search_and_names_both_geometries(simulation, puma):
-    goal = Tool.of(puma.scene.manipulators[0]).pose(puma)
+    goal = Tool.for_arm(puma.scene.manipulators[0]).pose(puma)
     box = obstacle(simulation, goal[:3, 3])
     assert search(puma, goal).nearest() is not None
     made = search(puma, goal, others=True)
@@ -124,13 +122,13 @@ def test_starts_and_goals_are_refused_with_the_reason(simulation, puma):
 
     def refused(*goals):
         with conditions.kept(), pytest.raises(RefusedError) as caught:
-            allowed_ends(conditions, space, conditions.allowed(), ([ANGLES], goals), needs_goal=True)
+            allowed_ends(conditions, space, conditions.allowed(), ([ANGLES], goals))
         return caught.value
 
     name = puma.scene.joint_of_dof(arm.arm_dofs[0]).name
     assert str(refused()) == "there is no goal"
     assert str(refused(ANGLES + 10)).startswith(f"goal: joint '{name}' is 10.3, outside its limits [")
-    obstacle(simulation, Tool.of(arm).pose(puma)[:3, 3])
+    obstacle(simulation, Tool.for_arm(arm).pose(puma)[:3, 3])
     error = refused(ANGLES)
     assert "of 'obstacle'" in str(error)
     assert error.findings.collisions

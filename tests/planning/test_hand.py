@@ -497,3 +497,25 @@ def test_a_goal_in_a_list_of_its_own_is_told_its_shape(robot):
 def test_parameters_take_finite_numbers_only(number, value):
     with pytest.raises(ravemj.openrave_exception):
         getattr(Planner.PlannerParameters(), f"Set{number}")(value)
+
+
+def test_a_goal_outside_the_limits_is_a_warning_that_names_joint_value_and_limits(robot):
+    robot.SetActiveDOFs([0, 1, 2])
+    _, upper = robot.GetActiveDOFLimits()
+    goal, name = robot.GetActiveDOFValues(), robot.GetJointFromDOFIndex(1).GetName()
+    goal[1] = upper[1] + 0.5
+    with pytest.warns(ravemj.RavemjWarning, match=f"joint '{name}' at {goal[1]:.6g}, .* {upper[1]:.6g}]") as told:
+        robot_motion = ravemj.interfaces.BaseManipulation(robot).MoveActiveJoints(
+            goal=goal, execute=False, outputtrajobj=True
+        )
+    assert [one.message.code for one in told] == ["value-outside-limits"]
+    assert waypoints(robot, robot_motion)[-1] == pytest.approx([goal[0], upper[1], goal[2]])
+
+
+def test_a_goal_out_of_reach_says_by_how_much(robot):
+    far = robot.GetActiveManipulator().GetTransform()
+    far[0, 3] += 3
+    with pytest.raises(ravemj.PlanningError, match=r"the goal, which is out of reach: the nearest .* [\d.]+ m and "):
+        ravemj.interfaces.BaseManipulation(robot).MoveToHandPosition(matrices=[far], execute=False)
+    with pytest.raises(ravemj.PlanningError, match=r"any of the 2 goals; the first is out of reach: .* m"):
+        ravemj.interfaces.BaseManipulation(robot).MoveToHandPosition(matrices=[far, far], execute=False)

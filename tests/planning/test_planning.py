@@ -9,8 +9,8 @@ from ravemj.planning.edges import LINE, STEP, Edges, bisection_order, length, ne
 from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
-from ravemj.planning.retiming.segments import Limits, OutsideLimitsError, RetimingError, retime
-from ravemj.planning.rrt import Budget, End, MoreGoals, connect, explore, single
+from ravemj.planning.retiming.segments import OutsideLimitsError, PathLimits, RetimingError, retime
+from ravemj.planning.rrt import Budget, End, MoreRoots, connect, explore, single
 from ravemj.planning.shortcuts import faster, lines, shorten
 from ravemj.planning.space import Coordinates, Space
 from ravemj.planning.verification import Samples, flaw
@@ -28,9 +28,9 @@ def space(dof: int = 2, size: float = 2.0) -> Space:
     return Space(plain(dof), -size * ones, size * ones, ones, 0.05 * ones)
 
 
-def limits(dof: int, velocity=2.0, acceleration=5.0, jerk=100.0) -> Limits:
+def limits(dof: int, velocity=2.0, acceleration=5.0, jerk=100.0) -> PathLimits:
     ones = np.ones(dof)
-    return Limits(plain(dof), -10 * ones, 10 * ones, velocity * ones, acceleration * ones, jerk * ones)
+    return PathLimits(plain(dof), -10 * ones, 10 * ones, velocity * ones, acceleration * ones, jerk * ones)
 
 
 def round_a_wall(values) -> bool:
@@ -93,11 +93,16 @@ def test_one_of_several_starts_leads_to_one_of_several_goals():
 
 def test_goals_come_while_a_search_is_under_way():
     coming = [None] * 5 + [np.array([0.5, 0.5])]
-    search = found(round_a_wall, goals=(), more_goals=MoreGoals(lambda: coming.pop(0) if coming else None, 1.0))
+    search = found(round_a_wall, goals=(), more=(None, MoreRoots(lambda: coming.pop(0) if coming else None, 1.0)))
     assert (search.end, search.goal) == (End.found, 0)
     assert search.path[-1].tolist() == [0.5, 0.5]
     never = connect(
-        Edges(space(), round_a_wall), [START], [], budget(30), np.random.default_rng(0), MoreGoals(lambda: None, 1.0)
+        Edges(space(), round_a_wall),
+        [START],
+        [],
+        budget(30),
+        np.random.default_rng(0),
+        (None, MoreRoots(lambda: None, 1.0)),
     )
     assert (never.end, never.iterations) == (End.no_goal, 30)
 
@@ -342,7 +347,7 @@ def test_what_cannot_be_retimed_says_why(profile):
 
 
 def test_a_limit_of_zero_holds_a_joint_that_stands_still_back_in_nothing():
-    still = Limits(plain(2), -np.ones(2), np.ones(2), np.array([1.0, 0]), np.array([1.0, 0]), np.ones(2))
+    still = PathLimits(plain(2), -np.ones(2), np.ones(2), np.array([1.0, 0]), np.array([1.0, 0]), np.ones(2))
     for profile in (Linear(), Parabolic(), Cubic()):
         assert np.isfinite(retime(profile, np.array([[0, 0], [1.0, 0]]), still).deltas).all()
 

@@ -9,7 +9,7 @@ from test_planners import env, line, robot
 import ravemj
 from ravemj import planningutils
 from ravemj.planning.retiming.polynomials import Parabolic
-from ravemj.planning.retiming.segments import Limits, OutsideLimitsError, RetimingError, retime
+from ravemj.planning.retiming.segments import OutsideLimitsError, PathLimits, RetimingError, retime
 from ravemj.planning.retiming.topp_ra import ToppRa
 from ravemj.planning.space import Coordinates
 
@@ -23,7 +23,7 @@ needs_toppra = pytest.mark.skipif(
 
 def limits(dof, velocity=1.0, acceleration=2.0, bound=4.0):
     ones, circular = np.ones(dof), np.zeros(dof, dtype=bool)
-    return Limits(
+    return PathLimits(
         Coordinates(circular), -bound * ones, bound * ones, velocity * ones, acceleration * ones, np.inf * ones
     )
 

@@ -6,6 +6,7 @@ import signal
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import tutorial
 from command_line import Served, ravemj_command
@@ -38,7 +39,9 @@ def test_python_runs(page, tmp_path, monkeypatch, capsys):
         assert (tmp_path / "swing.mp4").stat().st_size > 1000
 
 
-ROBOT = """<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="continuous"><parent link="a"/>
+ROBOT = """<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="j" type="continuous"><parent link="a"/>
 <child link="b"/><limit effort="1" velocity="1"/></joint></robot>"""
 
 EXECUTED_BY = {
@@ -47,6 +50,7 @@ EXECUTED_BY = {
     "pip install .": ".ci/wheel",
     "ravemj alias --install": "tests/compat/test_sessions.py",  # which has an environment to spoil
     "ravemj alias --remove": "tests/compat/test_sessions.py",
+    "ravemj learn check --watch": "tests/learn/test_commands.py",
     "python docs/examples/hanoi.py": "tests/project/test_examples.py",
     "python docs/examples/hanoi.py towers.mp4": "tests/project/test_examples.py",
 }
@@ -54,6 +58,13 @@ EXECUTED_BY = {
 
 SEVERAL = {"README.md", "cli.md"}
 """Pages whose commands do not need one another."""
+
+
+CLEARANCE = """
+def measure(env, items, random):
+    return {"distance": env.GetRobots()[0].batch_distances(items, itself_too=True)}
+"""
+"""A module with a function for ``ravemj sweep``."""
 
 
 def commands(page: Path) -> list[str]:
@@ -70,9 +81,9 @@ def sequences() -> list[object]:
         for lines in [[line] for line in shown] if page.name in SEVERAL else [shown]:
             found.setdefault(tuple(line for line in lines if (line,) not in found), page.name)
     found.pop((), None)
-    slow = [pytest.mark.stress]  # pictures of all robots, which scripts/docs draws, too
+    first = {"README.md", "CONTRIBUTING.md", "cli.md"}  # the commands of other pages take minutes
     return [
-        pytest.param(lines, id=" & ".join(lines), marks=slow if page == "gallery.md" else [])
+        pytest.param(lines, id=" & ".join(lines), marks=[] if page in first else [pytest.mark.stress])
         for lines, page in found.items()
     ]
 
@@ -92,19 +103,29 @@ def test_commands_work(tmp_path, lines):
         "new.robot.xml": "panda.xml",
         "camera.json": "tutorial-camera.json",
         "table.env.xml": "env.xml",
+        "en_1.xml": "env.xml",
     }.items():
         (tmp_path / name).write_bytes((REPOSITORY / "models" / source).read_bytes())
     (tmp_path / "swing.csv").write_text("time,Joint0,Joint1\n0,0,0\n0.2,1,-1\n")
+    np.save(tmp_path / "goals.npy", np.tile(ravemj.matrixFromPose([1, 0, 0, 0, 0.4, 0.2, 0.6]), (5, 1, 1)))
+    (tmp_path / "clearance.py").write_text(CLEARANCE)
     for robot in ("robot.urdf", "ur5.urdf"):
         (tmp_path / robot).write_text(ROBOT)
+    (tmp_path / "plan.csv").write_text("time,j\n0,0\n1,0.5\n")
+    (tmp_path / "measured.json").write_text('{"j": 0.001}')
     for script in ("myscript.py", "oldscript.py"):
         (tmp_path / script).write_text("import openravepy\nassert openravepy.Environment().Load('env.xml')\n")
+    solved = (REPOSITORY / "tests" / "learn" / "solutions" / "fk_1.py").read_bytes()
+    for folder in (tmp_path, tmp_path / "students" / "anna"):
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "fk_1.py").write_bytes(solved)
     for line in lines:
         program, *words = shlex.split(line)
         assert program == "ravemj"
-        if words[0] == "view":
+        if words[0] in {"view", "mirror"}:
             with Served(tmp_path, *words) as page:
-                assert page.end(signal.SIGINT) == (0, "", "")
+                code, *printed = page.end(signal.SIGINT)
+                assert (code, printed) == (0, ["", ""]) or (code, words[0]) == (0, "mirror"), line
             continue
         expanded = [
             path for word in words for path in ([*tmp_path.glob(word)] if "*" in word else [word])
@@ -135,3 +156,16 @@ def test_the_first_screen_has_the_picture_and_the_commands():
     shown = "\n".join(blocks(REPOSITORY / "README.md", "sh"))
     for command in re.findall(r"`(ravemj (?:play|ik|plan) [^`]+)`", first_screen):
         assert command in shown, "commands of the blocks are executed"
+
+
+@pytest.mark.parametrize("package", ["mink", "gymnasium", "mujoco.mjx"])
+def test_the_model_works_elsewhere(package, tmp_path, monkeypatch):
+    """Blocks of the page that need packages of their own."""
+    pytest.importorskip(package)
+    page = REPOSITORY / "docs" / "simulation.md"
+    monkeypatch.chdir(tmp_path)
+    session: dict[str, object] = {"__name__": "__main__"}
+    for block in blocks(page, "python"):
+        exec(compile(block, str(page), "exec"), session)
+    (shown,) = (block for block in blocks(page, "py") if package.rpartition(".")[2] in block)
+    exec(compile(shown, str(page), "exec"), {"__name__": "__main__"})

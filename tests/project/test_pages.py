@@ -1,8 +1,10 @@
 """The site: every name has its place in the reference, and the reference has every method."""
 
+import ast
 import re
 
 import pytest
+import rooms
 from conftest import REPOSITORY
 
 import ravemj
@@ -37,3 +39,22 @@ def test_a_class_shows_all_its_parts_with_the_types_of_the_source(tmp_path):
     text = re.sub(r"<[^>]+>", "", page)
     assert re.search(r"SetActiveDOFValues\(\s*values: ArrayLike, checklimits: int = CheckLimitsAction", text)
     assert "_SupportsArray" not in text
+
+
+def defined(path) -> set[str]:
+    """Return the classes, functions and methods of a module, methods behind their class."""
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    kinds = ast.ClassDef | ast.FunctionDef
+    names = {node.name for node in body if isinstance(node, kinds)}
+    classes = [node for node in body if isinstance(node, ast.ClassDef)]
+    return names | {f"{node.name}.{inner.name}" for node in classes for inner in node.body if isinstance(inner, kinds)}
+
+
+def test_the_functions_that_a_call_goes_through_are_there():
+    named = re.findall(r"`([\w/]+\.py)`: `([\w.]+)`", (DOCS / "calls.md").read_text(encoding="utf-8"))
+    assert len(named) > 20
+    assert [pair for pair in named if pair[1] not in defined(REPOSITORY / "ravemj" / pair[0])] == []
+
+
+def test_the_picture_of_the_rooms_is_that_of_the_code():
+    assert rooms.PICTURE.read_text(encoding="utf-8") == rooms.drawn(), "python scripts/pages/rooms.py draws it"

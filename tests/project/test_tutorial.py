@@ -75,6 +75,7 @@ def test_the_cells_of_a_notebook_show_what_is_stored_in_them(name, folder):
         assert [data for data in kinds if data] == stored, cells[0].source
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("name", [name for name in tutorial.PAGES if name != "tutorial"])
 def test_the_other_tutorials_run(name, folder, monkeypatch, capsys):
     """As scripts, which is quicker."""
@@ -151,3 +152,12 @@ def test_what_is_explained_stands_in_the_file():
         assert f"```xml {name}\n{(models / name).read_text()}```" in PAGES["tutorial"]
     for fragment in fragments:
         assert fragment in (models / "double-pendulum.xml").read_text()
+
+
+def test_the_biped_moves_in_mink(capsys):
+    """The block runs where mink is installed; the hand gets to its target."""
+    pytest.importorskip("mink")
+    (block,) = re.findall(r"^```py\n(.*?)^```", PAGES["humanoids"], re.MULTILINE | re.DOTALL)
+    exec(compile(block, "humanoids.md", "exec"), {})
+    error = [float(number) for number in capsys.readouterr().out.strip(" []\n").split()]
+    assert np.abs(error).max() < 1e-3

@@ -1,32 +1,29 @@
 """Scripts that use OpenRAVE's API, each with the answer that OpenRAVE gave.
 
 A script leaves a dictionary ``result``; the file ``.json`` beside it has OpenRAVE's. Each runs in a process of its own,
-forked from this one. Numbers agree at 1e-9, or at the ``TOLERANCE`` that a script sets.
+a fork. Numbers agree at 1e-9, or at the ``TOLERANCE`` that a script sets.
 
 ``not-yet.txt`` lists the scripts that do not give OpenRAVE's answer yet; whoever makes one work removes its line. To
 write the list anew: ``PYTHONPATH=tests python tests/rave/test_api_conformance.py``.
 """
 
+import functools
 import json
 import math
 import os
 import re
-import select
-import signal
 import sys
 import tempfile
-import time
-import traceback
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import DATA
+from api_case import plain
+from command_line import PACKAGE_ROOT, environment
+from conftest import DATA, TESTS
+from forks import Forks
 from waiting import PATIENCE
-
-from ravemj.compat import alias
 
 CASES = DATA / "api-conformance"
 NAMES = sorted(path.stem for path in CASES.glob("*.py"))
@@ -77,87 +74,22 @@ there, so ravemj gives the body a name (``test_pymanoid``); no rule on the argum
 
 def run_case(name: str, folder: Path, cases: Path = CASES) -> dict[str, object]:
     """Run a script in a process of its own; return its ``result`` or ``error``."""
-    reader, writer = os.pipe()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # the threads that others started sleep
-        child = os.fork()
-    if child == 0:
-        os.close(reader)
-        _be_the_script(cases / f"{name}.py", folder, writer)
-    os.close(writer)
-    try:
-        text = _read(reader, time.monotonic() + PATIENCE)
-    except TimeoutError:
-        os.kill(child, signal.SIGKILL)
-        return {"error": f"no answer after {PATIENCE} s"}
-    finally:
-        os.close(reader)
-        os.waitpid(child, 0)
-    return json.loads(text) if text else {"error": "no answer"}
+    with tempfile.TemporaryDirectory() as scratch:
+        answer = Path(scratch) / "answer.json"
+        words = [str(cases / f"{name}.py"), str(answer), *REPLACED.get(name, ())]
+        done = _forks().run("api_case", words, folder, environment(folder))
+        return json.loads(answer.read_text()) if answer.exists() else {"error": done.stderr or "no answer"}
 
 
-def _read(reader: int, deadline: float) -> bytes:
-    text = b""
-    while select.select([reader], [], [], max(0.0, deadline - time.monotonic()))[0]:
-        part = os.read(reader, 1 << 16)
-        if not part:
-            return text
-        text += part
-    raise TimeoutError
-
-
-def _be_the_script(script: Path, folder: Path, writer: int) -> None:
-    """Never returns."""
-    try:
-        warnings.simplefilter("ignore")
-        os.chdir(folder)
-        silence = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(silence, 1)
-        os.dup2(silence, 2)
-        for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
-            os.environ.pop(variable, None)
-        alias.install_finder()
-        space = {"__name__": "__main__", "__file__": script.name, "raises": raises}
-        try:
-            text = script.read_text().replace(*REPLACED.get(script.stem, ("", "")))
-            exec(compile(text, script.name, "exec"), space)
-            answer = {"result": plain(space["result"])}
-        except BaseException as error:
-            answer = {"error": "".join(traceback.format_exception(error))}
-        with os.fdopen(writer, "w") as pipe:
-            json.dump(answer, pipe)
-    finally:
-        os._exit(0)
-
-
-def raises(call):
-    """None, or which exception a call raises; scripts use it."""
-    import openravepy
-
-    try:
-        call()
-    except openravepy.openrave_exception as error:
-        return {"exception": "openrave_exception", "code": error.GetCode()}
-    except Exception as error:
-        return {"exception": type(error).__name__, "code": None}
-    return None
-
-
-def plain(value):
-    """What JSON can hold, without losing the kinds of numbers."""
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    elif isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, float) and not math.isfinite(value):
-        return "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
-    if value is None or type(value) in {bool, int, float, str}:
-        return value
-    raise TypeError(f"{type(value).__name__} cannot be stored")
+@functools.cache
+def _forks() -> Forks:
+    """Forks of a process without threads or environments of other tests: what these held may hang a fork."""
+    path = os.pathsep.join([str(TESTS), str(PACKAGE_ROOT)])
+    return Forks(
+        environment(PACKAGE_ROOT, PYTHONPATH=path),
+        PATIENCE,
+        ["ravemj.compat.alias", "ravemj.formats.readers", "ravemj.formats.mjcf", "mujoco", "numpy"],
+    )
 
 
 def differences(expected, got, tolerance, where="result"):
@@ -224,7 +156,7 @@ def test_case(name, tmp_path):
 
 
 def test_the_lists_name_cases():
-    assert len(NAMES) == 503
+    assert len(NAMES) == 524
     assert {*MISTAKES, *SLIDER_FORCES, *REPLACED} <= set(NAMES)
     assert set(NAMES) >= NOT_YET
     assert LIST.read_text().split() == sorted(NOT_YET)

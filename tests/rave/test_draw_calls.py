@@ -387,7 +387,7 @@ def test_labels_go_with_their_handles(env):
 def test_a_viewer_shows_one_text_of_the_user(env):
     viewer = env.GetViewer()
     viewer.SetUserText("one\ntwo")
-    viewer.interaction.pass_time(time.monotonic() + 1e6)
+    viewer.interaction.advance(time.monotonic() + 1e6)
     assert viewer.interaction.overlay().lines == ("one", "two")
     viewer.SetUserText(userText="three")
     assert viewer.interaction.overlay().lines == ("three",)

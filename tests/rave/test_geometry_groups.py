@@ -122,3 +122,31 @@ def test_bodies_that_callbacks_move_stay_there(scene):
     env.GetCollisionChecker().SetGeometryGroup("")
     right.SetTransform([1, 0, 0, 0, 0.15, 0, 0])
     assert env.CheckCollision(left)
+
+
+def test_callbacks_see_the_geometries_that_links_have(scene):
+    env, left, _ = scene
+    env.GetCollisionChecker().SetGeometryGroup("padded")
+    seen = []
+
+    def look(report, physics):
+        seen.append(left.GetLinks()[0].GetGeometries()[0].GetSphereRadius())
+        return ravemj.CollisionAction.DefaultAction
+
+    handle = env.RegisterCollisionCallback(look)
+    assert env.CheckCollision(left)
+    handle.Close()
+    assert seen == [0.1]
+
+
+def test_links_are_disabled_without_another_model(scene):
+    env, left, right = scene
+    checker = env.GetCollisionChecker()
+    checker.SetGeometryGroup("padded")
+    assert env.CheckCollision(left)
+    model = checker.world().model
+    right.Enable(False)
+    assert not env.CheckCollision(left)
+    right.Enable(True)
+    assert env.CheckCollision(left)
+    assert checker.world().model is model

@@ -97,6 +97,28 @@ def test_no_answer_on_collisions_is_that_of_an_earlier_configuration(model):
         assert found == answers[tuple(robot.GetDOFValues().tolist())], place
 
 
+def test_certifying_leaves_bodies_and_shapes_where_they_were(env, robot):
+    wall = ravemj.RaveCreateKinBody(env, "")
+    wall.InitFromBoxes([[0, 0, 0, 0.1, 0.01, 0.3]])
+    wall.SetName("wall")
+    env.Add(wall)
+    away = ravemj.matrixFromPose([1, 0, 0, 0, 0, 0.35, 0])
+    wall.SetTransform(away)
+    spec = robot.GetConfigurationSpecificationIndices(range(2), "linear")
+    spec.AddDeltaTimeGroup()
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    trajectory.Init(spec)
+    trajectory.Insert(0, [*HERE, 0, *THERE, 1])
+    touching = robot.GetLinks()[-1].GetTransform()
+    for place in interrupts(trajectory.certify, 60):
+        assert robot.GetDOFValues().tolist() == HERE, place
+        assert is_free(env), place
+        assert not env.CheckCollision(robot), place
+        wall.SetTransform(touching)
+        assert env.CheckCollision(robot), place
+        wall.SetTransform(away)
+
+
 def with_env(env, robot):
     with env, env:
         robot.GetDOFValues()

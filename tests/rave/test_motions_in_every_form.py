@@ -206,3 +206,16 @@ def test_joints_with_several_axes_have_a_column_for_each(tmp_path):
     path = ravemj.write_motion(tmp_path / "a.csv", ravemj.Motion.line([0, 0], [0.1, 0.2]), ["J, axis 0", "J, axis 1"])
     env.animation(path)
     assert robot.GetDOFValues() == pytest.approx([0.1, 0.2])
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".npz"])
+def test_notes_are_kept_and_left_out_when_read(tmp_path, suffix):
+    motion = ravemj.Motion([0.0, 1.0], [[0.0, 0.5], [1.0, -0.5]])
+    path = ravemj.write_motion(tmp_path / f"a{suffix}", motion, ["one", "two"], ["certified: by\nnobody", "scene 1"])
+    np.testing.assert_array_equal(ravemj.read_motion(path, ["one", "two"], [0, 0]).values, motion.values)
+    if suffix == ".csv":
+        assert path.read_text().splitlines()[0] == "time,one,two"
+        assert path.read_text().splitlines()[3:] == ["# certified: by", "# nobody", "# scene 1"]
+        assert len(np.loadtxt(path, delimiter=",", skiprows=1)) == 2
+    else:
+        assert np.load(path)["notes"].tolist() == ["certified: by\nnobody", "scene 1"]

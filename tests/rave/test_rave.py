@@ -41,6 +41,19 @@ class TestEnvironment:
         assert caught.value.GetCode() == "BodyNameConflict"
         assert len(env.GetBodies()) == 1
 
+    @pytest.mark.parametrize("copies", [1, 2])
+    def test_spec_compiles_with_its_meshes(self, copies, tmp_path):
+        (tmp_path / "part.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+        env = ravemj.Environment()
+        for index in range(copies):
+            geom = f'<Geom type="trimesh"><data>part.obj {1 + index}</data></Geom>'
+            (tmp_path / "body.xml").write_text(f'<KinBody name="b{index}"><Body name="a">{geom}</Body></KinBody>')
+            assert env.Load(tmp_path / "body.xml")
+            spec = env.spec
+            spec.worldbody.add_camera(name="above", pos=[0, 0, 3])
+            model = spec.compile()
+            assert (model.nmesh, model.ncam) == (index + 1, env.model.ncam + 1)
+
     @pytest.mark.parametrize("content", [None, "<Robot", "<Nonsense/>"])
     def test_load_of_what_is_no_model(self, tmp_path, caplog, content):
         path = tmp_path / "broken.xml"

@@ -125,14 +125,16 @@ def test_infos_compare_by_content(env):
 
 # Names that are not OpenRAVE's, and that users call all the same
 OURS = """
+    goal_index start_index certificate certify write_mjcf servo_gains
     animation save_html null_space null_space_path set_noise segmentation_image depth_image
     background batch_collides serve_viewer batch_inverse_dynamics batch_jacobians batch_link_transforms camera close
     com_jacobian data default_camera diagnostics drawaabb drawarrow drawboxarray drawlabel drawobb drawbox drawlinelist
-    drawlinestrip drawplane drawtrimesh
+    drawlinestrip drawplane drawtrimesh jacobians
     files link_transforms mjcf model plot3 qpos_indices render spec collisionInfos contacts minDistance
     nKeepPrevious numCols numWithinTol options pgeom1 pgeom2 plink1 plink2 vLinkColliding deserialize serialize
     extents pos dir main quitmainloop interaction body columns dof interpolation kind name names offset toDict
-    play playback ik ik_solver is_open wait
+    play playback ik ik_solver is_open wait batch_distances batch_self_collides batch_solutions
+     to_joint_trajectory from_joint_trajectory
 """
 
 

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from wrong_calls import KINDS, calls_with_one_argument
+from wrong_calls import KINDS, calls_with_one_argument, calls_with_several_arguments
 
 import ravemj
+from ravemj import geometry_functions
 
 
 def trajectory(env, robot):
@@ -124,6 +125,22 @@ def test_an_axis_that_a_joint_does_not_have_is_an_index_error(scene):
             joint.GetMaxVel(index)
 
 
+WRONG = [None, [], {}, object(), [("a", "b")], [[1]], [[0, 1, 2]], [None], [[[1]]], b"x", 10**400, -1, 1.5]
+WRONG += [float("nan"), [float("inf")], "x\0y", [[0, "b"]], ("a", 1), lambda: 1]
+
+
+def test_errors_of_users_functions_stay_as_they_are():
+    env = ravemj.Environment()
+
+    def callback(body, action):
+        raise TypeError("mine")
+
+    handle = env.RegisterBodyCallback(callback)
+    with pytest.raises(TypeError, match=r"^mine$"):
+        env.Load(ravemj.model_path("puma560"))
+    handle.close()
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_pythons_own_errors_name_the_argument(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # some write files
@@ -131,13 +148,44 @@ def test_pythons_own_errors_name_the_argument(name, tmp_path, monkeypatch):
     env.Load(ravemj.model_path("puma560"))
     thing, calls = KINDS[name](env, env.GetRobots()[0]), 0
     for method, argument in calls_with_one_argument(thing):
-        for wrong in (None, [], {}, object()):
+        for wrong in WRONG:
             calls += 1
             try:
                 getattr(thing, method)(**{argument: wrong})
             except ravemj.openrave_exception:
                 pass
-            except (TypeError, AttributeError, ValueError, LookupError) as error:
+            except (TypeError, AttributeError, ValueError, LookupError, OverflowError) as error:
                 assert argument in str(error), (method, argument, wrong, error)  # noqa: PT017 - of many calls
     assert calls > 20
+    env.Destroy()
+
+
+SEVERAL = KINDS | {
+    "specification": lambda env, robot: robot.GetActiveConfigurationSpecification(),
+    "functions": lambda env, robot: geometry_functions,
+    "environment": lambda env, robot: env,
+}
+
+
+@pytest.mark.parametrize("name", SEVERAL)
+def test_pythons_own_errors_name_one_of_several_arguments(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    env = ravemj.Environment()
+    env.Load(ravemj.model_path("puma560"))
+    thing = SEVERAL[name](env, env.GetRobots()[0])
+    for function, arguments in calls_with_several_arguments(thing):
+        rows = [
+            {**dict.fromkeys(arguments, rest), one: wrong}
+            for one in arguments
+            for wrong in WRONG
+            for rest in (0, [0.0])
+        ]
+        for row in rows:
+            try:
+                getattr(thing, function)(**row)
+            except ravemj.openrave_exception:
+                pass
+            except (TypeError, AttributeError, ValueError, LookupError, OverflowError) as error:
+                named = any(word in str(error) for word in (*arguments, function))
+                assert named or "pose:" in str(error), (function, row, error)  # noqa: PT017 - of many calls
     env.Destroy()

@@ -374,7 +374,24 @@ def test_binary_forms_that_break_off(size):
             "<trajectory><configuration><group name='a' dof='2'/></configuration><data>1 2 3</data></trajectory>",
             "multiple of 2",
         ),
-        ("<trajectory><configuration><group dof='-2'/></configuration></trajectory>", "negative"),
+        ("<trajectory><configuration><group dof='-2'/></configuration></trajectory>", "has -2 values"),
+        ("<trajectory><configuration><group dof='1e21'/></configuration></trajectory>", "integers"),
+        (f"<trajectory><configuration><group dof='{10**400}'/></configuration></trajectory>", "at most"),
+        (f"<trajectory><configuration><group dof='{10**21}'/></configuration></trajectory>", "at most"),
+        (
+            "<trajectory><configuration><group name='a' dof='1'/><group name='deltatime' offset='1' dof='0'/>"
+            "</configuration><data count='1'>1</data></trajectory>",
+            "'deltatime' has 0 values",
+        ),
+        (
+            "<trajectory><configuration><group name='a' dof='1'/><group name='deltatime' dof='1'/></configuration>"
+            "<data count='1'>1</data></trajectory>",
+            "starts at 0, and should start at 1",
+        ),
+        (
+            "<trajectory><configuration><group name='deltatime' offset='5' dof='1'/></configuration></trajectory>",
+            "starts at 5",
+        ),
     ],
 )
 def test_data_that_is_no_trajectory(data, message):

@@ -1,7 +1,7 @@
-"""``openravepy.databases``: what OpenRAVE computes once for a robot and keeps.
+"""``openravepy.databases``: data that OpenRAVE precomputes for a robot and stores.
 
-Models can be made and asked, and have nothing until ``autogenerate`` is called; where ravemj lacks what that takes, it
-raises ``UnsupportedError``, which is a ``NotImplementedError``, with the name of the missing capability.
+Models can be constructed and queried, and are empty until ``autogenerate`` is called. If ravemj does not support that,
+it raises ``UnsupportedError``, a ``NotImplementedError``, with the missing capability.
 """
 
 from ravemj.compat.databases import (

@@ -1,4 +1,4 @@
-"""Convex parts of the links; MuJoCo makes its own hulls."""
+"""Convex decomposition of links; MuJoCo computes its own hulls."""
 
 from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.compat.refusal import lacking, refusing
@@ -8,7 +8,7 @@ PARTS = "files of convex parts"
 
 
 class ConvexDecompositionError(Exception):
-    """Convex parts could not be made."""
+    """Convex decomposition failed."""
 
     def __init__(self, msg: str = "") -> None:
         super().__init__(msg)
@@ -32,11 +32,11 @@ class ConvexDecompositionError(Exception):
     """,
 )
 class ConvexDecompositionModel(DatabaseGenerator):
-    """Convex parts of the links, which need no computing here: collisions use hulls anyway.
+    """Convex parts of the links, which need no computation: collisions use hulls anyway.
 
     Args:
         robot: The robot.
-        padding: For OpenRAVE.
+        padding: Not used.
     """
 
     capability = PARTS
@@ -46,7 +46,7 @@ class ConvexDecompositionModel(DatabaseGenerator):
         super().__init__(robot)
 
     def load(self) -> bool:
-        """Return whether there is something to use: True."""
+        """Return True: the model is always available."""
         return True
 
     def autogenerate(self, options: object = None) -> None:

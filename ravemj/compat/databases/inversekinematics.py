@@ -1,7 +1,7 @@
-"""Solvers that find joint values for a pose of the tool.
+"""IK models: solvers that find joint values for a tool pose.
 
-Nothing is compiled or stored: a solver is derived in milliseconds when it is asked for. So ``load`` finds one for every
-arm that can be solved, and scripts that say ``if not model.load(): model.autogenerate()`` work either way.
+Nothing is compiled or stored: a solver is derived in milliseconds on first use. So ``load`` succeeds for every arm that
+can be solved, and scripts with ``if not model.load(): model.autogenerate()`` work.
 """
 
 import logging
@@ -26,36 +26,36 @@ COMPILING = "compiling of solvers of inverse kinematics"
 _LOG = logging.getLogger("ravemj")
 _UNCHECKED = IkFilterOptions.IgnoreSelfCollisions | IkFilterOptions.IgnoreCustomFilters
 _WRONG = 1e-8
-"""Squared distance from the goal beyond which a solution is wrong."""
+"""Squared distance from the goal above which a solution is wrong."""
 
 
 @lacking(COMPILING, "getsourcefilename(read outputlang) show(delay options forceclosure) @getcompiler()")
 class InverseKinematicsModel(SolvedJoints):
-    """A solver for an arm.
+    """IK model of an arm.
 
     Args:
-        robot: The robot, whose active manipulator is taken; None: that of ``manip``.
-        iktype: What of the tool's pose is asked for.
-        forceikfast: For OpenRAVE.
-        freeindices: DOFs of the arm that are sampled; None: as few as have to be.
-        freejoints: The same as names or indices of joints.
+        robot: The robot, whose active manipulator is used; None means that of ``manip``.
+        iktype: The type of the goals.
+        forceikfast: Not used.
+        freeindices: DOFs of the arm to sample; None means as few as necessary.
+        freejoints: The same as joint names or indices.
         manip: The arm.
-        checkpreemptfn: For OpenRAVE.
+        checkpreemptfn: Not used.
 
     Attributes:
         robot: The robot.
         manip: The arm.
-        iktype: What of the tool's pose is asked for, or None.
-        freeindices: DOFs of the arm that are sampled; None: not known before ``load``.
-        solveindices: DOFs that are solved for.
-        freeinc: How finely the free ones are sampled [rad or m].
+        iktype: The type of the goals, or None.
+        freeindices: Sampled DOFs of the arm; None before ``load``.
+        solveindices: The other DOFs, which are solved for.
+        freeinc: Sampling steps of the free DOFs [rad or m].
         iksolver: The solver, after ``load``.
-        ikfeasibility: Why the arm cannot be solved, or None.
+        ikfeasibility: The reason why the arm cannot be solved, or None.
         statistics: ``generationtime`` [s], after ``load``.
 
     Raises:
-        InverseKinematicsError: there is no arm, a link of it is static, or a free joint is outside of it.
-        LookupError: there is no joint of that name.
+        InverseKinematicsError: the arm does not exist, has a static link, or does not contain a free joint.
+        LookupError: a joint name is unknown.
 
     Example:
         >>> model = databases.inversekinematics.InverseKinematicsModel(robot, IkParameterization.Type.Transform6D)
@@ -71,26 +71,29 @@ class InverseKinematicsModel(SolvedJoints):
     # Life
 
     def has(self) -> bool:
-        """Return whether the arm has a solver of the model's type, and the model was loaded."""
+        """Return whether the model is loaded, and the arm has a solver of its type."""
         solver = self.manip.GetIkSolver()
         return self.iksolver is not None and solver is not None and self.iktype == solver.kind
 
     def load(
         self, freeinc: ArrayLike | None = None, checkforloaded: bool = True, *args: object, **kwargs: object
     ) -> bool:
-        """Give the arm a solver.
+        """Set the arm's solver.
 
         Args:
-            freeinc: How finely free joints are sampled [rad or m], one for each.
-            checkforloaded: Whether a solver of that type that the arm has is kept.
+            freeinc: Sampling step of each free joint [rad or m].
+            checkforloaded: Whether to keep an existing solver of this type.
             args: Not used.
             kwargs: Not used.
 
         Returns:
-            Whether the arm can be solved; if not, ``ikfeasibility`` and the log say why.
+            Whether the arm can be solved; if not, ``ikfeasibility`` and the log give the reason. A model without a type
+            uses that of the arm's solver; without a solver, the result is False, and ``autogenerate`` chooses one.
         """
         del args, kwargs
-        self._type()
+        present = self.manip.GetIkSolver()
+        if self.iktype is None and present is not None:
+            self.iktype = present.kind
         try:
             self._solve(keep=checkforloaded)
         except (InverseKinematicsError, RavemjError) as error:
@@ -100,11 +103,11 @@ class InverseKinematicsModel(SolvedJoints):
         return self.setrobot(freeinc)
 
     def _solve(self, *, keep: bool) -> None:
-        """Derive the solver, or take the one that the arm has.
+        """Derive the solver, or use the arm's existing one.
 
         Raises:
             InverseKinematicsError: the arm cannot be solved.
-            UnsupportedError: no solver answers goals of that type.
+            UnsupportedError: goals of that type are not supported.
         """
         kind, start = self._type(), time.perf_counter()
         present = self.manip.GetIkSolver()
@@ -142,19 +145,19 @@ class InverseKinematicsModel(SolvedJoints):
         *args: object,
         **kwargs: object,
     ) -> None:
-        """Derive the solver, and give it to the arm.
+        """Derive the solver, and assign it to the arm.
 
         Args:
-            iktype: What of the tool's pose is asked for; None: what the model was made for, or all of it.
-            freejoints: Joints that are sampled, by names or DOF indices.
-            freeinc: How finely [rad or m], one for each.
-            freeindices: DOFs that are sampled.
-            args: For OpenRAVE's compiler.
-            kwargs: For OpenRAVE's compiler.
+            iktype: The type of the goals; by default that of the model, else ``Transform6D``.
+            freejoints: Joints to sample, by names or DOF indices.
+            freeinc: Sampling step of each [rad or m].
+            freeindices: DOFs to sample.
+            args: Not used.
+            kwargs: Not used.
 
         Raises:
-            InverseKinematicsError: the arm cannot be solved so.
-            UnsupportedError: no solver answers goals of that type.
+            InverseKinematicsError: the arm cannot be solved with these options.
+            UnsupportedError: goals of that type are not supported.
         """
         del args, kwargs
         if iktype is not None or self.iktype is None:
@@ -171,26 +174,27 @@ class InverseKinematicsModel(SolvedJoints):
         self.setrobot(freeinc)
 
     def autogenerate(self, options: object = None) -> None:
-        """Derive the solver, and give it to the arm; see ``generate``.
+        """Derive the solver, and assign it to the arm; see ``generate``.
 
         Args:
-            options: For OpenRAVE's compiler.
+            options: Not used.
         """
         del options
         self.generate()
 
     def save(self, filepermissions: int | None = None) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Do nothing: to derive a solver takes no longer than to read one.
+        """Do nothing: deriving a solver takes no longer than reading one.
 
         Args:
             filepermissions: Not used.
         """
 
     def setrobot(self, freeinc: ArrayLike | None = None) -> bool:
-        """Set how finely free joints are sampled; return whether there is a solver.
+        """Set the sampling steps of free joints; return whether there is a solver.
 
         Args:
-            freeinc: A step for each [rad or m]; None: as before, or 0.1 rad and 0.01 of the length of the arm.
+            freeinc: A step for each [rad or m]; by default the present ones, else 0.1 rad and 0.01 of the length of the
+                arm.
         """
         if self.iksolver is None:
             return False
@@ -225,14 +229,14 @@ class InverseKinematicsModel(SolvedJoints):
     # Trials
 
     def testik(self, iktests: str | int, jacobianthreshold: object = None) -> tuple[float, float]:
-        """Ask for places of the tool in random configurations within the limits.
+        """Solve tool poses of random configurations within the limits.
 
         Args:
-            iktests: How many, as a number or a text.
+            iktests: Number of poses, as a number or string.
             jacobianthreshold: Not used.
 
         Returns:
-            The share of places that were reached, and the share of those where the answer was wrong.
+            The fraction of solved poses, and the fraction of poses with wrong solutions.
         """
         del jacobianthreshold
         goals = self._random_goals(int(iktests))
@@ -247,10 +251,10 @@ class InverseKinematicsModel(SolvedJoints):
         return reached / len(goals), wrong / len(goals)
 
     def perftiming(self, num: int) -> list[float]:
-        """Return how long it takes to find all solutions [s], for places of the tool in random configurations.
+        """Measure the time to find all solutions [s], for tool poses of random configurations.
 
         Args:
-            num: How many places.
+            num: Number of poses.
         """
         times: list[float] = []
         for goal in self._random_goals(num):

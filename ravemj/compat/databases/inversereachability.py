@@ -1,4 +1,4 @@
-"""Where a robot can stand to reach a pose."""
+"""Inverse reachability: base poses from which a robot reaches a pose."""
 
 from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.compat.refusal import lacking, refusing
@@ -10,7 +10,7 @@ REACH = "maps of what arms reach"
     REACH,
     """
     computeAggregateBaseDistribution(Tgrasps logllthresh zaxis) computeBaseDistribution(Tgrasp logllthresh zaxis)
-    getCloseIK(Tgrasp) getEquivalenceClass(Tgrasp) necessaryjointstate()
+    generate(heightthresh quatthresh Nminimum) getCloseIK(Tgrasp) getEquivalenceClass(Tgrasp) necessaryjointstate()
     randomBaseDistributionIterator(Tgrasps Nprematuresamples bounds **named)
     sampleBaseDistributionIterator(Tgrasps logllthresh weight Nprematuresamples zaxis) show(options)
     showEquivalenceClass(equivalenceclass transparency neighthresh onlymaniplinks)
@@ -20,7 +20,7 @@ REACH = "maps of what arms reach"
     """,
 )
 class InverseReachabilityModel(DatabaseGenerator):
-    """Where a robot can stand to reach a pose."""
+    """Base poses from which a robot reaches a pose."""
 
     capability = REACH
 

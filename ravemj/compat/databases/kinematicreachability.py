@@ -1,4 +1,4 @@
-"""Which poses an arm reaches."""
+"""Reachability: the poses that an arm reaches."""
 
 from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.compat.refusal import lacking, refusing
@@ -11,12 +11,13 @@ REACH = "maps of what arms reach"
     """
     ComputeNN(translationonly) LoadHDF5() LoadPickle() SaveHDF5() SavePickle()
     UniformlySampleSpace(maxradius delta) getOrderedArmJoints()
+    generate(maxradius translationonly xyzdelta quatdelta usefreespace)
     generatepcg(maxradius translationonly xyzdelta quatdelta usefreespace)
     show(showrobot contours opacity figureid xrange options) @getManipulatorLinks(manip)
     """,
 )
 class ReachabilityModel(DatabaseGenerator):
-    """Which poses an arm reaches."""
+    """Set of poses that an arm reaches."""
 
     capability = REACH
 
@@ -26,7 +27,7 @@ class ReachabilityModel(DatabaseGenerator):
         "kFRSearchArray(poses radiussq k eps)",
     )
     class QuaternionKDTree:
-        """Finds the poses that are near others."""
+        """Nearest-neighbour search among rotations."""
 
     reachability3d = None
     reachabilitystats = None

@@ -1,4 +1,4 @@
-"""How far the links of a robot reach, for the weights and resolutions of planners."""
+"""Extents of a robot's links, for the weights and resolutions of planners."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ STATISTICS = "files of statistics of links"
     """,
 )
 class LinkStatisticsModel(DatabaseGenerator):
-    """How far the links of a robot reach. It is computed from their boxes when it is asked for.
+    """Extents of a robot's links, computed from bounding boxes on demand.
 
     Args:
         robot: The robot.
@@ -35,7 +35,7 @@ class LinkStatisticsModel(DatabaseGenerator):
     capability = STATISTICS
 
     def load(self) -> bool:
-        """Return whether there is something to use: True."""
+        """Return True: the model is always available."""
         return True
 
     def autogenerate(self, options: object = None) -> None:
@@ -45,11 +45,11 @@ class LinkStatisticsModel(DatabaseGenerator):
         """Do nothing."""
 
     def setRobotWeights(self, type: int = 0, weightmult: float = 1.0) -> None:
-        """Set the weights of the DOFs by how far they move the robot.
+        """Set the weights of the DOFs according to the displacement that they cause.
 
         Args:
-            type: Only OpenRAVE's 0: in proportion to the distance that a point of the robot travels at most per unit
-                of the DOF.
+            type: Only OpenRAVE's 0: proportional to the maximum displacement of a point of the robot per unit of the
+                DOF.
             weightmult: The mean of the weights.
         """
         if type != 0:
@@ -58,16 +58,16 @@ class LinkStatisticsModel(DatabaseGenerator):
         self.robot.SetDOFWeights(weightmult * distances / distances.mean() if len(distances) else distances)
 
     def setRobotResolutions(self, xyzdelta: float | None = None) -> None:
-        """Set the resolutions of the DOFs so that one step of a DOF moves no point of the robot too far.
+        """Set the resolutions of the DOFs so that a step moves no point of the robot farther than a limit.
 
         Args:
-            xyzdelta: How far a point may travel [m]; None: 0.005.
+            xyzdelta: Maximum displacement of a point [m]; by default 0.005.
         """
         delta = 0.005 if xyzdelta is None else xyzdelta
         self.robot.SetDOFResolutions(delta / self._distances())
 
     def _distances(self) -> Floats:
-        """Return how far a point travels at most per unit of each DOF; the least of all where nothing moves."""
+        """Return the maximum displacement of a point per unit of each DOF; the minimum for DOFs without effect."""
         distances = motion_bounds(self.robot.simulation_state.scene)
         return np.where(distances > 0, distances, np.min(distances, initial=1.0, where=distances > 0))
 

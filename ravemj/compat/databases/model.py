@@ -1,4 +1,4 @@
-"""What all models of ``openravepy.databases`` have in common."""
+"""Base class of the models of ``openravepy.databases``."""
 
 from typing import ClassVar, NoReturn
 
@@ -21,16 +21,16 @@ _BUILDING = "building of databases"
     """,
 )
 class DatabaseGenerator:
-    """A model that is computed once for a robot.
+    """Model that is precomputed for a robot.
 
     Args:
         robot: The robot; its active manipulator is the model's.
-        arguments: What models of OpenRAVE's take besides.
+        arguments: Further arguments of OpenRAVE's models.
         named: The same, by name.
     """
 
     capability: ClassVar[str] = _BUILDING
-    """What ravemj lacks to compute it."""
+    """Capability that ravemj lacks to compute it."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -47,26 +47,26 @@ class DatabaseGenerator:
         return self.robot.GetEnv()
 
     def load(self) -> bool:
-        """Return whether there is something to use: False."""
+        """Return False: no data is stored."""
         return False
 
     def has(self) -> bool:
-        """Return whether there is something to use."""
+        """Return whether the model has data."""
         return self.load()
 
     def autogenerate(self, options: object = None) -> None:
         """Compute the model.
 
         Raises:
-            UnsupportedError: ravemj lacks what that takes; ``capability`` says what.
+            UnsupportedError: ravemj cannot compute it; see ``capability``.
         """
         raise UnsupportedError(f"{type(self).__name__}.autogenerate", self.capability)
 
     def save(self, params: object = None) -> None:
-        """Refuse to write what is not there.
+        """Raise an error, since there is no data.
 
         Raises:
-            UnsupportedError: ravemj lacks what computing the model takes.
+            UnsupportedError: always; ravemj cannot compute the model.
         """
         raise UnsupportedError(f"{type(self).__name__}.save", self.capability)
 
@@ -78,7 +78,7 @@ class DatabaseGenerator:
         return type(self)(robot)
 
     def __getattr__(self, name: str) -> NoReturn:
-        """Say what is missing, for all other methods that OpenRAVE's model has."""
+        """Raise an error with the missing capability, for all other methods of OpenRAVE's model."""
         if name.startswith("_"):
             raise AttributeError(name)
         raise UnsupportedError(f"{type(self).__name__}.{name}", self.capability)

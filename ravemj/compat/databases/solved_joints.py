@@ -1,4 +1,4 @@
-"""Which joints of an arm a solver of inverse kinematics moves, and what it is called."""
+"""Solved and free joints of an arm's IK solver, and the solver's name."""
 
 import platform
 from collections.abc import Sequence
@@ -16,14 +16,14 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.robot import Robot
 
 _VERSION = 0x1000004C
-"""That of the solvers of OpenRAVE 0.149, whose names of files ours are."""
+"""Version of OpenRAVE 0.149's solvers, used in file names."""
 
 
 class InverseKinematicsError(Exception):
-    """An arm cannot be solved as it was asked; not an ``openrave_exception``.
+    """An arm cannot be solved as requested; not an ``openrave_exception``.
 
     Attributes:
-        parameter: Why, in words.
+        parameter: The reason.
     """
 
     def __init__(self, parameter: object = "") -> None:
@@ -38,7 +38,7 @@ class InverseKinematicsError(Exception):
 
 
 class SolvedJoints(DatabaseGenerator):
-    """The part of ``InverseKinematicsModel`` that knows the arm and its joints; see there."""
+    """Base of ``InverseKinematicsModel`` with the arm and its joints."""
 
     manip: Manipulator
 
@@ -109,7 +109,7 @@ class SolvedJoints(DatabaseGenerator):
             freejoints: Names, or DOF indices.
 
         Raises:
-            LookupError: there is no joint of that name.
+            LookupError: a joint name is unknown.
         """
         found: list[int] = []
         for name in freejoints:
@@ -120,13 +120,13 @@ class SolvedJoints(DatabaseGenerator):
         return found
 
     def GetDefaultIndices(self, avoidPrismaticAsFree: bool = False) -> tuple[list[int], list[int]]:
-        """Return which DOFs are solved for, and which are free, where nobody says.
+        """Return the solved DOFs and the free DOFs by default.
 
         Args:
             avoidPrismaticAsFree: Not used.
 
         Raises:
-            InverseKinematicsError: the model has no ``iktype``, or the arm is none that can be solved.
+            InverseKinematicsError: the model has no ``iktype``, or the arm cannot be solved.
         """
         del avoidPrismaticAsFree
         kind, chain, arm = self._type(), self._chain(), self.manip.GetArmIndices().tolist()
@@ -137,7 +137,7 @@ class SolvedJoints(DatabaseGenerator):
         return [arm[joint] for joint in range(chain.dof) if joint not in free], [arm[joint] for joint in free]
 
     def _divide(self, free: Sequence[int]) -> list[int]:
-        """Return the DOFs that are solved for where some are free."""
+        """Return the DOFs to solve for, given the free ones."""
         arm = self.manip.GetArmIndices().tolist()
         outside = [index for index in free if index not in arm]
         if outside:
@@ -146,7 +146,7 @@ class SolvedJoints(DatabaseGenerator):
         return [index for index in arm if index not in free]
 
     def getDefaultFreeIncrements(self, freeincrot: float, freeinctrans: float) -> list[float]:
-        """Return a step for each free joint [rad or m].
+        """Return the step of each free joint [rad or m].
 
         Args:
             freeincrot: The step of revolute joints [rad].
@@ -166,22 +166,22 @@ class SolvedJoints(DatabaseGenerator):
         return f"ikfast ikfast.{self.manip.GetInverseKinematicsStructureHash(kind)}.{kind}.{self.manip.GetName()}"
 
     def getversion(self) -> int:
-        """Return the version of OpenRAVE's solvers that names of files have."""
+        """Return the version of OpenRAVE's solvers used in file names."""
         return _VERSION
 
     def getfilename(self, read: bool = False) -> str:
-        """Return where OpenRAVE would keep the compiled solver; nothing is there.
+        """Return the path at which OpenRAVE would store the compiled solver; the file does not exist.
 
         Args:
-            read: Whether the file has to be there; '' if it is not.
+            read: Whether the file must exist; the result is then ''.
         """
         return RaveFindDatabaseFile(self._file(f"{platform.machine()}.", ".so"), read)
 
     def getstatsfilename(self, read: bool = False) -> str:
-        """Return where OpenRAVE would keep the statistics; nothing is there.
+        """Return the path at which OpenRAVE would store the statistics; the file does not exist.
 
         Args:
-            read: Whether the file has to be there; '' if it is not.
+            read: Whether the file must exist; the result is then ''.
         """
         return RaveFindDatabaseFile(self._file("", ".pp"), read)
 

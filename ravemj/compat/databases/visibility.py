@@ -1,4 +1,4 @@
-"""What of a robot shows while a model is shown."""
+"""Selective display of a robot's geometry while a model is shown."""
 
 from typing import Self
 
@@ -8,7 +8,7 @@ from ravemj.rave.manipulator import Manipulator
 
 
 class GripperVisibility:
-    """A context in which of a robot only the links behind an arm show: those that its end effector moves.
+    """Context manager that shows only the links of a robot beyond an arm.
 
     Args:
         manip: The arm.
@@ -45,11 +45,11 @@ class GripperVisibility:
 
 
 class ArmVisibility(GripperVisibility):
-    """A context in which of a robot only the links of an arm show, or the others are transparent.
+    """Context manager that shows only the links of an arm, or makes the others transparent.
 
     Args:
         manip: The arm.
-        transparency: How transparent the others are: 0 is opaque; 1 hides them.
+        transparency: Transparency of the other links: 0 is opaque, 1 hides them.
     """
 
     def __init__(self, manip: Manipulator, transparency: float = 1) -> None:

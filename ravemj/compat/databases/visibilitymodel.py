@@ -1,4 +1,4 @@
-"""From where a camera on an arm sees a body."""
+"""Visibility of a body from a camera on an arm."""
 
 from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.compat.databases.visibility import GripperVisibility
@@ -17,13 +17,13 @@ SEEING = "visual feedback"
     """,
 )
 class VisibilityModel(DatabaseGenerator):
-    """From where a camera on an arm sees a body."""
+    """Camera poses from which a camera on an arm sees a body."""
 
     capability = SEEING
     GripperVisibility = GripperVisibility
 
     def autogenerate(self, options: object = None, gmodel: object = None) -> None:
-        """Refuse to compute the model; see ``DatabaseGenerator.autogenerate``."""
+        """Raise an error; see ``DatabaseGenerator.autogenerate``."""
         del gmodel
         super().autogenerate(options)
 

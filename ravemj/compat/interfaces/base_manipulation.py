@@ -1,4 +1,4 @@
-"""Motions of joints and of the tool."""
+"""Motions of joints and tools."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -12,9 +12,20 @@ from ravemj.compat.refusal import refusing
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
-from ravemj.manipulation.options import JitterMotion, JointMotion, StraightMotion, ToolMotion, UnsyncMotion, chosen
+from ravemj.manipulation.options import (
+    Certify,
+    JitterMotion,
+    JointMotion,
+    StraightMotion,
+    ToolMotion,
+    UnsyncMotion,
+    chosen,
+)
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import base_module
-from ravemj.rave.modules.base_manipulation import tool_constraint
+from ravemj.rave.modules.base_manipulation import tool_constraints
+from ravemj.rave.planning.region_goals import MotionSets
+from ravemj.rave.region import is_region, regions_of
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
@@ -25,14 +36,14 @@ Answer = Trajectory | str | None
 class BaseManipulation(Helper):
     """Plans and executes motions of the active DOFs, of an arm, or of its tool.
 
-    Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the
-    robot alone. It returns the ``Trajectory`` with ``outputtrajobj=True``, its text with ``outputtraj=True``, else
-    None. Where there is no motion it raises ``PlanningError``, whose text says why; the robot stays as it is.
+    Each method starts the motion on the robot's controller and returns before its end; with ``execute=False`` the robot
+    does not move. The result is the ``Trajectory`` with ``outputtrajobj=True``, its text with ``outputtraj=True``, else
+    None. If no motion is found, it raises ``PlanningError`` with the reason, and the robot does not move.
 
     Args:
         robot: The robot.
-        plannername: The planner of paths; None, or an unknown name: ``birrt``.
-        maxvelmult: Factor of the velocity limits, for straight motions.
+        plannername: The path planner; None or an unknown name selects ``birrt``.
+        maxvelmult: Factor of the velocity limits for straight motions.
 
     Example:
         >>> basemanip = interfaces.BaseManipulation(robot)
@@ -61,6 +72,10 @@ class BaseManipulation(Helper):
         postprocessingparameters: str | None = None,
         usedynamicsconstraints: bool | None = None,
         initialconfigs: Sequence[ArrayLike] | None = None,
+        *,
+        certify: Certify | None = None,
+        constraints: Sequence[object] | None = None,
+        holding: KinBody | str | None = None,
     ) -> Answer:
         """Move the active DOFs to a goal without collisions.
 
@@ -70,27 +85,44 @@ class BaseManipulation(Helper):
         Args:
             goal: Active values.
             steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
-            maxiter: Iterations of the planner; None: 4000.
-            maxtries: How often it is asked; None: 2.
-            goals: Several goals in place of one; any will do.
-            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
-            postprocessingplanner: The smoother; None: OpenRAVE's.
+            maxiter: Maximum number of iterations; by default 4000.
+            maxtries: Number of calls of the planner; by default 2.
+            goals: Several alternative goals. They may include regions, see ``Region``, for the tool of the active
+                manipulator; its arm joints must then be active. ``goal_index`` of the resulting trajectory says which
+                goal was reached; regions come last.
+            jitter: Maximum change of values of a start or goal in collision [rad or m]; by default 0.04.
+            postprocessingplanner: The smoother; by default OpenRAVE's.
             postprocessingparameters: Its parameters as XML text.
-            initialconfigs: Where the motion may start; None: where the robot is.
+            initialconfigs: Possible starts; by default the present configuration.
+            constraints: Constraints along the whole motion; see ``PlannerParameters.add_constraint``.
+            holding: As for ``MoveToHandPosition``.
+            certify: Whether to certify that the motion is free of collisions at all times: ``trajectory.certificate``
+                has the result; by default if there are regions. ``"required"`` makes uncertified motions errors.
 
         Raises:
-            PlanningError: there is no such motion.
-            AssertionError: a goal has not as many values as are active.
+            PlanningError: no motion was found.
+            AssertionError: the number of values of a goal is wrong.
 
         Example:
             >>> traj = basemanip.MoveActiveJoints(goal=[0.5, 0.3], execute=False, outputtrajobj=True)
         """
         del releasegil, usedynamicsconstraints
         dof = self.robot.GetActiveDOF()
-        wanted, starts = _rows("goal", goal, goals, dof), _rows("initialconfigs", None, initialconfigs, dof)
+        regions = [one for one in several(goals, "goals") if is_region(one)]
+        rows = None if goals is None else [one for one in goals if not is_region(one)]
+        wanted, starts = _rows("goal", goal, rows, dof), _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
-        options = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength)
-        traj = self._base.move_joints(wanted, chosen(JointMotion, options), starts=starts, postprocessing=post)
+        effort = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength, certify=certify)
+        if regions and certify is None:
+            effort["certify"] = True
+        with self._base.holding(holding) as held:
+            traj = self._base.move_joints(
+                wanted,
+                chosen(JointMotion, effort),
+                starts=starts,
+                postprocessing=post,
+                sets=_sets(regions or None, several(constraints, "constraints"), held),
+            )
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveManipulator(
@@ -105,27 +137,30 @@ class BaseManipulation(Helper):
         outputtrajobj: bool | None = None,
         jitter: float | None = None,
         releasegil: bool = False,
+        *,
+        certify: Certify | None = None,
     ) -> Answer:
-        """Move the arm of the active manipulator to a goal without collisions, whatever is active.
+        """Move the active manipulator's arm to a goal without collisions; the active DOFs do not matter.
 
         The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``releasegil`` is not used.
 
         Args:
             goal: Values of the arm's joints.
-            maxiter: Iterations of the planner; None: 4000.
-            maxtries: How often the planner is asked; None: 2.
-            goals: Several goals in place of one; any will do.
+            maxiter: Maximum number of iterations; by default 4000.
+            maxtries: Number of calls of the planner; by default 2.
+            goals: Several alternative goals.
             steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
-            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
+            jitter: Maximum change of values of a start or goal in collision [rad or m]; by default 0.04.
+            certify: As for ``MoveActiveJoints``.
 
         Raises:
-            PlanningError: there is no such motion.
-            AssertionError: a goal has not as many values as the arm has joints.
+            PlanningError: no motion was found.
+            AssertionError: the number of values of a goal is wrong.
         """
         del releasegil
         wanted = _rows("goal", goal, goals, len(self._base.arm().description.arm_dofs))
-        options = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength)
-        traj = self._base.move_manipulator(wanted, chosen(JointMotion, options))
+        effort = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength, certify=certify)
+        traj = self._base.move_manipulator(wanted, chosen(JointMotion, effort))
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveToHandPosition(
@@ -159,8 +194,13 @@ class BaseManipulation(Helper):
         releasegil: bool = False,
         initialconfigs: Sequence[ArrayLike] | None = None,
         freevalues: ArrayLike | None = None,
+        *,
+        certify: Certify | None = None,
+        regions: object = None,
+        constraints: Sequence[object] | None = None,
+        holding: KinBody | str | None = None,
     ) -> Answer:
-        """Move the arm of the active manipulator so that its tool reaches a goal, without collisions.
+        """Move the active manipulator's arm so that its tool reaches a goal, without collisions.
 
         The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``affinedofs``,
         ``minimumgoalpaths``, ``jittergoal``, ``goalmaxtries``, ``releasegil`` and ``freevalues`` are not used.
@@ -179,29 +219,41 @@ class BaseManipulation(Helper):
                 the world.
             constrainterrorthresh: The tolerance of the constraint [m and rad]; by default 0.001.
             steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
-            goalsamples: The largest number of IK solutions that are goals; by default 40.
+            goalsamples: The maximum number of IK solutions that are goals; by default 40.
             ikparam: A goal of any type.
             ikparams: Several goals of any type.
             jitter: The largest change of each value of a start or goal in collision [rad or m]; by default 0.03. With
                 a constraint, starts and goals are not changed.
-            postprocessing: The smoother and its parameters; None: OpenRAVE's.
-            constrainttaskmatrix: ``T_tool_point``, the constrained frame; by default the frame of the tool that is the
-                task frame at the start, so that the tool keeps what it has there.
+            postprocessing: The smoother and its parameters; by default OpenRAVE's.
+            constrainttaskmatrix: ``T_tool_point``, the constrained frame; by default the frame that coincides with the
+                task frame at the start.
             constrainttaskpose: The same as 7 numbers.
-            goalsampleprob: The fraction of the iterations that ask for a further IK solution; by default 0.1.
+            goalsampleprob: Probability of sampling another IK solution in an iteration; by default 0.1.
             goalmaxsamples: As ``goalsamples``.
-            initialconfigs: Where the arm may start; None: where it is.
+            initialconfigs: Possible starts of the arm; by default its present values.
+            regions: One or more goal regions; ``goal_index`` of the trajectory is the index of the reached one. Poses
+                are sampled from them before and during planning.
+            constraints: Constraints along the whole motion; see ``PlannerParameters.add_constraint``.
+            holding: A body that the arm carries, or its name. It is grabbed during planning if necessary; ``regions``
+                and ``constraints`` then refer to its pose instead of the tool's.
+            certify: As for ``MoveActiveJoints``.
 
         Raises:
-            PlanningError: there is no such motion, or no solver of inverse kinematics.
-            ArgumentError: the constraint has numbers of none, or nothing says what it holds.
+            PlanningError: no motion was found, or there is no IK solver. The text counts rejected poses of regions by
+                cause, like ``status.causes``.
+            ArgumentError: the constraint is invalid or incomplete.
 
         Example:
             >>> basemanip.MoveToHandPosition(matrices=[T_world_tool])
 
-            A glass is carried upright: since the start, the tool turns about the vertical only.
+            Carry a glass upright: the tool rotates only about the vertical.
 
             >>> basemanip.MoveToHandPosition(matrices=[T_world_tool], constraintfreedoms=[1, 1, 0, 0, 0, 0])
+
+            Move the tool to any position in a cube of 10 cm, with any rotation:
+
+            >>> cube = ravemj.Region(T_world_cube, Bw=[[-0.05, 0.05]] * 3 + [[-np.pi, np.pi]] * 3)
+            >>> basemanip.MoveToHandPosition(regions=[cube])
         """
         del affinedofs, minimumgoalpaths, jittergoal, goalmaxtries, releasegil, freevalues
         constraint = given(
@@ -228,14 +280,16 @@ class BaseManipulation(Helper):
             seedik=seedik,
             goalsamples=goalsamples or goalmaxsamples,
             goalsampleprob=goalsampleprob,
+            certify=True if certify is None and regions is not None else certify,
         )
-        traj = self._base.move_to_hand_position(
-            goals,
-            chosen(ToolMotion, options),
-            constraint=tool_constraint(constraint),
-            starts=_rows("initialconfigs", None, initialconfigs, len(self._base.arm().description.arm_dofs)),
-            postprocessing=postprocessing,
-        )
+        with self._base.holding(holding) as held:
+            traj = self._base.move_to_hand_position(
+                goals,
+                chosen(ToolMotion, options),
+                starts=_rows("initialconfigs", None, initialconfigs, len(self._base.arm().description.arm_dofs)),
+                postprocessing=postprocessing,
+                sets=_sets(regions, [*tool_constraints(constraint), *several(constraints, "constraints")], held),
+            )
         return self._done(traj, execute, outputtraj, outputtrajobj, "1")
 
     def MoveHandStraight(
@@ -254,22 +308,22 @@ class BaseManipulation(Helper):
         planner: str | None = None,
         outputtrajobj: bool | None = None,
     ) -> Answer:
-        """Move the tool of the active manipulator along a straight line, with its orientation, as far as it goes.
+        """Move the active manipulator's tool along a straight line with constant orientation, as far as possible.
 
         The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``greedysearch``, ``steplength`` and
         ``planner`` are not used.
 
         Args:
-            direction: Where to, in the world; its length does not count.
-            minsteps: How many steps it has to go; None: 0.
-            maxsteps: How many it goes at most; None: 10000.
-            stepsize: How far a step is [m]; None: 0.01.
-            ignorefirstcollision: Way at the start in which collisions do not count [m]; None: 0.1.
-            starteematrix: ``T_world_tool`` where it starts; None: where it is.
+            direction: Direction in the world, of any length.
+            minsteps: Minimum number of steps; by default 0.
+            maxsteps: Maximum number of steps; by default 10000.
+            stepsize: Length of a step [m]; by default 0.01.
+            ignorefirstcollision: Length at the start in which collisions are ignored [m]; by default 0.1.
+            starteematrix: ``T_world_tool`` at the start; by default the present pose.
             maxdeviationangle: Not used; the tool does not turn.
 
         Raises:
-            PlanningError: it does not get that far, or there is no solver of inverse kinematics.
+            PlanningError: the minimum number of steps is not reached, or there is no IK solver.
 
         Example:
             >>> basemanip.MoveHandStraight([0, 0, 1], stepsize=0.01, minsteps=5, maxsteps=10)
@@ -294,7 +348,7 @@ class BaseManipulation(Helper):
         outputtraj: bool | None = None,
         outputtrajobj: bool | None = None,
     ) -> Answer:
-        """Move the active DOFs to where other joints can move to values without collisions.
+        """Move the active DOFs to a configuration from which other joints can reach values without collisions.
 
         The other joints, those of a hand for instance, are not moved.
 
@@ -303,13 +357,13 @@ class BaseManipulation(Helper):
         Args:
             jointvalues: The values of the other joints.
             jointinds: Their DOF indices.
-            maxtries: How often a place is looked for; None: once.
-            planner: The planner of the motion; None: ``BasicRRT``.
-            maxdivision: In how many steps the motion of the other joints is tested; None: 10.
+            maxtries: Number of attempts; by default 1.
+            planner: The planner of the motion; by default ``BasicRRT``.
+            maxdivision: Number of steps of the test of the other joints' motion; by default 10.
 
         Raises:
-            PlanningError: there is no such place.
-            AssertionError: there are not as many values as indices, or none.
+            PlanningError: no such configuration was found.
+            AssertionError: the numbers of values and indices differ, or are 0.
         """
         values = checked_numbers(jointvalues, "jointvalues")
         indices = checked_whole_numbers(jointinds, "jointinds").tolist()
@@ -328,20 +382,20 @@ class BaseManipulation(Helper):
         outputfinal: bool | None = None,
         outputtrajobj: bool | None = None,
     ) -> tuple[Floats | None, Answer]:
-        """Move the active DOFs a little, out of collision.
+        """Move the active DOFs slightly, out of collision.
 
         The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``.
 
         Args:
-            maxiter: How many configurations are tried; None: 5000.
-            jitter: How far each value may move [rad or m]; None: 0.03.
-            outputfinal: Whether to return where it leads.
+            maxiter: Maximum number of configurations; by default 5000.
+            jitter: Maximum change of each value [rad or m]; by default 0.03.
+            outputfinal: Whether to return the final values.
 
         Returns:
-            Where the motion leads, and the motion; None for what was not asked for.
+            The final values and the motion, each None if not requested.
 
         Raises:
-            PlanningError: there is no such configuration.
+            PlanningError: no free configuration was found.
         """
         found = self._base.jitter_active(chosen(JitterMotion, given(maxiter=maxiter, jitter=jitter)))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
@@ -353,10 +407,10 @@ class BaseManipulation(Helper):
 
         Args:
             data: The trajectory, as ``Trajectory.serialize`` writes it.
-            resettiming: Whether it gets new times.
+            resettiming: Whether to retime it.
 
         Raises:
-            openrave_exception: this is no trajectory, or it cannot be executed.
+            openrave_exception: the data is not a trajectory, or cannot be executed.
         """
         self._base.execute(self._read(data, resettiming))
 
@@ -373,11 +427,11 @@ class BaseManipulation(Helper):
 
         Args:
             data: The trajectory, as ``Trajectory.serialize`` writes it.
-            resettiming: Whether it gets new times first.
-            samplingstep: Steps in which it is looked at [s].
+            resettiming: Whether to retime it first.
+            samplingstep: Sampling step [s].
 
         Raises:
-            openrave_exception: it does not, or this is no trajectory.
+            openrave_exception: the check fails, or the data is not a trajectory.
         """
         VerifyTrajectory(None, self._read(data, resettiming), **given(samplingstep=samplingstep))
 
@@ -395,8 +449,11 @@ class BaseManipulation(Helper):
     )
 
 
+def _sets(regions: object, constraints: Sequence[object], held: KinBody | None) -> MotionSets:
+    return MotionSets(() if regions is None else regions_of(regions, "regions"), constraints, held)
+
+
 def _rows(name: str, one: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
-    """Return goals or starts."""
     rows = [checked_numbers(row, name) for row in [*several(many, name), *given(one=one).values()]]
     for row in rows:
         if row.shape != (dof,) or not dof:

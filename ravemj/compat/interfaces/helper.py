@@ -1,4 +1,4 @@
-"""What the helpers have in common."""
+"""Base class of the helpers."""
 
 import weakref
 from collections.abc import Iterable
@@ -18,15 +18,15 @@ Thing = TypeVar("Thing")
 
 
 class Helper(ApiObject):
-    """Plans for one robot; its module is in the environment as long as it exists.
+    """Planning helper of one robot; its module stays in the environment as long as it exists.
 
     Attributes:
-        prob: The module, which takes the same as commands.
+        prob: The module, which offers the same as text commands.
         robot: The robot.
-        args: With what the module was added.
+        args: Arguments of the module.
     """
 
-    _names_wrong_arguments = False  # scripts ask inspect.getfullargspec for the arguments, which wrappers hide
+    _names_wrong_arguments = False  # scripts inspect the arguments with inspect.getfullargspec, which wrappers hide
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class Helper(ApiObject):
         weakref.finalize(self, env.Remove, module).atexit = False
 
     def SetRobot(self, robot: Robot) -> bool:
-        """Plan for another robot.
+        """Set another robot.
 
         Args:
             robot: The robot.
@@ -55,7 +55,7 @@ class Helper(ApiObject):
         return self._manipulation.choose(robot.GetName())
 
     def clone(self, envother: Environment) -> Any:  # noqa: ANN401 - of the same class
-        """Return such a helper for the robot of the same name in another environment.
+        """Return a helper of this class for the robot of the same name in another environment.
 
         Args:
             envother: The environment.
@@ -91,7 +91,7 @@ class Helper(ApiObject):
         outputfinal: bool | None,
         outputtrajobj: bool | None,
     ) -> tuple[Floats | None, Trajectory | str | None]:
-        """Execute a motion unless ``execute`` is False; return where it leads and itself, as far as they are asked."""
+        """Execute a motion unless ``execute`` is False; return its final values and itself, as requested."""
         final, traj = found
         return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj) or None
 
@@ -102,10 +102,10 @@ def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any ki
 
 
 def several(values: Iterable[Thing] | None, name: str) -> list[Thing]:
-    """Return an option that is a list; None is an empty one.
+    """Return a list option as a list; None is empty.
 
     Raises:
-        ArgumentError: it is no list.
+        ArgumentError: it is not a list.
     """
     if values is None:
         return []

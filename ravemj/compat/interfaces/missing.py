@@ -1,4 +1,4 @@
-"""Helpers that ravemj does not have; their constructors raise ``UnsupportedError``, a ``NotImplementedError``."""
+"""Helpers that ravemj does not support; their constructors raise ``UnsupportedError``, a ``NotImplementedError``."""
 
 from ravemj.compat.refusal import lacking
 
@@ -24,20 +24,3 @@ class TaskCaging:
 )
 class VisualFeedback:
     """Moves a camera to where it sees an object."""
-
-
-@lacking(
-    "planning of grasps",
-    """
-    __init__(robot friction avoidlinks plannername) ConvexHull(points returnplanes returnfaces returntriangles)
-    Grasp(direction roll position standoff target stablecontacts forceclosure transformrobot onlycontacttarget
-        tightgrasp graspingnoise execute translationstepmult outputfinal manipulatordirection coarsestep finestep
-        vintersectplane chuckingdirection ordereddofindices avoidcontact)
-    GraspThreaded(approachrays standoffs preshapes rolls manipulatordirections target transformrobot
-        onlycontacttarget tightgrasp graspingnoise forceclosurethreshold collisionchecker translationstepmult
-        numthreads startindex maxgrasps finestep)
-    clone(envother)
-    """,
-)
-class Grasper:
-    """Simulates how a hand closes around a body, and rates the grasp."""

@@ -1,4 +1,4 @@
-"""Motions of fingers, and of arms to grasps."""
+"""Gripper motions, and arm motions to grasps."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -14,11 +14,12 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
+from ravemj.manipulation.grasps import GraspTable
 from ravemj.manipulation.options import GraspMotion, chosen
 from ravemj.manipulation.tool import ToolConstraint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import task_module
-from ravemj.rave.modules.task_manipulation import GraspQuery
+from ravemj.rave.modules.task_manipulation import GraspQuery, finger_steps
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
@@ -32,15 +33,15 @@ GraspAnswer = tuple[list[IkParameterization], int, float, Trajectory | str | Non
 class TaskManipulation(Helper):
     """Opens and closes the gripper of the active manipulator, and moves its arm to grasps.
 
-    Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the
-    robot alone. It returns where the motion leads (with ``outputfinal=True``) and the motion (with
-    ``outputtrajobj=True``; its text with ``outputtraj=True``), each None if it was not asked for.
+    Each method starts the motion on the robot's controller and returns before its end; with ``execute=False`` the robot
+    does not move. The result is the final values (with ``outputfinal=True``) and the motion (with
+    ``outputtrajobj=True``; its text with ``outputtraj=True``), each None if not requested.
 
     Args:
         robot: The robot.
-        plannername: For the module.
+        plannername: The planner of the module.
         maxvelmult: Factor of the velocity limits.
-        graspername: For OpenRAVE.
+        graspername: Not used.
 
     Example:
         >>> taskmanip = interfaces.TaskManipulation(robot)
@@ -73,24 +74,27 @@ class TaskManipulation(Helper):
         outputtrajobj: bool | None = None,
         releasegil: bool = False,
     ) -> Answer:
-        """Close the gripper: each joint moves until what it moves touches something, or to its limit.
+        """Close the gripper: one joint after the other moves until its links touch something, or to its limit.
 
-        The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``translationstepmult``
-        and ``releasegil`` are not used.
+        The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``releasegil`` is not
+        used. A joint that starts in contact stays.
 
         Args:
-            offset: How far each joint goes back from there [rad or m].
-            movingdir: For each joint, to which side it moves; None: the closing direction.
-            coarsestep: How far joints move between two tests [rad or m]; None: 0.01.
-            finestep: Not used; contacts are found to a micrometre.
+            offset: How far the motion of each joint goes on from there, in its direction [rad or m]. ``outputfinal``
+                returns the values before.
+            movingdir: Sign of the motion of each joint; None: the closing direction.
+            coarsestep: Step of joints between two tests [rad]; None: 0.1.
+            translationstepmult: Factor of the steps of sliders [m/rad]; None: 0.1.
+            finestep: Contacts are found to a sixteenth of it [rad]; None: a hundredth of ``coarsestep``.
 
         Raises:
-            AssertionError: there are not as many numbers as joints.
+            AssertionError: the number of values is wrong.
             PlanningError: the robot has no gripper.
         """
-        del translationstepmult, finestep, releasegil
+        del releasegil
         directions, offsets = self._of_gripper("movingdir", movingdir), self._of_gripper("offset", offset)
-        found = self._task.close_fingers(directions, offsets, **given(step=coarsestep))
+        steps = given(coarsestep=coarsestep, finestep=finestep, translationstepmult=translationstepmult)
+        found = self._task.close_fingers(directions, offsets, finger_steps(steps))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
     CloseFingers = ChuckFingers
@@ -108,23 +112,26 @@ class TaskManipulation(Helper):
         outputtrajobj: bool | None = None,
         releasegil: bool = False,
     ) -> Answer:
-        """Open the gripper: each joint moves until what it moves touches something new, or to its limit.
+        """Open the gripper: one joint after the other moves to just before its links touch something, or to its limit.
 
-        The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``translationstepmult``,
-        ``finestep`` and ``releasegil`` are not used.
+        The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``releasegil`` is not
+        used. Joints that start in contact first leave it.
 
         Args:
-            target: A held body that is let go.
-            movingdir: For each joint, to which side it moves; None: against the closing direction.
-            coarsestep: How far joints move between two tests [rad or m]; None: 0.01.
+            target: A grabbed body that is released.
+            movingdir: Sign of the motion of each joint; None: against the closing direction.
+            coarsestep: Step of joints between two tests [rad]; None: 0.1. A contact at the start has to end within it.
+            translationstepmult: Factor of the steps of sliders [m/rad]; None: 0.1.
+            finestep: Distance kept from contacts [rad]; None: a hundredth of ``coarsestep``.
 
         Raises:
             AssertionError: there are not as many numbers as joints.
-            PlanningError: the robot has no gripper.
+            PlanningError: the robot has no gripper, or a joint cannot leave its contact.
         """
-        del translationstepmult, finestep, releasegil
+        del releasegil
         directions = self._of_gripper("movingdir", movingdir)
-        found = self._task.release_fingers(directions, target, **given(step=coarsestep))
+        steps = given(coarsestep=coarsestep, finestep=finestep, translationstepmult=translationstepmult)
+        found = self._task.release_fingers(directions, target, finger_steps(steps))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
     ReleaseFingers = UnchuckFingers
@@ -139,14 +146,14 @@ class TaskManipulation(Helper):
         finestep: float | None = None,
         outputtrajobj: bool | None = None,
     ) -> Answer:
-        """Move the active joints to one side, until what they move touches something new, or to their limits.
+        """Move the active joints in one direction, until moved links touch something new, or to their limits.
 
         The class explains ``execute``, ``outputtraj``, ``outputfinal`` and ``outputtrajobj``. ``translationstepmult``
         is not used.
 
         Args:
-            movingdir: For each active joint, to which side it moves; None: none moves.
-            finestep: How far joints move between two tests [rad or m]; None: 0.01.
+            movingdir: Sign of the motion of each active joint; by default none moves.
+            finestep: Step between two collision checks [rad or m]; by default 0.01.
         """
         del translationstepmult
         count = len(self.robot.GetActiveDOFIndices())
@@ -155,7 +162,7 @@ class TaskManipulation(Helper):
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
     def _of_gripper(self, name: str, numbers: ArrayLike | None) -> Floats | None:
-        """Return a number for each joint of the gripper, or None."""
+        """Return a value for each gripper joint, or None."""
         if numbers is None:
             return None
         manip = self.robot.GetActiveManipulator()
@@ -166,7 +173,7 @@ class TaskManipulation(Helper):
 
     def GraspPlanning(
         self,
-        graspindices: Mapping[str, int] | None = None,
+        graspindices: Mapping[str, int | Sequence[int]] | None = None,
         grasps: ArrayLike | None = None,
         target: KinBody | None = None,
         approachoffset: float = 0,
@@ -187,41 +194,40 @@ class TaskManipulation(Helper):
         steplength: float | None = None,
         releasegil: bool = False,
     ) -> GraspAnswer:
-        """Move the arm to one of given grasps, so that the hand can go straight on to it.
+        """Move the arm to one of given grasps, from where the hand can approach in a straight line.
 
-        The gripper goes to the preshape of the grasp. Grasps count that the arm reaches without collisions, from where
-        the hand gets on to the target in a straight line, and from where it can take the target to one of
-        ``destposes``.
+        The gripper moves to the preshape of the grasp. A grasp is valid if the arm reaches it without collisions, the
+        hand can approach the target in a straight line, and it can move the target to one of ``destposes``.
 
         The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``grasptranslationstepmult``,
         ``graspfinestep`` and ``releasegil`` are not used.
 
         Args:
-            graspindices: The first column of what a grasp has: ``igrasptrans``, the pose of the tool in the target, 12
-                numbers by columns (``grasptrans_nocol`` counts more); ``igraspdir``, in the target, or
-                ``imanipulatordirection``, in the tool: where the hand comes from, None: the tool's direction;
+            graspindices: The columns of what a grasp has, or the first of them: ``igrasptrans``, the pose of the tool
+                in the target, 12 numbers by columns (``grasptrans_nocol`` counts more); ``igraspdir``, in the target,
+                or ``imanipulatordirection``, in the tool: where the hand comes from, None: the tool's direction;
                 ``igrasppreshape``, values of the gripper.
             grasps: The grasps, shape (n, m).
-            target: What is grasped.
-            approachoffset: How far before the grasp the motion ends [m].
+            target: The body to grasp.
+            approachoffset: Distance from the grasp at which the motion ends [m].
             destposes: Poses for the target, 4x4 or 7 numbers each.
-            seedgrasps: How many grasps are goals of one plan; None: 20.
-            seeddests: How many poses are looked for, for each grasp; None: 5.
-            seedik: How many configurations of a grasp are goals; None: all.
-            maxiter: Iterations of the planner; None: 4000.
-            randomgrasps: Whether grasps are tried in a random order; None: they are.
-            randomdests: Whether poses are; None: they are.
-            gmodel: Has ``graspindices``, ``grasps`` and ``target``, for those that are not given.
-            paddedgeometryinfo: Not possible here.
+            seedgrasps: Number of grasps that are goals of one plan; by default 20.
+            seeddests: Number of destinations to find for each grasp; by default 5.
+            seedik: Number of IK solutions of a grasp that are goals; by default all.
+            maxiter: Maximum number of iterations; by default 4000.
+            randomgrasps: Whether to try grasps in random order; by default True.
+            randomdests: Whether to try destinations in random order; by default True.
+            gmodel: Supplies ``graspindices``, ``grasps`` and ``target`` if they are not given.
+            paddedgeometryinfo: Not supported.
             steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
 
         Returns:
-            Goals of the hand, as ``IkParameterization``, with which the target is at one of ``destposes``; the number
-            of the grasp; how long the planner took [s]; and the motion, None if it was not asked for.
+            Goals of the hand, as ``IkParameterization``, that put the target at ``destposes``; the index of the grasp;
+            the planning time [s]; and the motion, None if not requested.
 
         Raises:
             PlanningError: no grasp can be reached; its text says why.
-            ArgumentError: there are no grasps with poses, or the target is held.
+            ArgumentError: there are no grasp poses, or the target is already grabbed.
 
         Example:
             >>> goals, index, seconds, trajectory = taskmanip.GraspPlanning(
@@ -232,12 +238,12 @@ class TaskManipulation(Helper):
             raise UnsupportedError("GraspPlanning with paddedgeometryinfo", _PADDING)
         rows = np.atleast_2d(np.asarray(gmodel.grasps if grasps is None and gmodel else grasps, dtype=float))
         body = checked_kind(target or getattr(gmodel, "target", None), KinBody, "GraspPlanning: target")
-        columns = graspindices or getattr(gmodel, "graspindices", {})
+        columns = _first_columns(graspindices or getattr(gmodel, "graspindices", {}))
         options = given(seedgrasps=seedgrasps, seeddests=seeddests, seedik=seedik, maxiter=maxiter)
         options |= given(randomgrasps=randomgrasps, randomdests=randomdests, steplength=steplength)
         options |= {"approachoffset": approachoffset}
         places = [checked_transform(one, "destposes") for one in (() if destposes is None else destposes)]
-        plan = self._task.plan_grasp(GraspQuery(body, rows, columns, places, chosen(GraspMotion, options)))
+        plan = self._task.plan_grasp(GraspQuery(body, GraspTable(rows, columns), places, chosen(GraspMotion, options)))
         return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj) or None
 
     def EvaluateConstraints(
@@ -251,19 +257,20 @@ class TaskManipulation(Helper):
         """Project configurations onto a constraint of the tool.
 
         The constraint is about ``T_task_world @ T_world_tool``, which should have no rotation and no translation along
-        some axes: with the inverse of the tool's present pose as frame, the tool keeps its place along these axes.
+        some axes: with the inverse of the tool's present pose as frame, the tool keeps its present position along these
+        axes.
 
         Args:
-            freedoms: For the rotations about x, y, z and the ways along them, 1 where the constraint holds and 0 where
-                the tool is free, shape (6,).
-            configs: Active values, those of the arm, shape (n, dof).
-            targetframematrix: ``T_task_world``, the frame whose axes count; None: the world.
+            freedoms: For rotations about x, y, z and translations along them, 1 constrains and 0 leaves free, shape
+                (6,).
+            configs: Active values, which are the arm's, shape (n, dof).
+            targetframematrix: ``T_task_world``, the task frame; by default the world.
             targetframepose: The same as 7 numbers.
-            errorthresh: The error [m and rad] up to which the constraint counts as kept; None: 0.001.
+            errorthresh: Tolerance of the constraint [m and rad]; by default 0.001.
 
         Returns:
-            After how many steps each configuration keeps it, -1 for those that do not get there, shape (n,); and the
-            configurations then, shape (n, dof).
+            The number of projection steps of each configuration, -1 if it fails, shape (n,); and the projected
+            configurations, shape (n, dof).
 
         Raises:
             ArgumentError: the active DOFs are not the joints of the arm.
@@ -286,3 +293,9 @@ class TaskManipulation(Helper):
     @lacking(_PADDING, "__init__(taskmanip update) __enter__() __exit__(type value traceback)")
     class SwitchState:
         """Padded models in place of bodies for a while."""
+
+
+def _first_columns(columns: Mapping[str, int | Sequence[int]]) -> dict[str, int]:
+    """Return the first column of each property that has columns."""
+    found = {name: np.ravel(part) for name, part in columns.items()}
+    return {name: int(part[0]) for name, part in found.items() if part.size}

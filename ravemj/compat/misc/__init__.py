@@ -1,4 +1,4 @@
-"""``openravepy.misc``: what scripts need beside the API."""
+"""``openravepy.misc``: helper functions of scripts."""
 
 from ravemj.compat.misc.arms import MultiManipIKSolver
 from ravemj.compat.misc.comparing import CompareBodies, CompareEnvironments, sequence_cross_product

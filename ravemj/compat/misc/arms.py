@@ -17,7 +17,7 @@ _COLLISIONS = IkFilterOptions.CheckEnvCollisions
 
 
 class MultiManipIKSolver:
-    """Finds joint values for several arms, whose tools shall be at their goals together.
+    """IK solver of several arms whose tools reach their goals simultaneously.
 
     Args:
         manips: The arms, of one robot, each with a solver.
@@ -39,7 +39,7 @@ class MultiManipIKSolver:
         filteroptions: int = _COLLISIONS,
         dooptimize: bool = False,
     ) -> list[Floats] | None:
-        """Return joint values for each arm, with which the arms do not touch each other.
+        """Return joint values for each arm such that the arms do not collide with each other.
 
         Args:
             Tgrasps: A goal for each arm, as for ``FindIKSolution``.
@@ -47,7 +47,7 @@ class MultiManipIKSolver:
             dooptimize: Whether to return the solutions nearest to the present joint values instead of the first.
 
         Returns:
-            Joint values of each arm, or None where there are none.
+            Joint values of each arm, or None if there is no solution.
         """
         if len(Tgrasps) != len(self.manips):
             raise ArgumentError(f"findMultiIKSolution: {len(Tgrasps)} goals for {len(self.manips)} arms; give one each")
@@ -64,7 +64,7 @@ class MultiManipIKSolver:
         return found
 
     def _alone(self, arm: Manipulator, goal: ArrayLike | IkParameterization, options: int) -> Floats:
-        """Return the solutions of one arm while the others are not there."""
+        """Return the solutions of one arm, ignoring the other arms."""
         others = {link.GetIndex() for other in self.manips if other != arm for link in self._moved(other)}
         enabled = [link for link in self.robot.GetLinks(sorted(others)) if link.IsEnabled()]
         try:
@@ -76,7 +76,6 @@ class MultiManipIKSolver:
                 link.Enable(True)
 
     def _moved(self, arm: Manipulator) -> list[Link]:
-        """Return the links that an arm moves."""
         dofs = arm.GetArmIndices().tolist()
         joints = [self.robot.GetJointFromDOFIndex(dof).GetJointIndex() for dof in dofs]
         return [
@@ -84,7 +83,7 @@ class MultiManipIKSolver:
         ]
 
     def _together(self, rows: Sequence[Floats], options: int) -> bool:
-        """Return whether the arms touch nothing with these joint values."""
+        """Return whether the arms are free of collisions at these joint values."""
         for arm, row in zip(self.manips, rows, strict=True):
             self.robot.SetDOFValues(row, arm.GetArmIndices(), CheckLimitsAction.Nothing)
         if not options & IkFilterOptions.IgnoreSelfCollisions and self.robot.CheckSelfCollision():

@@ -1,4 +1,4 @@
-"""Checks that bodies and environments are alike."""
+"""Checks that bodies and environments are equal."""
 
 import itertools
 from collections.abc import Iterable, Iterator
@@ -24,21 +24,21 @@ def CompareBodies(  # noqa: PLR0913, PLR0917 - OpenRAVE's arguments
     computeadjacent: bool = True,
     epsilon: float = 1e-10,
 ) -> None:
-    """Check that two bodies are alike and stand alike; joint values are not compared.
+    """Check that two bodies and their poses are equal; joint values are not compared.
 
     Args:
         body0: A body.
         body1: The other.
-        comparegeometries: Whether shapes count.
-        comparesensors: Whether attached sensors count.
-        comparemanipulators: Whether arms count.
-        comparegrabbed: Whether the names of held bodies count.
-        comparephysics: Whether masses and inertias count.
-        computeadjacent: Whether pairs of adjacent links count.
-        epsilon: How far numbers may differ.
+        comparegeometries: Whether to compare shapes.
+        comparesensors: Whether to compare attached sensors.
+        comparemanipulators: Whether to compare manipulators.
+        comparegrabbed: Whether to compare the names of grabbed bodies.
+        comparephysics: Whether to compare masses and inertias.
+        computeadjacent: Whether to compare pairs of adjacent links.
+        epsilon: Tolerance of numbers.
 
     Raises:
-        AssertionError: they differ; it says where.
+        AssertionError: they differ; the text says where.
     """
     _alike(body0.IsRobot(), body1.IsRobot(), "one is a robot")
     _alike(body0.GetDOF(), body1.GetDOF(), "numbers of DOFs")
@@ -105,16 +105,16 @@ def _manipulators(robot0: Robot, robot1: Robot, epsilon: float) -> None:
 def CompareEnvironments(
     env: Environment, env2: Environment, options: int = CloningOptions.Bodies, epsilon: float = 1e-10
 ) -> None:
-    """Check that two environments hold bodies of the same names that are alike, with the same joint values.
+    """Check that two environments have equal bodies of the same names and joint values.
 
     Args:
         env: An environment.
         env2: The other.
-        options: What is compared, a ``CloningOptions``; bodies are, whatever it says.
-        epsilon: How far numbers may differ.
+        options: What to compare, a ``CloningOptions``; bodies are always compared.
+        epsilon: Tolerance of numbers.
 
     Raises:
-        AssertionError: they differ; it says where.
+        AssertionError: they differ; the text says where.
     """
     del options
     _alike(len(env.GetBodies()), len(env2.GetBodies()), "numbers of bodies")
@@ -136,5 +136,5 @@ def _near(first: ArrayLike, second: ArrayLike, epsilon: float, what: str) -> Non
 
 
 def sequence_cross_product(*sequences: Iterable[object]) -> Iterator[tuple[object, ...]]:
-    """Return all combinations of members of several sequences, as ``itertools.product``."""
+    """Return the Cartesian product of sequences, like ``itertools.product``."""
     return itertools.product(*sequences)

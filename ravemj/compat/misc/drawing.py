@@ -1,4 +1,4 @@
-"""Axes, circles and goals of arms, drawn into an environment."""
+"""Drawings of axes, circles and IK goals in an environment."""
 
 from typing import Any
 
@@ -69,12 +69,12 @@ def DrawCircle(
     linewidth: float = 1,
     colors: ArrayLike = (0, 0, 0),
 ) -> object:
-    """Draw a circle; returns the handle of the line.
+    """Draw a circle; return the handle of the line.
 
     Args:
         env: The environment.
-        center: Its centre [m], shape (3,).
-        normal: The axis that it goes around, shape (3,).
+        center: The centre [m], shape (3,).
+        normal: The normal of its plane, shape (3,).
         radius: Radius [m].
         linewidth: Width of the line [pixels].
         colors: Red, green and blue from 0 to 1.
@@ -94,7 +94,7 @@ def DrawIkparam(
     linewidth: float = 1,
     coloradd: ArrayLike | None = None,
 ) -> object:
-    """Draw what an arm shall reach: axes at its place, or a line along its direction.
+    """Draw an IK goal: axes at its position, or a line along its direction.
 
     Args:
         env: The environment.
@@ -125,12 +125,12 @@ def DrawIkparam2(
     linewidth: float = 1,
     coloradd: ArrayLike | None = None,
 ) -> list[object]:
-    """Draw as ``DrawIkparam``; returns a list of handles."""
+    """Draw like ``DrawIkparam``; return a list of handles."""
     return [DrawIkparam(env, ikparam, dist, linewidth, coloradd)]
 
 
 def _is_pose(target: object) -> bool:
-    """Tell the numbers of one pose from a list of targets."""
+    """Distinguish the numbers of one pose from a list of targets."""
     try:
         return np.shape(np.array(target, dtype=np.float64)) in {(7,), (3, 4), (4, 4)}
     except (TypeError, ValueError):
@@ -155,7 +155,7 @@ def DrawLabel(
     color: ArrayLike = (0, 0, 0, 1),
     height: float = 0.05,
 ) -> GraphHandle | None:
-    """Write a text beside a point; see ``env.drawlabel``.
+    """Draw a text beside a point; see ``env.drawlabel``. Return its handle.
 
     Args:
         env: The environment.

@@ -1,4 +1,4 @@
-"""Evenly spread rotations, directions and points."""
+"""Uniformly spread rotations, directions and points."""
 
 import math
 
@@ -11,7 +11,7 @@ from ravemj.core.transforms import Floats
 
 
 class SpaceSamplerExtra:
-    """Samples that cover a space evenly; the same ones at every call."""
+    """Deterministic samples that cover a space uniformly."""
 
     def sampleS2(self, level: int = 0, angledelta: float | None = None) -> Floats:
         """Return directions.
@@ -49,7 +49,7 @@ class SpaceSamplerExtra:
 
     @staticmethod
     def hopf2quat(hopfarray: ArrayLike) -> Floats:
-        """Return rotations that are given by Hopf's coordinates: the direction that turns to x, and a turn about x.
+        """Convert Hopf coordinates to rotations. Return unit quaternions.
 
         Args:
             hopfarray: For each the direction's angle to x, its azimuth about x (0: towards z, pi / 2: towards -y), and
@@ -71,7 +71,7 @@ class SpaceSamplerExtra:
 
     @staticmethod
     def computeSepration(qarray: ArrayLike) -> Floats:
-        """Return how far each rotation is from the nearest other one.
+        """Return the distance of each rotation to its nearest neighbour.
 
         Args:
             qarray: Unit quaternions [w, x, y, z], shape (N, 4).
@@ -84,7 +84,7 @@ class SpaceSamplerExtra:
         np.fill_diagonal(cosines, 0)
         return np.arccos(np.minimum(cosines.max(axis=1, initial=0), 1))
 
-    computeFaceIndices = refusing(  # directions lie on a spiral here
+    computeFaceIndices = refusing(  # directions are on a spiral
         "SpaceSamplerExtra.computeFaceIndices", "HEALPix's grid of directions", "self N"
     )
 

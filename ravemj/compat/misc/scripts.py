@@ -1,4 +1,4 @@
-"""Options, logging and viewer of OpenRAVE's own example programs."""
+"""Options, logging and viewers of OpenRAVE's example programs."""
 
 import itertools
 import logging
@@ -21,10 +21,10 @@ _LEVELS = {level.name.lower(): level for level in DebugLevel}
 
 
 def InitOpenRAVELogging(stream: IO[str] | None = None) -> None:
-    """Show what is logged.
+    """Show log messages.
 
     Args:
-        stream: Where; None: standard output.
+        stream: The stream; by default standard output.
     """
     handler = logging.StreamHandler(stream or sys.stdout)
     handler.setFormatter(logging.Formatter("%(name)s: %(funcName)s, %(message)s"))
@@ -36,8 +36,8 @@ def SetViewerUserThread(env: Environment, viewername: str, userfn: Callable[[], 
 
     Args:
         env: The environment.
-        viewername: As for ``env.SetViewer``; empty: no viewer.
-        userfn: What to run.
+        viewername: As for ``env.SetViewer``; empty for no viewer.
+        userfn: The function.
     """
     if viewername:
         env.SetViewer(viewername)
@@ -45,7 +45,7 @@ def SetViewerUserThread(env: Environment, viewername: str, userfn: Callable[[], 
 
 
 class OpenRAVEGlobalArguments:
-    """The options that all of OpenRAVE's example programs share.
+    """Common options of OpenRAVE's example programs.
 
     Example:
         >>> parser = optparse.OptionParser()
@@ -59,7 +59,7 @@ class OpenRAVEGlobalArguments:
         """Add the options to a parser.
 
         Args:
-            parser: It may have options of its own.
+            parser: The parser, which may have other options.
             testmode: Whether ``--testmode`` is one of the options.
         """
         group = optparse.OptionGroup(parser, "OpenRAVE Environment Options")
@@ -75,14 +75,14 @@ class OpenRAVEGlobalArguments:
 
     @staticmethod
     def parseGlobalArguments(options: Any) -> None:  # noqa: ANN401 - optparse gives whatever was added
-        """Apply the options that concern no environment."""
+        """Apply the options that do not concern an environment."""
         level = getattr(options, "_level", None)
         if level:
             logs.RaveSetDebugLevel(_LEVELS[level.lower()] if level.lower() in _LEVELS else int(level))
 
     @staticmethod
     def parseGlobal(options: Any, **kwargs: object) -> None:  # noqa: ANN401 - as above
-        """Apply the options that concern no environment.
+        """Apply the options that do not concern an environment.
 
         Args:
             options: What ``optparse`` or ``argparse`` returned.
@@ -104,15 +104,15 @@ class OpenRAVEGlobalArguments:
         Args:
             options: What ``parser.parse_args()`` returned first.
             env: The environment.
-            defaultviewer: Whether there is a viewer where the options name none.
-            returnviewer: Return the viewer's name, in place of attaching it.
+            defaultviewer: Whether to attach a viewer if the options name none.
+            returnviewer: Whether to return the viewer's name instead of attaching it.
             kwargs: OpenRAVE's; not used.
 
         Returns:
             The name, or None.
 
         Raises:
-            openrave_exception: there is no collision checker or physics engine of the name.
+            openrave_exception: the collision checker or physics engine is unknown.
         """
         OpenRAVEGlobalArguments.parseGlobalArguments(options)
         if getattr(options, "_collision", None):
@@ -135,7 +135,7 @@ class OpenRAVEGlobalArguments:
         defaultviewer: bool = False,
         **kwargs: object,
     ) -> Environment:
-        """Return a new environment to which the options are applied."""
+        """Return a new environment with the options applied."""
         env = createenv()
         OpenRAVEGlobalArguments.parseEnvironment(options, env, defaultviewer)
         return env
@@ -163,18 +163,18 @@ def _checker(env: Environment, name: str) -> CollisionChecker:
 
 
 def LoadTrajectoryFromFile(env: Environment, trajfile: AnyPath, trajtype: str = "") -> Trajectory | None:
-    """Return the trajectory in a file that ``SaveToFile`` wrote.
+    """Read a trajectory from a file that ``SaveToFile`` wrote, and return it.
 
     Args:
-        env: The environment that the trajectory is for.
+        env: The environment of the trajectory.
         trajfile: The file.
         trajtype: As for ``RaveCreateTrajectory``.
 
     Returns:
-        The trajectory; None where there is no such type.
+        The trajectory; None for an unknown type.
 
     Raises:
-        openrave_exception: the file cannot be read, or is no trajectory.
+        openrave_exception: the file cannot be read, or is not a trajectory.
     """
     trajectory = RaveCreateTrajectory(env, trajtype)
     if trajectory is not None:
@@ -183,7 +183,7 @@ def LoadTrajectoryFromFile(env: Environment, trajfile: AnyPath, trajtype: str = 
 
 
 def mkdir_recursive(newdir: str) -> None:
-    """Make a folder and those above it, where they are missing."""
+    """Create a folder and its missing parents."""
     os.makedirs(newdir, exist_ok=True)
 
 

@@ -11,22 +11,22 @@ from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 
 _PARALLEL = 1e-9
-"""Sine of the angle [1], or distance [m], below which axes are parallel, or meet."""
+"""Sine of the angle, or distance [m], below which axes are parallel or intersect."""
 
 
 @dataclass(frozen=True, eq=False)
 class DHParameter:
-    """How the frame of a joint is got from that of the joint before, in the classical convention.
+    """Denavit-Hartenberg parameters of a joint relative to the previous one, in the classical convention.
 
     ``transform = parent @ turn about z by theta @ move along z by d @ move along x by a @ turn about x by alpha``
 
     Attributes:
         joint: The joint; its axis is the z axis of its frame.
-        parentindex: Which record is the joint before; -1: none, and the frame before is the body's.
+        parentindex: Index of the previous joint's record; -1 if the previous frame is the body's.
         transform: ``T_body_joint`` with all joints at 0, shape (4, 4).
-        d: Distance along the z axis before [m].
-        a: Distance of both z axes [m], along the x axis of the joint's frame, which may point back.
-        theta: Angle about the z axis before [rad], at most 90 degrees either way.
+        d: Distance along the previous z axis [m].
+        a: Distance of both z axes [m], along the x axis of the joint's frame, which may point backwards.
+        theta: Angle about the previous z axis [rad], at most 90 degrees either way.
         alpha: Angle between both z axes [rad].
     """
 
@@ -43,7 +43,7 @@ def GetDHParameters(body: KinBody) -> list[DHParameter]:
     """Return Denavit-Hartenberg parameters of all joints, parents before children.
 
     Args:
-        body: The body; it stays as it is.
+        body: The body; it is not changed.
 
     Example:
         >>> [(record.d, record.a, record.alpha) for record in planningutils.GetDHParameters(robot)]
@@ -65,7 +65,7 @@ def GetDHParameters(body: KinBody) -> list[DHParameter]:
 
 
 def _before(body: KinBody, link: int, index_of_link: dict[int, int]) -> int:
-    """Return the record of the joint that moves a link, also over joints that have none; -1 for none."""
+    """Return the record index of the nearest joint with a record that moves a link; -1 for none."""
     chain = body.GetChain(0, link, returnjoints=False)
     moved = [index_of_link[one.GetIndex()] for one in chain if one.GetIndex() in index_of_link]
     return moved[-1] if moved else -1
@@ -81,7 +81,7 @@ def _record(joint: Joint, before: int, start: Floats, anchor: Floats, axis: Floa
         foot, across = anchor, apart - d * z
         direction = across
     else:
-        # Feet of the common normal: origin + d z on the one axis, anchor + s axis on the other.
+        # End points of the common normal: origin + d z on one axis, anchor + s axis on the other.
         d = float(np.cross(apart, axis) @ normal) / sine**2
         foot = anchor + axis * (float(np.cross(apart, z) @ normal) / sine**2)
         across, direction = foot - origin - d * z, normal

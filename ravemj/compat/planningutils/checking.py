@@ -1,4 +1,4 @@
-"""Verifying of trajectories and lines, and configurations nearby without collisions."""
+"""Verification of trajectories and lines, and nearby configurations without collisions."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -31,19 +31,18 @@ _LINES = "constraints of accelerations, torques and perturbations along lines"
 def VerifyTrajectory(
     parameters: PlannerParameters | None, trajectory: Trajectory, samplingstep: float = 0.002, releasegil: bool = True
 ) -> None:
-    """Check that a trajectory keeps limits and constraints at every moment; the robot stays where it is.
+    """Check that a trajectory keeps limits and constraints at all times; the robot does not move.
 
-    Looked at are values, speeds, accelerations (where velocities do not jump) and collisions, in steps of time and at
-    all waypoints.
+    It checks values, speeds, accelerations (unless velocities jump) and collisions, in time steps and at all waypoints.
 
     Args:
-        parameters: What moves and its limits; None: the bodies of the trajectory with their limits.
+        parameters: The planning problem with its limits; by default the bodies of the trajectory with their limits.
         trajectory: A trajectory with times.
-        samplingstep: The steps [s].
+        samplingstep: The time step [s].
         releasegil: Not used.
 
     Raises:
-        openrave_exception: it does not (``InconsistentConstraints``); the text says what, and when.
+        openrave_exception: the check fails (``InconsistentConstraints``); the text gives the violation and its time.
 
     Example:
         >>> planningutils.VerifyTrajectory(None, trajectory, 0.01)
@@ -81,9 +80,9 @@ class DynamicsCollisionConstraint(ApiObject):
     """Tests straight lines between configurations for collisions.
 
     Args:
-        plannerparameters: What moves.
-        checkbodies: For OpenRAVE; the bodies of the parameters are tested.
-        filtermask: What is looked at, ``ConstraintFilterOptions``.
+        plannerparameters: The planning problem.
+        checkbodies: Not used; the bodies of the parameters are tested.
+        filtermask: The tests, ``ConstraintFilterOptions``.
     """
 
     def __init__(
@@ -95,18 +94,18 @@ class DynamicsCollisionConstraint(ApiObject):
         self.SetPlannerParameters(plannerparameters)
 
     def SetPlannerParameters(self, parameters: PlannerParameters) -> None:
-        """Choose what moves.
+        """Set the planning problem.
 
         Args:
-            parameters: What moves.
+            parameters: The planning problem.
         """
         self._parameters = checked_kind(parameters, PlannerParameters, "parameters")
 
     def SetFilterMask(self, filtermask: int) -> None:
-        """Choose what is looked at.
+        """Set the tests.
 
         Args:
-            filtermask: ``ConstraintFilterOptions``; 2, for instance, leaves other bodies out.
+            filtermask: ``ConstraintFilterOptions``; 2, for instance, ignores other bodies.
         """
         self._mask = int(filtermask)
 
@@ -119,7 +118,7 @@ class DynamicsCollisionConstraint(ApiObject):
     )
 
     def GetReport(self) -> CollisionReport:
-        """Return the last collision that was found."""
+        """Return the last detected collision."""
         return self._report
 
     def Check(
@@ -133,20 +132,20 @@ class DynamicsCollisionConstraint(ApiObject):
         options: int = 0xFFFF,
         filterreturn: bool = False,
     ) -> int | dict[str, Any]:
-        """Return what is wrong with the line between two configurations; the robot is moved along it.
+        """Return the violation of the line between two configurations; the robot is moved along it.
 
         Args:
             q0: Its start.
             q1: Its end.
             dq0: Velocities at the start; not used.
             dq1: Velocities at the end; not used.
-            timeelapsed: How long the motion takes [s].
-            interval: Which ends count, an ``Interval``.
-            options: What is looked at, ``ConstraintFilterOptions``.
-            filterreturn: Whether to return a dictionary that says where, too.
+            timeelapsed: Duration of the motion [s].
+            interval: The end points to include, an ``Interval``.
+            options: The tests, ``ConstraintFilterOptions``.
+            filterreturn: Whether to return a dictionary that also has the position.
 
         Returns:
-            0: nothing; else a bit of ``ConstraintFilterOptions``. The dictionary has it as ``returncode``.
+            0 without a violation, else a bit of ``ConstraintFilterOptions``. The dictionary has it as ``returncode``.
         """
         wanted, parameters = int(options) & self._mask, self._parameters
         code = parameters.CheckPathAllConstraints(q0, q1, dq0, dq1, timeelapsed, interval, wanted)
@@ -176,16 +175,16 @@ class DynamicsCollisionConstraint(ApiObject):
 def JitterCurrentConfiguration(
     plannerparameters: PlannerParameters, maxiterations: int = 5000, jitter: float = 0.015, perturbation: float = 1e-5
 ) -> bool:
-    """Move to a configuration nearby that is without collisions.
+    """Move to a nearby configuration without collisions.
 
     Args:
-        plannerparameters: What moves.
-        maxiterations: How many configurations are tried.
-        jitter: How far each value may move [rad or m].
-        perturbation: How far each value can be off without a collision [rad or m].
+        plannerparameters: The planning problem.
+        maxiterations: Maximum number of configurations.
+        jitter: Maximum change of each value [rad or m].
+        perturbation: Clearance: perturbation of each value that must not collide [rad or m].
 
     Returns:
-        Whether there is one; if the present configuration is, nothing moves.
+        Whether one was found. If the present configuration is free, nothing moves.
     """
     checked_kind(plannerparameters, PlannerParameters, "plannerparameters")
     values = plannerparameters.resolved()
@@ -209,16 +208,16 @@ def JitterCurrentConfiguration(
 def JitterActiveDOF(
     robot: Robot, maxiterations: int = 5000, maxjitter: float = 0.015, perturbation: float = 1e-5
 ) -> int:
-    """Move the active DOFs a little, out of collision: OpenRAVE 0.9's name.
+    """Move the active DOFs slightly, out of collision; OpenRAVE 0.9's name.
 
     Args:
         robot: The robot.
-        maxiterations: How many configurations are tried.
-        maxjitter: How far each value may move [rad or m].
-        perturbation: How far each value can be off without a collision [rad or m].
+        maxiterations: Maximum number of configurations.
+        maxjitter: Maximum change of each value [rad or m].
+        perturbation: Clearance: perturbation of each value that must not collide [rad or m].
 
     Returns:
-        0: nothing had to move; 1: it moved; -1: there is no such configuration.
+        0 if the robot need not move, 1 if it moved, -1 if no configuration was found.
     """
     params = PlannerParameters()
     params.SetRobotActiveJoints(robot)
@@ -229,15 +228,15 @@ def JitterActiveDOF(
 
 
 def JitterTransform(body: KinBody, jitter: float, maxiterations: int = 1000) -> bool:
-    """Move a body a little, out of collision.
+    """Move a body slightly, out of collision.
 
     Args:
         body: The body.
-        jitter: How far it may move along each axis [m], and turn about each [rad].
-        maxiterations: How many poses are tried.
+        jitter: Maximum translation along each axis [m], and rotation about each [rad].
+        maxiterations: Maximum number of poses.
 
     Returns:
-        Whether there is such a pose; if the present one is, nothing moves.
+        Whether a free pose was found. If the present one is free, nothing moves.
     """
     checked_kind(body, KinBody, "JitterTransform: body")
     reach = float(checked_numbers(jitter, "JitterTransform: jitter")[0])

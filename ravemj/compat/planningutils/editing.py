@@ -1,4 +1,4 @@
-"""Changes of trajectories: layout, direction, parts, derivatives, several at once."""
+"""Operations on trajectories: conversion, reversal, segments, derivatives, merging."""
 
 import math
 import operator
@@ -19,7 +19,7 @@ _ODD_DERIVATIVES, _DERIVATIVES = ("velocities", "jerks"), ("velocities", "accele
 
 
 def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSpecification) -> None:
-    """Change the layout of a trajectory in place; what the trajectory lacks is taken from the bodies as they are.
+    """Change the layout of a trajectory in place; the bodies' present state supplies missing values.
 
     Args:
         trajectory: The trajectory.
@@ -32,10 +32,10 @@ def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSp
 
 @also_named(trajectory="traj")
 def ReverseTrajectory(traj: Trajectory) -> Trajectory:
-    """Return the trajectory backwards, in a new one.
+    """Return the reversed trajectory.
 
-    The times between waypoints are kept, and velocities change their sign. Derivatives that hold from one waypoint to
-    the ``next`` go over to the other end of their segment.
+    The times between waypoints are kept, and velocities change their sign. Derivatives with the interpolation ``next``
+    move to the other end of their segment.
 
     Example:
         >>> back = planningutils.ReverseTrajectory(traj)
@@ -44,7 +44,7 @@ def ReverseTrajectory(traj: Trajectory) -> Trajectory:
     rows = traj.GetAllWaypoints2D()[::-1]
     for group in spec.GetGroups():
         of_segments = group.kind.endswith(_DERIVATIVES) and group.interpolation == "next"
-        if group.kind == DELTATIME or of_segments:  # they belong to what ends at their waypoint
+        if group.kind == DELTATIME or of_segments:  # they belong to the segment that ends at their waypoint
             rows[:, group.columns] = np.roll(rows[:, group.columns], 1, axis=0)
             rows[:1, group.columns] = 0
         if group.kind.endswith(_ODD_DERIVATIVES):
@@ -53,10 +53,10 @@ def ReverseTrajectory(traj: Trajectory) -> Trajectory:
 
 
 def MergeTrajectories(trajectories: Sequence[Trajectory]) -> Trajectory | None:
-    """Return one trajectory that runs several at once, with a waypoint wherever one of them has one.
+    """Merge trajectories into one that runs them simultaneously, with all their waypoints. Return it.
 
     Args:
-        trajectories: Trajectories with times; each stays at its last waypoint when it is over.
+        trajectories: Trajectories with times; each stays at its last waypoint after its end.
 
     Returns:
         A new trajectory; None if there are none.
@@ -75,7 +75,6 @@ def MergeTrajectories(trajectories: Sequence[Trajectory]) -> Trajectory | None:
 
 
 def _deltas(traj: Trajectory) -> Floats:
-    """Return the times between waypoints [s]."""
     column = traj.GetConfigurationSpecification().GetGroupFromName(DELTATIME).columns
     return traj.GetAllWaypoints2D()[:, column].ravel()
 
@@ -88,15 +87,15 @@ def _made(like: Trajectory, spec: ConfigurationSpecification, rows: Floats) -> T
 
 
 def GetTrajectorySegment(trajectory: Trajectory, starttime: float, endtime: float) -> Trajectory:
-    """Return a part of a trajectory, in a new one; its time starts at 0.
+    """Return a segment of a trajectory as a new one; its time starts at 0.
 
     Args:
         trajectory: A trajectory with times.
-        starttime: When the part starts [s]; times outside the trajectory are cut.
-        endtime: When it ends [s]. Before the start: the part has no duration.
+        starttime: Start of the segment [s], clipped to the trajectory.
+        endtime: End of the segment [s]; the duration is 0 if it is before the start.
 
     Raises:
-        ArgumentError: the part starts at the end of the trajectory.
+        ArgumentError: the segment starts at the end of the trajectory.
 
     Example:
         >>> part = planningutils.GetTrajectorySegment(trajectory, 0.02, 0.05)
@@ -118,22 +117,22 @@ def GetTrajectorySegment(trajectory: Trajectory, starttime: float, endtime: floa
 
 
 def SegmentTrajectory(trajectory: Trajectory, starttime: float, endtime: float) -> None:
-    """Cut a trajectory down to a part of it; see ``GetTrajectorySegment``.
+    """Reduce a trajectory to a segment in place; see ``GetTrajectorySegment``.
 
     Args:
         trajectory: Changed in place.
-        starttime: When the part starts [s].
-        endtime: When it ends [s].
+        starttime: Start of the segment [s].
+        endtime: End of the segment [s].
     """
     trajectory.Swap(GetTrajectorySegment(trajectory, starttime, endtime))
 
 
 def ComputeTrajectoryDerivatives(trajectory: Trajectory, maxderiv: int) -> None:
-    """Add the time derivatives that a trajectory lacks.
+    """Add missing time derivatives to a trajectory.
 
     Args:
         trajectory: Changed in place; it has times.
-        maxderiv: 1: velocities; 2: accelerations, too; and so on.
+        maxderiv: Highest order: 1 for velocities, 2 for accelerations and so on.
 
     Example:
         >>> planningutils.ComputeTrajectoryDerivatives(trajectory, 2)
@@ -158,11 +157,11 @@ def ComputeTrajectoryDerivatives(trajectory: Trajectory, maxderiv: int) -> None:
 
 
 def _rates(values: Floats, interpolation: str, integral: Floats | None, elapsed: Floats) -> Floats:
-    """Return the derivatives of values at the ends of the ways to the waypoints.
+    """Return the derivatives of values at the ends of the segments to the waypoints.
 
     Args:
         values: Shape (m, n).
-        interpolation: How they change.
+        interpolation: Their interpolation.
         integral: Their integrals, which velocities of cubic curves depend on.
         elapsed: Times between waypoints [s], shape (m,).
     """

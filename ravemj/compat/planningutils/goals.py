@@ -1,4 +1,4 @@
-"""Configurations that reach goals of inverse kinematics, one after the other."""
+"""Samples of IK solutions of goals."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -16,17 +16,17 @@ from ravemj.rave.specification import IkParameterization
 
 
 class ManipulatorIKGoalSampler(ApiObject):
-    """Gives joint values of an arm that reach any of several goals.
+    """Sampler of an arm's joint values that reach any of several goals.
 
     Args:
         manip: The arm.
         parameterizations: The goals.
-        nummaxsamples: How many solutions of each goal are given at most.
-        nummaxtries: The number of attempts to move a goal aside.
-        jitter: The largest random displacement [m], along each axis, of a goal that has no solution; 0 for none.
-        searchfreeparameters: For OpenRAVE.
-        ikfilteroptions: Which solutions count, ``IkFilterOptions``.
-        freevalues: Values of the arm's free joints, as ``FindIKSolutions`` takes them; None or []: all are searched.
+        nummaxsamples: Maximum number of solutions of each goal.
+        nummaxtries: Number of attempts to displace a goal.
+        jitter: Maximum random displacement [m], along each axis, of a goal without solution; 0 for none.
+        searchfreeparameters: Not used.
+        ikfilteroptions: The tests of solutions, ``IkFilterOptions``.
+        freevalues: Values of the arm's free joints, as for ``FindIKSolutions``; None or [] searches all.
     """
 
     def __init__(
@@ -52,10 +52,10 @@ class ManipulatorIKGoalSampler(ApiObject):
         self._given: list[int] = []
 
     def Sample(self, ikreturn: bool = False, releasegil: bool = False) -> Any:  # noqa: ANN401 - two kinds of answer
-        """Return the next solution, in the order of ``manip.GetArmIndices()``; None when there is none left.
+        """Return the next solution, in the order of ``manip.GetArmIndices()``; None after the last one.
 
         Args:
-            ikreturn: Whether to return an ``IkReturn`` in its place.
+            ikreturn: Whether to return an ``IkReturn`` instead.
             releasegil: Not used.
         """
         del releasegil
@@ -69,7 +69,7 @@ class ManipulatorIKGoalSampler(ApiObject):
         return solution if ikreturn else solution.GetSolution()
 
     def _solutions(self, goal: IkParameterization) -> list[IkReturn]:
-        """Return the solutions of a goal; where there are none, those of the first place beside it that has some."""
+        """Return the solutions of a goal; if there are none, those of the first displaced goal with some."""
         found: Any = self._manip.FindIKSolutions(goal, *self._arguments, ikreturn=True)
         for _ in range(self._tries):
             if len(found):
@@ -80,11 +80,11 @@ class ManipulatorIKGoalSampler(ApiObject):
         return found
 
     def SampleAll(self, maxsamples: int = 0, maxchecksamples: int = 0, releasegil: bool = False) -> list[IkReturn]:
-        """Return the solutions that are left, as ``IkReturn``.
+        """Return the remaining solutions as ``IkReturn``.
 
         Args:
-            maxsamples: How many at most; 0: all.
-            maxchecksamples: For OpenRAVE.
+            maxsamples: Maximum number; 0 means all.
+            maxchecksamples: Not used.
             releasegil: Not used.
         """
         del maxchecksamples, releasegil
@@ -94,9 +94,9 @@ class ManipulatorIKGoalSampler(ApiObject):
         return found
 
     def GetIkParameterizationIndex(self, index: int) -> int:
-        """Return which goal a solution was for.
+        """Return the index of the goal of a solution.
 
         Args:
-            index: The number of the solution, in the order in which they were given.
+            index: The index of the solution, in the order of sampling.
         """
         return self._given[index]

@@ -1,4 +1,4 @@
-"""Further waypoints at the ends of trajectories with times."""
+"""Insertion of waypoints at the ends of timed trajectories."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -25,24 +25,24 @@ def InsertActiveDOFWaypointWithRetiming(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> int:
-    """Put a waypoint of the active DOFs before or behind a trajectory with times, and retime the way to it.
+    """Insert a waypoint of the active DOFs before or after a timed trajectory, and retime the segment to it.
 
     Args:
-        index: 0: before; ``trajectory.GetNumWaypoints()``: behind.
-        dofvalues: Its active values.
-        dofvelocities: Its velocities.
+        index: 0 inserts before, ``trajectory.GetNumWaypoints()`` after it.
+        dofvalues: The active values of the waypoint.
+        dofvelocities: The velocities at the waypoint.
         trajectory: Changed in place.
-        robot: Whose active DOFs.
+        robot: The robot of the active DOFs.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer; empty: the one for the trajectory's interpolation.
+        plannername: The retimer; empty for that of the trajectory's interpolation.
         plannerparameters: Its parameters as XML text.
 
     Returns:
-        Index behind the last waypoint that was put in.
+        Index after the last inserted waypoint.
 
     Raises:
-        openrave_exception: ``index`` is in the middle (``InvalidArguments``), or there are no such times.
+        openrave_exception: ``index`` is in the middle (``InvalidArguments``), or retiming fails.
     """
     checked_kind(robot, Robot, "InsertActiveDOFWaypointWithRetiming: robot")
     new = EndWaypoint(trajectory, robot.GetActiveConfigurationSpecification(), dofvalues, dofvelocities, index)
@@ -59,23 +59,23 @@ def ExtendActiveDOFWaypoint(
     maxaccelmult: float = 1.0,
     plannername: str = "",
 ) -> int:
-    """Let a trajectory with times start or end elsewhere: its first or last waypoint is replaced by another one.
+    """Replace the first or last waypoint of a timed trajectory by another one, and retime the segment to it.
 
     Args:
-        index: 0: the start; the number of waypoints, or one less: the end.
+        index: 0 replaces the start; the number of waypoints, or one less, the end.
         dofvalues: Active values of the new end.
         dofvelocities: Its velocities.
         trajectory: Changed in place.
-        robot: Whose active DOFs.
+        robot: The robot of the active DOFs.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer; empty: the one for the trajectory's interpolation.
+        plannername: The retimer; empty for that of the trajectory's interpolation.
 
     Returns:
-        Index behind the last waypoint that was put in.
+        Index after the last inserted waypoint.
 
     Raises:
-        openrave_exception: ``index`` is in the middle (``InvalidArguments``), or there are no such times.
+        openrave_exception: ``index`` is in the middle (``InvalidArguments``), or retiming fails.
     """
     checked_kind(robot, Robot, "ExtendActiveDOFWaypoint: robot")
     new = EndWaypoint(trajectory, robot.GetActiveConfigurationSpecification(), dofvalues, dofvelocities, index, 1)
@@ -85,17 +85,17 @@ def ExtendActiveDOFWaypoint(
 def ExtendWaypoint(
     index: int, dofvalues: ArrayLike, dofvelocities: ArrayLike, trajectory: Trajectory, planner: Planner
 ) -> int:
-    """Let a trajectory with times start or end elsewhere; see ``ExtendActiveDOFWaypoint``.
+    """Replace the first or last waypoint of a timed trajectory; see ``ExtendActiveDOFWaypoint``.
 
     Args:
-        index: 0: the start; the number of waypoints, or one less: the end.
+        index: 0 replaces the start; the number of waypoints, or one less, the end.
         dofvalues: Values of the new end.
         dofvelocities: Its velocities.
         trajectory: Changed in place.
-        planner: The retimer, whose name counts.
+        planner: The retimer, of which only the name is used.
 
     Returns:
-        Index behind the last waypoint that was put in.
+        Index after the last inserted waypoint.
     """
     name = checked_kind(planner, Planner, "ExtendWaypoint: planner").GetXMLId()
     new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities, index, 1)
@@ -111,22 +111,22 @@ def InsertWaypointWithSmoothing(
     maxaccelmult: float = 1.0,
     plannername: str = "",
 ) -> int:
-    """Put a waypoint before or behind a trajectory with times, and smooth the way to it.
+    """Insert a waypoint before or after a timed trajectory, and smooth the segment to it.
 
     Args:
-        index: 0: before; ``trajectory.GetNumWaypoints()``: behind.
-        dofvalues: Its values.
-        dofvelocities: Its velocities, which should be 0.
+        index: 0 inserts before, ``trajectory.GetNumWaypoints()`` after it.
+        dofvalues: The values of the waypoint.
+        dofvelocities: The velocities at the waypoint, which should be 0.
         trajectory: Changed in place.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The smoother; empty: ``ParabolicSmoother``.
+        plannername: The smoother; empty for ``ParabolicSmoother``.
 
     Returns:
-        Index behind the last waypoint that was put in.
+        Index after the last inserted waypoint.
 
     Raises:
-        openrave_exception: ``index`` is in the middle (``InvalidArguments``), or there is no such way.
+        openrave_exception: ``index`` is in the middle (``InvalidArguments``), or smoothing fails.
     """
     new = EndWaypoint(trajectory, _positions(trajectory), dofvalues, dofvelocities, index)
     way = new.line()

@@ -1,13 +1,14 @@
-"""Times for trajectories, and smoothing."""
+"""Retiming and smoothing of trajectories."""
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.planning import PlannerParameters, PlannerStatus
 from ravemj.rave.planning.names import alone, needed_planner, of_bodies, run_planner, scaled
 from ravemj.rave.robot import Robot
@@ -26,22 +27,22 @@ def RetimeActiveDOFTrajectory(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> PlannerStatus:
-    """Give a trajectory of the active DOFs times that respect the limits; collisions are not looked at.
+    """Time a trajectory of the active DOFs within their limits; collisions are ignored.
 
     Args:
-        trajectory: Changed in place; what is not active is dropped from it.
-        robot: Whose active DOFs and limits.
-        hastimestamps: Whether to keep the times that there are, if the limits allow.
+        trajectory: Changed in place; inactive DOFs are removed.
+        robot: The robot of the active DOFs and limits.
+        hastimestamps: Whether to keep existing times if the limits allow.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer, ``ParabolicTrajectoryRetimer`` for instance; empty: ``LinearTrajectoryRetimer``.
+        plannername: The retimer, ``ParabolicTrajectoryRetimer`` for instance; empty for ``LinearTrajectoryRetimer``.
         plannerparameters: Its parameters as XML text.
 
     Returns:
-        How it ended; the trajectory is as it was where it failed.
+        The status; after a failure the trajectory is unchanged.
 
     Raises:
-        openrave_exception: there is no such retimer (``Assert``), or a waypoint is outside the limits
+        openrave_exception: the retimer is unknown (``Assert``), or a waypoint is outside the limits
             (``InconsistentConstraints``).
 
     Example:
@@ -67,14 +68,14 @@ def RetimeTrajectory(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> PlannerStatus:
-    """Give a trajectory of any bodies times that respect their limits; see ``RetimeActiveDOFTrajectory``.
+    """Time a trajectory of any bodies within their limits; see ``RetimeActiveDOFTrajectory``.
 
     Args:
         trajectory: Changed in place.
-        hastimestamps: Whether to keep the times that there are, if the limits allow.
+        hastimestamps: Whether to keep existing times if the limits allow.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer; empty: ``LinearTrajectoryRetimer``.
+        plannername: The retimer; empty for ``LinearTrajectoryRetimer``.
         plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "RetimeTrajectory: trajectory")
@@ -90,20 +91,20 @@ def RetimeAffineTrajectory(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> PlannerStatus:
-    """Give a trajectory of poses times that respect limits.
+    """Time a trajectory of poses within limits.
 
-    The way of a translation is straight; it takes its length over the least limit of its values.
+    Translations are straight; the duration is the length over the smallest limit of the values.
 
     Args:
         trajectory: Changed in place.
         maxvelocities: A velocity limit for each value.
         maxaccelerations: An acceleration limit for each value.
-        hastimestamps: Whether to keep the times that there are, if the limits allow.
-        plannername: The retimer; empty: ``LinearTrajectoryRetimer``, the only one for poses.
+        hastimestamps: Whether to keep existing times if the limits allow.
+        plannername: The retimer; empty for ``LinearTrajectoryRetimer``, the only one for poses.
         plannerparameters: Its parameters as XML text.
 
     Raises:
-        openrave_exception: there are more or fewer limits than values (``InvalidArguments``).
+        openrave_exception: the number of limits is wrong (``InvalidArguments``).
     """
     checked_kind(trajectory, Trajectory, "RetimeAffineTrajectory: trajectory")
     params = _affine(trajectory, maxvelocities, maxaccelerations, stamped(hastimestamps, plannerparameters))
@@ -118,18 +119,18 @@ def SmoothActiveDOFTrajectory(
     plannername: str = "",
     plannerparameters: str = "",
 ) -> PlannerStatus:
-    """Shorten and time a trajectory of the active DOFs; the result is without collisions.
+    """Shorten and time a trajectory of the active DOFs; the result is free of collisions.
 
     Args:
-        trajectory: Changed in place; its ends stay.
-        robot: Whose active DOFs and limits.
+        trajectory: Changed in place; its ends are kept.
+        robot: The robot of the active DOFs and limits.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The smoother; empty: ``ParabolicSmoother``.
+        plannername: The smoother; empty for ``ParabolicSmoother``.
         plannerparameters: Its parameters as XML text.
 
     Returns:
-        How it ended; the trajectory is as it was where it failed.
+        The status; after a failure the trajectory is unchanged.
     """
     checked_kind(trajectory, Trajectory, "SmoothActiveDOFTrajectory: trajectory")
     return run_planner(
@@ -150,7 +151,7 @@ def SmoothTrajectory(
         trajectory: Changed in place.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The smoother; empty: ``ParabolicSmoother``.
+        plannername: The smoother; empty for ``ParabolicSmoother``.
         plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "SmoothTrajectory: trajectory")
@@ -172,7 +173,7 @@ def SmoothAffineTrajectory(
         trajectory: Changed in place.
         maxvelocities: A velocity limit for each value.
         maxaccelerations: An acceleration limit for each value.
-        plannername: The smoother; empty: ``LinearSmoother``, the only one for poses.
+        plannername: The smoother; empty for ``LinearSmoother``, the only one for poses.
         plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "SmoothAffineTrajectory: trajectory")
@@ -181,21 +182,24 @@ def SmoothAffineTrajectory(
 
 
 class ActiveDOFTrajectoryRetimer(ApiObject):
-    """A retimer for several trajectories of the DOFs that are active when it is made.
+    """Retimer of trajectories of the DOFs that are active at its construction.
 
     Args:
         robot: The robot; its limits are those of each call.
-        plannername: The retimer.
+        plannername: The retimer. If it is empty, ``PlanPath`` raises an error, as in OpenRAVE.
         plannerparameters: Its parameters as XML text.
 
     Raises:
-        openrave_exception: there is no such retimer (``Assert``).
+        openrave_exception: the retimer is unknown (``Assert``).
     """
 
-    def __init__(self, robot: Robot, plannername: str, plannerparameters: str = "") -> None:
+    _default: ClassVar[str] = ""
+
+    def __init__(self, robot: Robot, plannername: str = "", plannerparameters: str = "") -> None:
         self._robot = checked_kind(robot, Robot, "robot")
         self._spec = robot.GetActiveConfigurationSpecification()
-        self._planner = needed_planner(robot.GetEnv(), plannername)
+        name = plannername or self._default
+        self._planner = needed_planner(robot.GetEnv(), name) if name else None
         self._extra = plannerparameters
 
     def PlanPath(self, traj: Trajectory, hastimestamps: bool = False, releasegil: bool = True) -> PlannerStatus:
@@ -203,13 +207,16 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
 
         Args:
             traj: The trajectory.
-            hastimestamps: Whether to keep the times that there are.
+            hastimestamps: Whether to keep existing times.
             releasegil: Not used.
         """
         del releasegil
         return self._run(traj, stamped(hastimestamps, self._extra))
 
     def _run(self, traj: Trajectory, extra: str) -> PlannerStatus:
+        if self._planner is None:
+            message = "ActiveDOFTrajectoryRetimer: plannername is empty; name one, such as ParabolicTrajectoryRetimer"
+            raise RavemjError(message, ErrorCode.Assert)
         params = PlannerParameters()
         params.SetConfigurationSpecification(self._robot.GetEnv(), self._spec)
         params.SetExtraParameters(alone(extra))
@@ -218,7 +225,9 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
 
 
 class ActiveDOFTrajectorySmoother(ActiveDOFTrajectoryRetimer):
-    """A smoother for several trajectories; see ``ActiveDOFTrajectoryRetimer``."""
+    """Smoother of several trajectories; see ``ActiveDOFTrajectoryRetimer``."""
+
+    _default = _SMOOTHER
 
     def PlanPath(  # pyright: ignore[reportIncompatibleMethodOverride] - OpenRAVE's arguments
         self, traj: Trajectory, releasegil: bool = True
@@ -234,10 +243,10 @@ class ActiveDOFTrajectorySmoother(ActiveDOFTrajectoryRetimer):
 
 
 class AffineTrajectoryRetimer(ApiObject):
-    """A retimer for several trajectories of poses.
+    """Retimer of several trajectories of poses.
 
     Args:
-        plannername: The retimer; empty: ``parabolictrajectoryretimer``, which fails, as in OpenRAVE.
+        plannername: The retimer; empty for ``parabolictrajectoryretimer``, which fails, as in OpenRAVE.
         plannerparameters: Its parameters as XML text.
     """
 
@@ -264,8 +273,8 @@ class AffineTrajectoryRetimer(ApiObject):
             traj: The trajectory.
             maxvelocities: A velocity limit for each value.
             maxaccelerations: An acceleration limit for each value.
-            maxjerks: A jerk limit for each value; it may be left out before ``hastimestamps``.
-            hastimestamps: Whether to keep the times that there are.
+            maxjerks: A jerk limit for each value; it may be omitted before ``hastimestamps``.
+            hastimestamps: Whether to keep existing times.
             releasegil: Not used.
         """
         del releasegil
@@ -293,5 +302,5 @@ def _affine(traj: Trajectory, maxvelocities: ArrayLike, maxaccelerations: ArrayL
 
 
 def stamped(hastimestamps: bool, extra: str) -> str:
-    """Return parameters that say whether times are kept."""
+    """Return parameters with the option to keep times."""
     return f"<hastimestamps>1</hastimestamps>{extra}" if hastimestamps else extra

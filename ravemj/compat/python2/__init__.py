@@ -1,8 +1,8 @@
-"""Scripts written for Python 2, translated while they are read, with the names that they knew.
+"""Execution of Python 2 scripts: translation at import, and the names of Python 2.
 
-fissix changes the syntax (``translation``); what Python 3 reads, but takes for something else, is changed after it
-(``statements``, ``division``). Such scripts, and no other code, have the names of Python 2 and NumPy 1: built-in ones
-(``builtin``, ``files``), those of objects (``methods``), and those of modules (``modules``, ``library``, ``numpy1``).
+fissix converts the syntax (``translation``); then constructs with another meaning in Python 3 are converted
+(``statements``, ``division``). Only such scripts see the names of Python 2 and NumPy 1: built-in ones (``builtin``,
+``files``), methods (``methods``), and those of modules (``modules``, ``library``, ``numpy1``).
 """
 
 from pathlib import Path
@@ -12,4 +12,4 @@ from ravemj.compat.python2.finder import execute, install_finder, is_python2
 __all__ = ["FILES", "execute", "install_finder", "is_python2"]
 
 FILES = {str(path) for path in Path(__file__).parent.glob("*.py")}
-"""Files whose frames tracebacks do not show."""
+"""Files whose frames are hidden in tracebacks."""

@@ -1,6 +1,6 @@
-"""The built-in names of Python 2 that Python 3 lacks or gives another meaning."""
+"""Built-in names of Python 2 that Python 3 lacks or has changed."""
 
-# What old scripts pass has no types.
+# Values of old scripts have no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownParameterType=false
 
@@ -19,7 +19,7 @@ from typing import Any, Literal
 from ravemj.compat.python2 import methods
 from ravemj.compat.python2.division import DIVIDE, DIVISOR, Divisor, divide
 from ravemj.compat.python2.files import File
-from ravemj.compat.python2.modules import View, import_
+from ravemj.compat.python2.modules import ModuleView, import_
 from ravemj.compat.python2.numpy1 import item
 from ravemj.compat.python2.statements import CODE, ITEM, MESSAGE, METHOD
 from ravemj.compat.python2.translation import translate
@@ -41,7 +41,7 @@ def _filter(function: Callable[[Any], Any] | None, sequence: Any) -> Any:
 
 
 def _map(function: Callable[..., Any] | None, *sequences: Iterable[Any]) -> list[Any]:
-    """Return the list that ``map`` returned; sequences that are too short are filled up with None."""
+    """Return a list like Python 2's ``map``, which pads shorter sequences with None."""
     rows = list(sequences[0]) if len(sequences) == 1 else list(itertools.zip_longest(*sequences))
     if function is None:
         return rows
@@ -65,7 +65,7 @@ def _round(number: Any, ndigits: int = 0) -> float:
 
 
 def _message(error: Any) -> Any:
-    """Return ``error.message``, which exceptions had in Python 2."""
+    """Return ``error.message`` of Python 2's exceptions."""
     if hasattr(error, "message") or not isinstance(error, BaseException):
         return error.message
     return error.args[0] if len(error.args) == 1 else ""
@@ -76,14 +76,14 @@ def _open(name: str, mode: str = "r", buffering: int = -1, **options: Any) -> An
 
 
 def _reload(module: ModuleType) -> ModuleType:
-    return module if isinstance(module, View) else importlib.reload(module)
+    return module if isinstance(module, ModuleView) else importlib.reload(module)
 
 
 # Code
 
 
 def _code(source: Any, mode: Literal["exec", "eval"], path: str = "<string>") -> Any:
-    """Compile what ``exec`` and ``eval`` are given: text, an open file, or code already."""
+    """Compile the argument of ``exec`` or ``eval``: text, an open file, or code."""
     source = source.read() if isinstance(source, File) else source
     source = importlib.util.decode_source(source) if isinstance(source, bytes) else source
     if not isinstance(source, str):
@@ -92,7 +92,7 @@ def _code(source: Any, mode: Literal["exec", "eval"], path: str = "<string>") ->
         source = source.strip()
         if "/" not in source:
             try:
-                return builtins.compile(source, path, mode, dont_inherit=True)  # much faster, and mostly enough
+                return builtins.compile(source, path, mode, dont_inherit=True)  # much faster, and mostly sufficient
             except SyntaxError:
                 pass
     return translate(source, path, mode)
@@ -105,7 +105,7 @@ def _compile(source: Any, filename: str, mode: Any, *args: Any, **options: Any) 
 
 
 def _input(prompt: object = "") -> Any:
-    """Evaluate what users type, among the names of the caller."""
+    """Evaluate user input with the names of the caller."""
     frame = inspect.currentframe()
     assert frame is not None
     caller = frame.f_back
@@ -148,7 +148,7 @@ _OLD = {
     "__openravepy_build_doc__": False,
 }
 BUILTIN = ModuleType("__builtin__")
-"""What scripts take for ``__builtin__``."""
+"""Module ``__builtin__`` of scripts."""
 vars(BUILTIN).update({**vars(builtins), **_OLD, **_FOR_TRANSLATIONS})
 NAMES: dict[str, object] = {"__builtins__": BUILTIN}
-"""What the namespace of a translated script holds at its start."""
+"""Initial namespace of a translated script."""

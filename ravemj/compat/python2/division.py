@@ -1,6 +1,6 @@
 """Division of Python 2, which rounds down for integers."""
 
-# What old scripts divide has no types.
+# Operands of old scripts have no types.
 # pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false
 # pyright: reportUnknownVariableType=false, reportUnknownParameterType=false
 
@@ -35,7 +35,7 @@ class Division(ast.NodeTransformer):
 
 
 def divide(left: Any, right: Any) -> Any:
-    """Divide as Python 2 does."""
+    """Divide like Python 2."""
     if hasattr(type(left), "__div__"):
         return left.__div__(right)
     if not hasattr(type(left), "__truediv__") and hasattr(type(right), "__rdiv__"):
@@ -44,7 +44,7 @@ def divide(left: Any, right: Any) -> Any:
 
 
 class Divisor:
-    """The right side of ``a /= b``: no left side knows the type, so Python calls the methods of this class."""
+    """Right side of ``a /= b``: the left side is of unknown type, so Python calls the methods of this class."""
 
     def __init__(self, value: Any) -> None:
         self._value = value
@@ -58,7 +58,7 @@ class Divisor:
         return operator.ifloordiv(left, self._value) if whole else operator.itruediv(left, self._value)
 
     def __array_ufunc__(self, ufunc: Any, method: str, left: Any, right: object, **options: Any) -> Any:
-        """Divide an array, into itself; numpy asks for this."""
+        """Divide an array in place; numpy calls this."""
         del method, right
         divide = np.floor_divide if _is_whole(left) and _is_whole(self._value) else ufunc
         return divide(left, self._value, **options)

@@ -1,6 +1,6 @@
-"""Files, pickles and processes of Python 2, which knew no difference between text and bytes."""
+"""Files, pickles and processes of Python 2, which did not distinguish text and bytes."""
 
-# Pickles hold anything, and streams take it.
+# Pickles and streams may contain any type.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownLambdaType=false
 
@@ -12,24 +12,24 @@ import subprocess
 from collections.abc import Callable, Iterable
 from typing import Any, Self
 
-_ENCODING, _ERRORS = "utf-8", "surrogateescape"  # bytes that are no UTF-8 come out of text as they went in
+_ENCODING, _ERRORS = "utf-8", "surrogateescape"  # invalid UTF-8 survives a round trip through text
 
 
 def as_bytes(text: Any) -> Any:
-    """Return the bytes of a text; return anything else unchanged."""
+    """Return text as bytes; return anything else unchanged."""
     return text.encode(_ENCODING, _ERRORS) if isinstance(text, str) else text
 
 
 def as_text(data: bytes) -> str:
-    """Return the text of bytes."""
+    """Return bytes as text."""
     return data.decode(_ENCODING, _ERRORS)
 
 
 class File:
-    r"""What ``open`` and ``file`` give: it takes text and bytes in every mode, since both are ``str`` in Python 2.
+    r"""Result of ``open`` and ``file``: accepts text and bytes in every mode, since both are ``str`` in Python 2.
 
-    Lines are text in every mode, as ``csv`` wants them. ``read`` gives text too, but bytes from a binary file: those
-    who ask so, want to unpack them.
+    Lines are text in every mode, as ``csv`` requires. ``read`` returns text, too, but bytes from a binary file, since
+    scripts unpack them.
 
     Args:
         name: Path.
@@ -47,7 +47,7 @@ class File:
         self._is_universal = "U" in mode or (os.linesep != "\n" and not self._is_binary)
 
     def __getattr__(self, name: str) -> Any:
-        """Return what the file of Python 3 has, for all that does not concern text."""
+        """Forward other attributes to the file of Python 3."""
         return getattr(self.buffer, name)
 
     def _text(self, data: bytes) -> str:
@@ -55,7 +55,7 @@ class File:
         return text.replace("\r\n", "\n") if self._is_universal else text
 
     def read(self, size: int = -1) -> str | bytes:
-        """Return the rest, or at most a number of bytes of it."""
+        """Return the rest, or at most ``size`` bytes of it."""
         data = self.buffer.read(size)
         return data if self._is_binary else self._text(data)
 
@@ -64,7 +64,7 @@ class File:
         return self._text(self.buffer.readline(size))
 
     def readlines(self, size: int = -1) -> list[str]:
-        """Return the remaining lines, or the first of them with at least a number of bytes."""
+        """Return the remaining lines, or the first ones with at least ``size`` bytes."""
         return [self._text(line) for line in self.buffer.readlines(size)]
 
     def __iter__(self) -> Self:
@@ -97,39 +97,39 @@ class File:
 
 
 class Unpickler(pickle.Unpickler):
-    """Unpickles from files of text and of bytes, and what Python 2 pickled."""
+    """Unpickler for files of text and of bytes, and for pickles of Python 2."""
 
     def __init__(self, file: Any) -> None:
         super().__init__(getattr(file, "buffer", file), encoding="latin-1")  # as numpy's arrays ask for
 
 
 def load(file: Any) -> Any:
-    """Load like ``pickle.load``, also what Python 2 wrote."""
+    """Load like ``pickle.load``, also pickles of Python 2."""
     return Unpickler(file).load()
 
 
 def loads(data: str | bytes) -> Any:
-    """Load like ``pickle.loads``, also what Python 2 wrote."""
+    """Load like ``pickle.loads``, also pickles of Python 2."""
     return pickle.loads(as_bytes(data), encoding="latin-1")
 
 
 def new_hash(name: str, string: object = b"") -> Any:
-    """Do what ``hashlib.new`` does."""
+    """Replacement of ``hashlib.new``."""
     return hashlib.new(name, as_bytes(string))
 
 
 def getwriter(encoding: str) -> Callable[..., Any]:
-    """Do what ``codecs.getwriter`` does, which ``sys.stdout`` needs no more."""
+    """Replacement of ``codecs.getwriter``, which ``sys.stdout`` no longer needs."""
     return lambda stream, *args: stream if hasattr(stream, "encoding") else codecs.getwriter(encoding)(stream, *args)
 
 
 class Popen(subprocess.Popen[str]):
-    """A process whose pipes take and give text."""
+    """Process with text pipes."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **{"encoding": _ENCODING, "errors": _ERRORS, **options})
 
 
 def check_output(*args: Any, **options: Any) -> str:
-    """Do what ``subprocess.check_output`` does."""
+    """Replacement of ``subprocess.check_output``."""
     return subprocess.check_output(*args, **{"encoding": _ENCODING, "errors": _ERRORS, **options})

@@ -1,4 +1,4 @@
-"""Scripts and modules written for Python 2, found where scripts import them, translated and run."""
+"""Import, translation and execution of Python 2 scripts and modules."""
 
 import functools
 import importlib.util
@@ -23,15 +23,15 @@ _ENVIRONMENT = [
         os.path.dirname(os.path.dirname(__file__)),
     )
 ]
-"""Folders that are never translated: those of installed packages, and that of ravemj."""
+"""Folders that are never translated: those of installed packages, and ravemj's."""
 
 
 def execute(source: bytes, path: str, names: dict[str, Any]) -> None:
     """Run a script or module.
 
     Args:
-        source: Its bytes, in Python 2, or in what only Python 3 understands.
-        path: Where it is, for tracebacks.
+        source: The source in Python 2 or 3.
+        path: Its path, for tracebacks.
         names: Its namespace.
 
     Raises:
@@ -49,7 +49,7 @@ def execute(source: bytes, path: str, names: dict[str, Any]) -> None:
 
 
 def is_python2(path: str) -> bool:
-    """Return whether a file is Python 2, and not Python 3."""
+    """Return whether a file is Python 2 and not Python 3."""
     try:
         with open(path, "rb") as file:
             source = file.read()
@@ -62,7 +62,7 @@ def is_python2(path: str) -> bool:
 
 
 def _compile(source: bytes, path: str) -> CodeType | None:
-    """Compile a file for Python 3, where it is."""
+    """Compile a file as Python 3; None if that fails."""
     try:
         return compile(source, path, "exec", dont_inherit=True)
     except (SyntaxError, ValueError):
@@ -70,7 +70,7 @@ def _compile(source: bytes, path: str) -> CodeType | None:
 
 
 def load_source(name: str, path: str) -> ModuleType:
-    """Import a file under a name, as ``imp.load_source`` did."""
+    """Import a file under a name, like ``imp.load_source``."""
     spec = importlib.util.spec_from_file_location(name, path, loader=_Loader(name, path))
     assert spec is not None
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
@@ -79,13 +79,13 @@ def load_source(name: str, path: str) -> ModuleType:
 
 
 def install_finder(folder: str) -> None:
-    """Translate from now on modules in a folder and in those that are added to ``sys.path``, and all that need it."""
+    """Translate from now on Python 2 modules in a folder and in folders added to ``sys.path``."""
     here = next(place for place, finder in enumerate(sys.meta_path) if finder is PathFinder)
-    sys.meta_path.insert(here, _Finder(folder))  # pyright: ignore[reportArgumentType] - has what finders need
+    sys.meta_path.insert(here, _SourceFinder(folder))  # pyright: ignore[reportArgumentType] - has what finders need
 
 
-class _Finder:
-    """Finds the modules that Python's own finder finds, and translates those of Python 2."""
+class _SourceFinder:
+    """Finder that uses Python's own finder, and translates Python 2 modules."""
 
     def __init__(self, folder: str) -> None:
         self._folder = os.path.realpath(folder)
@@ -98,7 +98,7 @@ class _Finder:
         return spec
 
     def _is_old(self, path: str) -> bool:
-        """Return whether a module is Python 2: with the script, or since Python 3 does not read it, or its package."""
+        """Return whether a module is Python 2: it belongs to the script, or is invalid in Python 3."""
         path = os.path.realpath(path)
         if any(_is_in(path, folder) for folder in _ENVIRONMENT):
             return False
@@ -119,7 +119,7 @@ def _compiles(path: Path) -> bool:
 
 
 class _Loader(SourceFileLoader):
-    """Translates a module; keeps no byte code, which Python 3 would take for its own."""
+    """Loader that translates a module; it writes no byte code, which Python 3 would use."""
 
     def exec_module(self, module: ModuleType) -> None:
         execute(self.get_data(self.path), self.path, vars(module))

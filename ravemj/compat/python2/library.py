@@ -1,6 +1,6 @@
 """Names of Python 2's standard library that Python 3 has renamed or removed."""
 
-# What old scripts pass has no types.
+# Values of old scripts have no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false
 
 import builtins
@@ -34,16 +34,16 @@ ttk=tkinter.ttk urllib2=urllib.request urlparse=urllib.parse UserDict=collection
 UserString=collections xml.etree.cElementTree=xml.etree.ElementTree xmlrpclib=xmlrpc.client
 """
 RENAMED: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
-"""Modules that Python 3 has renamed."""
+"""Modules renamed in Python 3."""
 
 
 def _in(module: str, names: str) -> dict[str, object]:
-    """Return where names are now: in a module, by a name of their own after ``=``."""
+    """Return the new locations of names: in a module, under a new name after ``=``."""
     return {name: f"{module}.{now or name}" for name, now in re.findall(r"([^\s=]+)=?(\S*)", names)}
 
 
 class ArgSpec(NamedTuple):
-    """What ``inspect.getargspec`` returns."""
+    """Result of ``inspect.getargspec``."""
 
     args: list[str]
     varargs: str | None
@@ -60,7 +60,7 @@ def _floor(x: float) -> float:
 
 
 def _of_items(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that accepts arrays of one element as numbers."""
+    """Wrap a function of numbers so that it also accepts arrays of one element."""
     return lambda *args: function(*map(item, args))
 
 
@@ -88,7 +88,7 @@ def _join(words: list[str], sep: str = " ") -> str:
 
 
 def _nothing(*_: object) -> None:
-    """Set what Python 3 does not have."""
+    """Ignore a setting that Python 3 does not have."""
 
 
 _PATH: dict[str, object] = {"walk": _walk}
@@ -152,7 +152,7 @@ NAMES: dict[str, dict[str, object]] = {
     "xml": {},
     "xml.etree": {"cElementTree": "xml.etree.ElementTree"},
 }
-"""For modules that are there, names that they have no more; for those that are not, all their names.
+"""Missing names of existing modules, and all names of missing modules; a string is the new location of a value.
 
 A text says where the value is now.
 """

@@ -1,6 +1,6 @@
-"""Methods of Python 2 and NumPy 1 that are gone, or whose arguments or results have changed."""
+"""Methods of Python 2 and NumPy 1 that were removed or changed."""
 
-# What old scripts call has no types.
+# Values of old scripts have no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownLambdaType=false, reportGeneralTypeIssues=false
 
@@ -16,7 +16,7 @@ from ravemj.trajectories.serialization import AS_TEXT
 
 
 def sort(iterable: Iterable[Any], cmp: Any = None, key: Any = None, reverse: bool = False) -> list[Any]:
-    """Return a sorted list, as ``sorted`` of Python 2, which takes a comparison."""
+    """Return a sorted list like Python 2's ``sorted``, which accepts a comparison function."""
     order = cmp and functools.cmp_to_key(cmp)
     both = (lambda item: order(key(item))) if order and key else order or key
     return sorted(iterable, key=both, reverse=reverse)
@@ -44,19 +44,19 @@ _GONE: dict[str, Callable[..., Any]] = {
     "viewkeys": lambda values: values.keys(),
     "viewvalues": lambda values: values.values(),
 }
-"""Replacements of methods, for objects that do not have them."""
+"""Replacements of methods for objects that do not have them."""
 _LISTED = {"items", "keys", "values"}
 NAMES = {*_GONE, *_LISTED, "encode", "serialize", "sort"}
-"""Names of the methods that translated scripts call by ``call``."""
+"""Names of methods that translated scripts call through ``call``."""
 
 
 def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:
-    """Return what ``owner.name(...)`` returned in Python 2."""
+    """Return the result of ``owner.name(...)`` in Python 2."""
     if name == "sort" and isinstance(owner, list):
         return _sort(owner, *args, **options)
     if name == "encode" and isinstance(owner, str):
         return as_text(owner.encode(*args, **options))
-    if name == "serialize" and isinstance(owner, Trajectory):  # XML, which scripts put into the texts of parameters
+    if name == "serialize" and isinstance(owner, Trajectory):  # XML that scripts insert into parameter texts
         return owner.serialize(AS_TEXT).decode()
     if name in _GONE and not hasattr(owner, name):
         return _GONE[name](*args) if isinstance(owner, type) else _GONE[name](owner, *args)

@@ -1,6 +1,6 @@
-"""Imports as Python 2 has them, of modules with the names that they had.
+"""Imports of Python 2, with the old names of modules.
 
-Scripts see modules through views; everything else in the process sees these modules as they are.
+Scripts use views of modules; other code uses the modules themselves.
 """
 
 import __future__
@@ -20,12 +20,12 @@ from ravemj.compat.python2 import library, numpy1
 _NAMES = {**library.NAMES, "numpy": numpy1.NAMES, "ravemj.compat.openravepy": {}}  # the last one has numpy in it
 
 
-class View(ModuleType):
-    """A module with the names that it had in Python 2; modules in it are views, too.
+class ModuleView(ModuleType):
+    """View of a module with its Python 2 names; modules in it are views, too.
 
     Args:
-        module: The module; what is set here is set there.
-        names: Those names; a text says where the value is now.
+        module: The module; attributes set on the view are set on it.
+        names: The Python 2 names; a string is the new location of a value.
     """
 
     def __init__(self, module: ModuleType, names: Mapping[str, object]) -> None:
@@ -51,9 +51,9 @@ class View(ModuleType):
 
 @functools.cache
 def view(module: ModuleType) -> ModuleType:
-    """Return a module, or its view if it lacks names of Python 2."""
+    """Return a module, or a view if it lacks Python 2 names."""
     names = _NAMES.get(module.__name__)
-    return module if names is None else View(module, names)
+    return module if names is None else ModuleView(module, names)
 
 
 def import_(
@@ -63,7 +63,7 @@ def import_(
     fromlist: Sequence[str] | None = None,
     level: int = -1,
 ) -> ModuleType:
-    """Import a module for a script: from its own package first, and by its name in Python 2."""
+    """Import a module for a script: first from its own package, then by its Python 2 name."""
     importer = globals or {}
     if level > 0 or _is_beside(name, importer):
         return view(builtins.__import__(name, globals, locals, fromlist or (), max(level, 1)))
@@ -75,7 +75,7 @@ def import_(
 
 
 def _is_beside(name: str, importer: Mapping[str, Any]) -> bool:
-    """Return whether an import without dots finds a module in the importer's own package."""
+    """Return whether a non-relative import finds a module in the importer's own package."""
     package = importer.get("__package__")
     if not package or importer.get("absolute_import") is __future__.absolute_import:
         return False
@@ -85,12 +85,12 @@ def _is_beside(name: str, importer: Mapping[str, Any]) -> bool:
 def _exists(name: str) -> bool:
     try:
         return name in sys.modules or importlib.util.find_spec(name) is not None
-    except ModuleNotFoundError:  # a package that it would be in
+    except ModuleNotFoundError:  # its package
         return False
 
 
 def _older(name: str, is_last: bool) -> ModuleType:
-    """Return what ``import name`` binds: the module that is last in its dotted name, or the first one."""
+    """Return the module bound by ``import name``: the last or first of its dotted name."""
     module = importlib.import_module(library.RENAMED[name]) if name in library.RENAMED else _empty(name)
     first, _, rest = name.partition(".")
     return view(module if is_last or not rest else importlib.import_module(first))

@@ -1,6 +1,6 @@
-"""What NumPy 1 had and NumPy 2 has not: names, types of results, and numbers out of arrays."""
+"""NumPy 1's names, result types and conversions that NumPy 2 has removed."""
 
-# What old scripts pass has no types.
+# Values of old scripts have no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownParameterType=false
 
@@ -33,13 +33,13 @@ bitwise_right_shift bool concat core cumulative_prod cumulative_sum divmod dtype
 matrix_transpose matvec max min permute_dims polynomial pow round strings test testing trapezoid typing ulong
 unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """
-"""Names that ``from numpy import *`` gives only in later versions; they would hide those of Python and ``math``."""
+"""Names that only later versions export by ``from numpy import *``; they would hide those of Python and ``math``."""
 
 _WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
 
 
 def item(a: Any) -> Any:
-    """Return the element of an array of one element; return anything else unchanged."""
+    """Return the element of a one-element array; return anything else unchanged."""
     return a.item() if isinstance(a, np.ndarray) and a.size == 1 else a
 
 
@@ -48,7 +48,7 @@ def _alen(a: Any) -> int:
 
 
 def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **options: Any) -> Any:
-    """Return an array as NumPy 1 did: ``copy=False`` may copy, and lists of unlike lengths become objects."""
+    """Return an array as in NumPy 1: ``copy=False`` may copy, and ragged lists become object arrays."""
     may_copy: Any = True if copy else _WHERE_NEEDED
     try:
         return np.array(object, dtype, *args, copy=may_copy, **options)
@@ -76,7 +76,7 @@ def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -
 
 
 def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function whose results are floats for integers, too."""
+    """Wrap a function to return floats for integers, too."""
 
     @functools.wraps(function)
     def call(x: Any, *args: Any, **options: Any) -> Any:
@@ -103,7 +103,7 @@ def _sum(a: Any, *args: Any, **options: Any) -> Any:
 
 
 def _names() -> dict[str, object]:
-    """Return what differs from numpy's own names, with the names of the star."""
+    """Return the names that differ from numpy's, with those exported by the star."""
     renamed: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
     names: dict[str, object] = {old: getattr(np, new) for old, new in renamed.items() if hasattr(np, new)}
     names |= {name: getattr(module, name) for module, text in _MOVED.items() for name in text.split()}
@@ -117,4 +117,4 @@ def _names() -> dict[str, object]:
 
 
 NAMES = _names()
-"""Names that ``numpy`` has for scripts, in place of its own."""
+"""Names that replace numpy's for scripts."""

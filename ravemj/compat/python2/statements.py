@@ -1,30 +1,30 @@
-"""Statements and expressions that Python 3 reads, but gives another meaning."""
+"""Conversion of constructs that are valid in Python 3 with another meaning."""
 
 import ast
 
 from ravemj.compat.python2 import methods
 
 METHOD, MESSAGE, CODE, ITEM = "__method__", "__message__", "__code__", "__item__"
-"""Names of what calls methods, reads ``error.message``, compiles for ``exec`` and ``eval``, reads numbers."""
+"""Names of helpers that call methods, read ``error.message``, compile for ``exec`` and ``eval``, and read numbers."""
 _ERROR = "__error__"
 _EXC_INFO = ["exc_type", "exc_value", "exc_traceback"]
 _ORDER = {"__lt__": "<", "__le__": "<=", "__gt__": ">", "__ge__": ">=", "__eq__": "==", "__ne__": "!="}
 
 
 class Statements(ast.NodeTransformer):
-    """Gives a tree the meaning that it had in Python 2; division is left to ``Division``.
+    """Converts a tree to its meaning in Python 2, except for division, see ``Division``.
 
     Args:
-        targets: What was written for parameters and exceptions, where a name stands in its place.
+        targets: The original tuple targets of parameters and exceptions, by their replacement names.
     """
 
     def __init__(self, targets: dict[str, str]) -> None:
         self._targets = targets
-        self._scopes: list[ast.AST] = []  # those that are visited, the innermost last
-        self._globals: list[str] = []  # what the innermost one has declared
+        self._scopes: list[ast.AST] = []  # visited scopes, the innermost last
+        self._globals: list[str] = []  # declarations of the innermost scope
 
     def _visit_scope(self, node: ast.Module | ast.FunctionDef | ast.ClassDef) -> None:
-        """Visit what is inside; declare what is global before it is used, as Python 3 asks."""
+        """Visit a scope; move global declarations before the first use, as Python 3 requires."""
         outer, self._globals = self._globals, []
         self._scopes.append(node)
         self.generic_visit(node)
@@ -34,24 +34,24 @@ class Statements(ast.NodeTransformer):
         self._globals = outer
 
     def visit_Module(self, node: ast.Module) -> ast.AST:
-        """Visit it as a scope."""
+        """Visit the module as a scope."""
         self._visit_scope(node)
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
-        """Unpack tuples among the parameters first."""
+        """Unpack tuple parameters first."""
         start = _start(node.body)
         node.body[start:start] = [_at(node, f"{self._targets[name]} = {name}") for name in self._names(node.args)]
         self._visit_scope(node)
         return node
 
     def visit_Global(self, node: ast.Global) -> ast.AST:
-        """Take note of it."""
+        """Record the declaration."""
         self._globals += node.names
         return ast.copy_location(ast.Pass(), node)
 
     def visit_ImportFrom(self, node: ast.ImportFrom) -> ast.AST:
-        """Let functions import ``*``, which Python 3 does not: its names are global then."""
+        """Convert ``import *`` in functions, which Python 3 forbids: its names become global."""
         if node.names[0].name == "*" and isinstance(self._scopes[-1], ast.FunctionDef):
             return _at(node, f"exec({ast.unparse(node)!r}, globals())")
         return node
@@ -73,7 +73,7 @@ class Statements(ast.NodeTransformer):
         return [argument.arg for argument in arguments.args if argument.arg in self._targets]
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
-        """Iterate by ``next``, order by ``__cmp__``, or by identity; what is equal by ``__eq__`` has a hash."""
+        """Add ``next``, comparison by ``__cmp__`` or identity, and a hash for classes with ``__eq__``."""
         self._visit_scope(node)
         own = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
         is_plain = all(isinstance(base, ast.Name) and base.id == "object" for base in node.bases)
@@ -91,7 +91,7 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_ExceptHandler(self, node: ast.ExceptHandler) -> ast.AST:
-        """Keep the exception after the end of ``except E, name:``, where Python 3 deletes the name; unpack it."""
+        """Keep the exception after ``except E, name:``, since Python 3 deletes the name; unpack tuple targets."""
         self.generic_visit(node)
         if node.name is not None:
             target = self._targets.get(node.name, node.name)
@@ -101,7 +101,7 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_Compare(self, node: ast.Compare) -> ast.AST:
-        """Compare ``array == None`` as a whole, as NumPy did before 1.13, and not element by element."""
+        """Compare ``array == None`` as a whole, like NumPy before 1.13, instead of element by element."""
         self.generic_visit(node)
         operands = [node.left, *node.comparators]
         for place, operator in enumerate(node.ops):
@@ -111,7 +111,7 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """Call what does the same as methods that are gone; give ``exec``, ``eval`` and ``float`` what they want."""
+        """Redirect removed methods; convert the arguments of ``exec``, ``eval`` and ``float``."""
         self.generic_visit(node)
         if isinstance(node.func, ast.Attribute) and node.func.attr in methods.NAMES:
             node.args[:0] = [node.func.value, ast.Constant(node.func.attr)]
@@ -124,7 +124,7 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """Read the ``message`` of exceptions, and ``sys.exc_type`` and its like."""
+        """Convert ``message`` of exceptions, and ``sys.exc_type`` and similar names."""
         self.generic_visit(node)
         if isinstance(node.value, ast.Name) and node.value.id == "sys" and node.attr in _EXC_INFO:
             return _expression(node, f"sys.exc_info()[{_EXC_INFO.index(node.attr)}]")
@@ -134,7 +134,7 @@ class Statements(ast.NodeTransformer):
 
 
 def _start(body: list[ast.stmt]) -> int:
-    """Return where statements can be put in first: after the docstring, and after what is imported from the future."""
+    """Return the index of the first statement after the docstring and imports from ``__future__``."""
     for number, statement in enumerate(body):
         is_docstring = number == 0 and isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
         if not is_docstring and not (isinstance(statement, ast.ImportFrom) and statement.module == "__future__"):
@@ -143,14 +143,14 @@ def _start(body: list[ast.stmt]) -> int:
 
 
 def _expression(place: ast.expr, text: str) -> ast.expr:
-    """Return the tree of an expression, as if it stood at a place."""
+    """Return the tree of an expression with the position of another node."""
     statement = _at(place, text)
     assert isinstance(statement, ast.Expr)
     return statement.value
 
 
 def _at(place: ast.stmt | ast.expr | ast.excepthandler, text: str) -> ast.stmt:
-    """Return the tree of a statement, as if it stood at a place."""
+    """Return the tree of a statement with the position of another node."""
     statement = ast.parse(text).body[0]
     for node in ast.walk(statement):
         ast.copy_location(node, place)

@@ -1,4 +1,4 @@
-"""The syntax of Python 2 in that of Python 3, with the lines of the original for tracebacks."""
+"""Translation of Python 2 syntax to Python 3, keeping line numbers for tracebacks."""
 
 # fissix has no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownArgumentType=false, reportUnknownMemberType=false
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 FIXERS = """
 asserts exec execfile exitfunc funcattrs metaclass methodattrs ne nonzero print raise repr throw unicode
 """
-"""Those of fissix that change syntax; names are given by ``builtin``, ``methods`` and ``modules``."""
+"""Fixers of fissix for syntax; ``builtin``, ``methods`` and ``modules`` provide names."""
 _OCTAL = re.compile(r"^0(?=[0-7]+$)")
 _TAB = 8
 _EXCEPT_NAMED = 4  # parts of "except", class, "," or "as", target
@@ -31,9 +31,9 @@ def translate(text: str, path: str, mode: Literal["exec", "eval"] = "exec") -> C
     """Translate and compile a script, a module or an expression; run it with ``builtin.NAMES``.
 
     Args:
-        text: What is written.
-        path: Where, for tracebacks.
-        mode: Whether it is statements or an expression.
+        text: The source.
+        path: The path, for tracebacks.
+        mode: ``exec`` for statements, ``eval`` for an expression.
 
     Raises:
         SyntaxError: it is not Python 2; file and line are those of the original.
@@ -45,7 +45,7 @@ def translate(text: str, path: str, mode: Literal["exec", "eval"] = "exec") -> C
     targets = _name_targets(tree)
     lines = _original_lines(tree)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SyntaxWarning)  # "\d" was all right
+        warnings.simplefilter("ignore", SyntaxWarning)  # "\d" was valid
         warnings.simplefilter("ignore", DeprecationWarning)  # the same in Python 3.11
         try:
             module: Any = ast.parse(str(tree), path, mode)
@@ -57,7 +57,7 @@ def translate(text: str, path: str, mode: Literal["exec", "eval"] = "exec") -> C
         for node in ast.walk(module):
             if isinstance(node, ast.expr | ast.stmt | ast.excepthandler | ast.arg | ast.keyword | ast.alias):
                 node.lineno = node.end_lineno = lines[node.lineno - 1]
-                node.col_offset = node.end_col_offset = -1  # unknown: the columns of the translation mean nothing
+                node.col_offset = node.end_col_offset = -1  # unknown: columns of the translation are meaningless
         return compile(module, path, mode, dont_inherit=True)
 
 
@@ -74,7 +74,6 @@ def _tool() -> "RefactoringTool":
 
 
 def _tree(text: str, path: str) -> "Node":
-    """Return the tree of the translation."""
     from fissix.pgen2 import token  # noqa: PLC0415 - slow to import
     from fissix.pgen2.parse import ParseError  # noqa: PLC0415 - slow to import
     from fissix.pgen2.tokenize import TokenError  # noqa: PLC0415 - slow to import
@@ -89,7 +88,7 @@ def _tree(text: str, path: str) -> "Node":
         raise _syntax_error(str(message), path, line, text) from None
     assert tree is not None
     for leaf in tree.leaves():
-        leaf.prefix = leaf.prefix.expandtabs(_TAB)  # Python 2 lets tabs and spaces be mixed
+        leaf.prefix = leaf.prefix.expandtabs(_TAB)  # Python 2 allows mixed tabs and spaces
         if leaf.type == token.INDENT:
             leaf.value = leaf.value.expandtabs(_TAB)
         elif leaf.type == token.NUMBER:
@@ -98,7 +97,7 @@ def _tree(text: str, path: str) -> "Node":
 
 
 def _enclose_lists(tree: "Node") -> None:
-    """Put ``[x for x in 1, 2]`` into the parentheses that Python 3 wants."""
+    """Add the parentheses that Python 3 requires in ``[x for x in 1, 2]``."""
     from fissix.fixer_util import LParen, RParen  # noqa: PLC0415 - slow to import
     from fissix.pygram import python_symbols  # noqa: PLC0415 - slow to import
 
@@ -110,7 +109,7 @@ def _enclose_lists(tree: "Node") -> None:
 
 
 def _name_targets(tree: "Node") -> dict[str, str]:
-    """Put names where Python 3 wants no tuples: ``def f((a, b))``, ``except E, (a, b)``; return those by name."""
+    """Replace tuple targets by names: ``def f((a, b))``, ``except E, (a, b)``; return the tuples by name."""
     from fissix.pgen2 import token  # noqa: PLC0415 - slow to import
     from fissix.pygram import python_symbols  # noqa: PLC0415 - slow to import
     from fissix.pytree import Leaf  # noqa: PLC0415 - slow to import
@@ -133,7 +132,7 @@ def _name_targets(tree: "Node") -> dict[str, str]:
 
 
 def _original_lines(tree: "Node") -> list[int]:
-    """Return for each line of the translation the line that it comes from."""
+    """Return the original line of each line of the translation."""
     lines = [1]
     for leaf in tree.leaves():
         for _ in range(leaf.prefix.count("\n")):

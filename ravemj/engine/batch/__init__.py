@@ -1,50 +1,52 @@
-"""Many configurations of one body at once: link poses, Jacobians and torques for arrays of joint values.
+"""Batches of configurations of one body: link poses, Jacobians and torques for arrays of joint values.
 
-The configurations run along the last, contiguous axis, so that each step of the chain of links is a few calls of numpy
-for hundreds of them. Work goes in chunks that fit the processor's cache, and memory beside the result does not grow.
+The configurations are along the last, contiguous axis, so that each step of the chain takes a few numpy calls for
+hundreds of them. Chunks fit into the processor's cache, and memory apart from the result is constant.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import mujoco
 import numpy as np
 
 from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats
-from ravemj.engine.batch.chain import Chain
+from ravemj.engine.batch.chain import LinkChain
 from ravemj.engine.batch.kinematic_state import KinematicState, cross
 from ravemj.engine.dynamics import BodyDynamics
 from ravemj.engine.kinematics import BodyKinematics, fixed_view
 from ravemj.model.inertia import Inertias
 
 POSES, MOTIONS = 60_000, 8_000
-"""Poses of links, and their motions, that are worked out together: few enough for the cache, enough for numpy."""
+"""Number of link poses, and of motions, per chunk: few enough for the cache, enough for numpy."""
 
 
 FEW_LINKS = 12
-"""Up to so many links numpy is faster than MuJoCo called for each configuration."""
+"""Number of links up to which numpy is faster than a MuJoCo call for each configuration."""
 
 
 class Batch:
-    """A body's chain of links, ready for many joint values. The body's state is neither used nor changed.
+    """Chain of links of a body, prepared for many joint values. The body's state is neither used nor changed.
 
-    Poses are those that ``SetDOFValues`` gives within the limits: joint limits are not looked at, but mimic joints stop
-    at theirs.
+    Poses are those of ``SetDOFValues`` within the limits. Joint limits are ignored, except those of mimic joints.
     """
 
     def __init__(self, kinematics: BodyKinematics, dynamics: BodyDynamics) -> None:
         self._kinematics = kinematics
         self._dynamics = dynamics
-        self._chain = Chain(kinematics, dynamics.tree)
+        self._chain = LinkChain(kinematics, dynamics.tree)
 
     def _chunks(self, count: int, poses: int = POSES) -> Iterator[slice]:
-        """Yield slices of like size that cover that many configurations."""
+        """Yield slices of similar size that cover a number of configurations."""
         parts = -(-count // max(100, min(1000, poses // len(self._kinematics.body_ids))))
         for part in range(parts):
             yield slice(part * count // parts, (part + 1) * count // parts)
 
     def link_transforms(self, values: Floats, out: Floats) -> None:
         """Write the poses ``T_world_link`` for joint values [rad or m], (N, dof), into an array (N, links, 4, 4)."""
+        if len(values) == 1:
+            _fill_twice(lambda both, rows: self.link_transforms(rows[0], both), out, values)
+            return
         for part in self._chunks(len(values)):
             poses = out[part]
             for step, frame in self._chain.frames(np.ascontiguousarray(values[part].T)):
@@ -54,7 +56,7 @@ class Batch:
                     poses[:, link, 3] = (0.0, 0.0, 0.0, 1.0)
 
     def _state(self, values: Floats) -> KinematicState:
-        """Return where links and axes are for joint values [rad or m], shape (dof, N)."""
+        """Return the poses of links and axes for joint values [rad or m], shape (dof, N)."""
         tree, count = self._dynamics.tree, values.shape[1]
         axes, anchors = np.zeros((tree.count, 3, count)), np.zeros((tree.count, 3, count))
         links = np.zeros((len(self._kinematics.body_ids), 4, 3, count))
@@ -77,20 +79,25 @@ class Batch:
         Args:
             values: Joint values [rad or m], shape (N, dof).
             link: Index of the link.
-            point: In the link's frame [m], shape (3,).
-            out: Takes the derivatives of the point's position and the link's angular velocity, shape (N, 6, dof).
+            point: The point in the link's frame [m], shape (3,).
+            out: Receives the derivatives of the point's position and the link's angular velocity, shape (N, 6, dof).
         """
+        if len(values) == 1:
+            _fill_twice(lambda both, rows: self.jacobians(rows[0], link, point, both), out, values)
+            return
         path, slides = self._chain.path_to(link), self._dynamics.tree.slides
         T_step_link = self._chain.T_step_links[link]
         for part in self._chunks(len(values), MOTIONS):
             now = np.ascontiguousarray(values[part].T)
             steps = list(self._chain.frames(now, path))
-            place = np.tensordot(T_step_link[:3] @ (*point, 1.0), steps[-1][1][:3], 1) + steps[-1][1][3]
+            place = _combined(steps[-1][1][:3], T_step_link[:3] @ (*point, 1.0)) + steps[-1][1][3]
             columns = np.zeros((self._dynamics.tree.count, 6, now.shape[1]))
             for step, frame in steps:
                 first = step.coordinate
                 if step.kind == "spherical":  # its coordinates turn about the child's axes
-                    axes = np.tensordot(self._chain.T_step_links[step.child][:3, :3].T, frame[:3], 1)
+                    axes = np.array(
+                        [_combined(frame[:3], one) for one in self._chain.T_step_links[step.child][:3, :3].T]
+                    )
                 elif step.kind == "root":
                     continue
                 else:
@@ -106,19 +113,26 @@ class Batch:
     def inverse_dynamics(
         self, values: Floats, rates: Floats, accelerations: Floats, inertias: Inertias, gravity: Floats, out: Floats
     ) -> None:
-        """Write the generalised forces that move the body as given, with its base at rest.
+        """Write the generalised forces of given motions, with the base at rest.
 
         Args:
             values: Joint values [rad or m], shape (N, dof).
             rates: Joint velocities, shape (N, dof).
             accelerations: Joint accelerations, shape (N, dof).
             inertias: Mass properties of the links.
-            gravity: Acceleration of free fall [m/s^2], shape (3,).
-            out: Takes torques [N m], for sliders forces [N], shape (N, dof).
+            gravity: Gravitational acceleration [m/s^2], shape (3,).
+            out: Receives torques [N m], for sliders forces [N], shape (N, dof).
         """
         if len(self._kinematics.body_ids) > FEW_LINKS and self._inverse_dynamics_by_mujoco(
             values, rates, accelerations, gravity, out
         ):
+            return
+        if len(values) == 1:
+
+            def fill(both: Floats, rows: Sequence[Floats]) -> None:
+                self.inverse_dynamics(rows[0], rows[1], rows[2], inertias, gravity, both)
+
+            _fill_twice(fill, out, values, rates, accelerations)
             return
         for part in self._chunks(len(values), MOTIONS):
             now, speed, change = (np.ascontiguousarray(one[part].T) for one in (values, rates, accelerations))
@@ -137,10 +151,10 @@ class Batch:
     def _inverse_dynamics_by_mujoco(
         self, values: Floats, rates: Floats, accelerations: Floats, gravity: Floats, out: Floats
     ) -> bool:
-        """Do the same one configuration after the other.
+        """Compute the same one configuration after the other.
 
         Returns:
-            False, and nothing is done, where joints couple or have motors, or links were displaced.
+            False without a result if joints are coupled or have motors, or links are displaced.
         """
         kinematics, dynamics = self._kinematics, self._dynamics
         coupling = dynamics.couplings.constant
@@ -150,7 +164,7 @@ class Batch:
         model.opt.gravity[:] = gravity
         data.qpos[:] = kinematics.qpos
         dofs, columns = coupling.dofs, np.arange(model.nv)[kinematics.inner_qvel][coupling.coordinates]
-        # What is looked up here is not looked up for each configuration.
+        # Look-ups outside of the loop over configurations.
         place, place_coms, move, find_forces = mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel, mujoco.mj_rne
         (qpos, places), (qvel, moved), (qacc, pushed) = (
             fixed_view(data.qpos, kinematics.qpos_indices[dofs]),
@@ -172,5 +186,24 @@ class Batch:
 
     @cached_property
     def _data(self) -> mujoco.MjData:
-        """A state of the body's model beside its own one; all velocities but those of joints stay 0."""
+        """Separate state of the body's model; all velocities but those of joints stay 0."""
         return mujoco.MjData(self._kinematics.model)
+
+
+def _combined(vectors: Floats, factors: Floats) -> Floats:
+    """Return the weighted sum of three arrays; BLAS rounding would depend on the number of columns."""
+    x, y, z = factors.tolist()
+    return x * vectors[0] + y * vectors[1] + z * vectors[2]
+
+
+def _fill_twice(fill: Callable[[Floats, Sequence[Floats]], None], out: Floats, *rows: Floats) -> None:
+    """Compute a single configuration as one of two, since BLAS rounds single columns differently.
+
+    Args:
+        fill: Called with an array for the results, and with the configurations.
+        out: The result, shape (1, ...).
+        rows: The configuration, arrays of shape (1, n).
+    """
+    both = np.empty((2, *out.shape[1:]))
+    fill(both, [np.repeat(one, 2, axis=0) for one in rows])
+    out[:] = both[:1]

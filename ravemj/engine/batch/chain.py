@@ -1,4 +1,4 @@
-"""The chain of links of a body, for many configurations at once.
+"""Chain of links of a body, for many configurations at once.
 
 A frame is an array of shape (4, 3, N): three axes and an origin, of three components each, for N configurations.
 """
@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from ravemj.core.transforms import Floats, inverse
-from ravemj.engine.dynamics import Tree, first_values
+from ravemj.engine.dynamics import CoordinateTree, first_values
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.joints import moving_direction
 from ravemj.model.scene import Joint
@@ -20,28 +20,28 @@ ROOT = -1
 
 @dataclass(slots=True)
 class Step:
-    """A root link, an axis, with a frame whose z it is, or a spherical joint, with a frame in its parent's axes."""
+    """Step of a chain: a root link, an axis with a frame whose z it is, or a spherical joint in its parent's axes."""
 
     kind: str  # ``root``, ``hinge``, ``slider`` or ``spherical``
-    parent: int  # the step that it hangs on
+    parent: int  # the parent step
     T_parent_frame: Floats  # its frame in the parent's at the value ``reference``, shape (4, 4)
     source: tuple[Literal["dof", "mimic", "qpos"], int]  # of its value: a DOF, a mimic joint, or what ``qpos`` has now
     reference: float  # what is subtracted from the value
     coordinate: int  # its first velocity coordinate
     child: int  # the link that it moves
     links: list[int] = field(default_factory=list[int])  # fixed to its frame, in which they are at ``T_step_links``
-    last: int = ROOT  # the last step that hangs on it
+    last: int = ROOT  # its last child step
 
 
-class Chain:
-    """The links of a body in the order in which they hang on each other.
+class LinkChain:
+    """Links of a body in topological order.
 
     Attributes:
-        steps: What moves them.
+        steps: The steps that move them.
         T_step_links: Pose of each link in the frame of the step that it is fixed to, shape (links, 4, 4).
     """
 
-    def __init__(self, kinematics: BodyKinematics, tree: Tree) -> None:
+    def __init__(self, kinematics: BodyKinematics, tree: CoordinateTree) -> None:
         self._kinematics = kinematics
         self._coordinate_of_qpos = tree.of_qpos
         self.steps: list[Step] = []
@@ -59,7 +59,7 @@ class Chain:
             self.steps[self._step_of[link]].links.append(link)
 
     def _hang(self, index: int, joint: Joint) -> None:
-        """Add the steps of a joint, and place its child behind them."""
+        """Add the steps of a joint, and attach its child to them."""
         kinematics = self._kinematics
         places = kinematics.joint_qpos[index]  # none for a joint that never moves
         step, T_step_parent = self._step_of[joint.parent], self.T_step_links[joint.parent]
@@ -85,7 +85,7 @@ class Chain:
         return index
 
     def path_to(self, link: int) -> list[int]:
-        """Return the steps from its root to a link."""
+        """Return the steps from the root to a link."""
         path = [self._step_of[link]]
         while self.steps[path[-1]].parent != ROOT:
             path.append(self.steps[path[-1]].parent)
@@ -94,11 +94,11 @@ class Chain:
     def frames(self, values: Floats, wanted: Sequence[int] | None = None) -> Iterator[tuple[Step, Floats]]:
         """Yield the steps with their frames.
 
-        A frame is let go when no other hangs on it any more, so that the memory in use stays in the cache.
+        A frame is released after its last child, so that memory in use fits into the cache.
 
         Args:
             values: Joint values, shape (dof, N).
-            wanted: Which steps, parents before children; None: all.
+            wanted: The steps to compute, parents before children; by default all.
         """
         chosen = range(len(self.steps)) if wanted is None else wanted
         ways = self._ways(values, chosen)
@@ -127,7 +127,7 @@ class Chain:
         return np.repeat(frame[:, :, None], count, axis=2)
 
     def _ways(self, values: Floats, chosen: Sequence[int]) -> Floats:
-        """Return how far some joints are from where their frames are given, shape (len(chosen), N)."""
+        """Return the displacements of some joints from their reference frames, shape (len(chosen), N)."""
         ways = np.zeros((len(chosen), values.shape[1]))
         first_values = self._first_values(values)
         for index, step in enumerate(self.steps[number] for number in chosen):
@@ -141,7 +141,7 @@ class Chain:
         return ways
 
     def _first_values(self, values: Floats) -> list[Floats]:
-        """Return the first values of all joints where there are mimic joints, each of shape (N,)."""
+        """Return the first values of all joints if there are mimic joints, each of shape (N,)."""
         mimic = self._kinematics.mimic
         if not mimic.joints:
             return []
@@ -163,7 +163,7 @@ def _axis_frame(joint: Joint, axis: int) -> Floats:
 
 
 def _cosines_and_sines(angles: Floats) -> tuple[Floats, Floats]:
-    """Return them by the tangent of half the angle, which numpy finds several times faster, and as exactly."""
+    """Return cosines and sines by the half-angle tangent, which is several times faster in numpy."""
     tangents = np.tan(angles / 2)
     squares = tangents * tangents
     factors = 1 / (1 + squares)
@@ -171,7 +171,7 @@ def _cosines_and_sines(angles: Floats) -> tuple[Floats, Floats]:
 
 
 def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floats) -> Floats:
-    """Return frames behind a hinge: parents of shape (4, 3 N) to (4, 3, N)."""
+    """Return frames after a hinge: parents of shape (4, 3 N) to (4, 3, N)."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     x_part, y_part = frames[:2] * sines
     frames[:2] *= cosines
@@ -181,14 +181,14 @@ def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floa
 
 
 def _slid(parent: Floats, T_parent_frame: Floats, ways: Floats) -> Floats:
-    """Return frames behind a slider."""
+    """Return frames after a slider."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     frames[3] += ways * frames[2]
     return frames
 
 
 def _turned(parent: Floats, T_parent_frame: Floats, vectors: Floats) -> Floats:
-    """Return frames behind a spherical joint, turned by rotation vectors of shape (3, N)."""
+    """Return frames after a spherical joint, rotated by vectors of shape (3, N)."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     angle = np.sqrt((vectors * vectors).sum(axis=0))
     x, y, z = vectors / np.where(angle > 0, angle, 1.0)

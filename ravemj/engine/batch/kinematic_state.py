@@ -1,4 +1,4 @@
-"""The mechanics of a body in many configurations at once.
+"""Batched mechanics of a body in many configurations.
 
 Arrays have a first axis for the links or velocity coordinates, then one for components, then one for configurations.
 Motions are six numbers in world axes: the angular velocity, and the velocity of the body's point that passes through a
@@ -9,23 +9,29 @@ point, and force. The roots rest.
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.dynamics import NONE, Coupling, Tree
+from ravemj.engine.dynamics import NONE, CoordinateTree, Coupling
 from ravemj.model.inertia import Inertias
 
 
 class KinematicState:
-    """Where the links and the axes of a body are.
+    """Poses of the links and axes of a body.
 
     Attributes:
-        tree: What carries what.
-        coupling: How the coordinates follow the DOFs.
+        tree: The tree of coordinates.
+        coupling: The relation of coordinates to DOFs.
         screws: The motion of a link for one unit of each coordinate's velocity, shape (coordinates, 6, N).
         positions: Origins of the links, from the reference point [m], shape (links, 3, N).
         rotations: For each link the directions of its axes, one after the other, shape (links, 3, 3, N).
     """
 
     def __init__(
-        self, tree: Tree, coupling: Coupling, axes: Floats, anchors: Floats, positions: Floats, rotations: Floats
+        self,
+        tree: CoordinateTree,
+        coupling: Coupling,
+        axes: Floats,
+        anchors: Floats,
+        positions: Floats,
+        rotations: Floats,
     ) -> None:
         self.tree = tree
         self.coupling = coupling
@@ -36,10 +42,10 @@ class KinematicState:
         self.screws[tree.slides, 3:] = axes[tree.slides]
 
     def twists(self, velocities: Floats) -> Floats:
-        """Return the motion of the links that each coordinate moves last, shape (coordinates, 6, N).
+        """Return the motion of the link moved directly by each coordinate, shape (coordinates, 6, N).
 
         Args:
-            velocities: Those of the coordinates, shape (coordinates, N).
+            velocities: Velocities of the coordinates, shape (coordinates, N).
         """
         return self._outward(self.screws * velocities[:, None])
 
@@ -47,29 +53,29 @@ class KinematicState:
         """Return the time derivative of ``twists``.
 
         Args:
-            twists: From ``twists``.
-            velocities: Those of the coordinates, shape (coordinates, N).
+            twists: Result of ``twists``.
+            velocities: Velocities of the coordinates, shape (coordinates, N).
             accelerations: Their derivatives, shape (coordinates, N).
         """
         turned = _carried(twists[self.tree.carriers], self.screws)
         return self._outward(self.screws * accelerations[:, None] + turned * velocities[:, None])
 
     def _outward(self, own: Floats) -> Floats:
-        """Add to what each coordinate does what those below it do, in place."""
+        """Accumulate contributions of coordinates along the chain, in place."""
         for coordinate, parent in enumerate(self.tree.parents):
             if parent != NONE:
                 own[coordinate] += own[parent]
         return own
 
     def of_links(self, of_coordinates: Floats) -> Floats:
-        """Return for each link what is said of the last coordinate that moves it; 0 for the roots."""
+        """Return for each link the value of the last coordinate that moves it; 0 for the roots."""
         found = np.zeros((len(self.tree.last), *of_coordinates.shape[1:]))
         moved = [link for link, last in enumerate(self.tree.last) if last != NONE]
         found[moved] = of_coordinates[[self.tree.last[link] for link in moved]]
         return found
 
     def forces(self, link_forces: Floats) -> Floats:
-        """Return generalised forces of forces on the links, shape (links, 6, N) to (coordinates, N)."""
+        """Return the generalised forces of forces on the links, shape (links, 6, N) to (coordinates, N)."""
         tree = self.tree
         borne = np.zeros((tree.count, *link_forces.shape[1:]))
         for link, last in enumerate(tree.last):
@@ -81,13 +87,13 @@ class KinematicState:
         return (self.screws * borne).sum(axis=1)
 
     def needed_forces(self, inertias: Inertias, twists: Floats, accelerations: Floats, gravity: Floats) -> Floats:
-        """Return the forces that let the links move as they do, shape (links, 6, N).
+        """Return the forces that produce given motions of the links, shape (links, 6, N).
 
         Args:
             inertias: Mass properties.
             twists: Motions of the links, shape (links, 6, N).
             accelerations: Their derivatives, shape (links, 6, N).
-            gravity: Acceleration of free fall [m/s^2], shape (3,).
+            gravity: Gravitational acceleration [m/s^2], shape (3,).
         """
         coms = self.positions + self._to_world(inertias.coms[:, :, None])
         spin, angular = twists[:, :3], accelerations[:, :3]
@@ -113,6 +119,6 @@ def cross(one: Floats, other: Floats) -> Floats:
 
 
 def _carried(twists: Floats, screws: Floats) -> Floats:
-    """Return how fast screws change that are carried with given motions."""
+    """Return the time derivative of screws moving with given twists."""
     spin, axis = twists[:, :3], screws[:, :3]
     return np.concatenate((cross(spin, axis), cross(spin, screws[:, 3:]) + cross(twists[:, 3:], axis)), axis=1)

@@ -1,1 +1,1 @@
-"""Collision checking: exact tests of the pairs of shapes that OpenRAVE's queries are about."""
+"""Collision checking: exact tests of the shape pairs of OpenRAVE's queries."""

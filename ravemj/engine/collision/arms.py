@@ -1,4 +1,4 @@
-"""Pairs to test for the end of an arm and for what the arm does not move, also with the tool elsewhere."""
+"""Collision pairs of an arm's end and of links not moved by the arm, also for other tool poses."""
 
 from ravemj.core.graphs import ordered_pair
 from ravemj.core.transforms import Floats
@@ -11,19 +11,19 @@ from ravemj.model.scene import Manipulator
 
 
 def end_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> Pairs:
-    """Return the pairs of the links beyond an arm, with what they hold, and all other bodies."""
+    """Return the pairs of the links beyond an arm with their grabbed bodies, and all other bodies."""
     return body_and_others(world, body, frozenset(links_beyond(body.scene, arm)))
 
 
 def independent_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> Pairs:
-    """Return the pairs of the links that neither arm nor gripper move, with what they hold, and all other bodies."""
+    """Return the pairs of the links moved by neither arm nor gripper, with grabbed bodies, and other bodies."""
     return body_and_others(world, body, frozenset(independent_links(body.scene, arm)))
 
 
 def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_arm: bool) -> Pairs:
-    """Return the pairs of the links beyond an arm, with what they hold, and the other links of its robot.
+    """Return the pairs of the links beyond an arm with their grabbed bodies, and the other links of its robot.
 
-    ``without_arm`` leaves out the links of the arm itself, which its joints move.
+    ``without_arm`` ignores the links of the arm itself.
     """
     end = set(links_beyond(body.scene, arm))
     others = independent_links(body.scene, arm) if without_arm else range(len(body.scene.links))
@@ -31,9 +31,9 @@ def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 
 
 def arm_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
-    """Return the pairs of the links that an arm moves, with what they hold, and all other bodies.
+    """Return the pairs of the links moved by an arm with their grabbed bodies, and all other bodies.
 
-    ``without_end`` leaves out the links beyond the arm, and what they hold.
+    ``without_end`` ignores the links beyond the arm and their grabbed bodies.
     """
 
     def make() -> Pairs:
@@ -44,9 +44,9 @@ def arm_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator, *, 
 
 
 def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
-    """Return the pairs of links of a robot, with what they hold, that an arm moves against each other.
+    """Return the pairs of a robot's links and their grabbed bodies that an arm moves relative to each other.
 
-    ``without_end`` leaves out the pairs of links beyond the arm and links that the arm does not move.
+    ``without_end`` ignores pairs of a link beyond the arm and a link not moved by it.
     """
 
     def make() -> Pairs:
@@ -60,7 +60,7 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
-    """Return one motion, shape (4, 4), for the links beyond an arm and all that they hold, for ``world.moved``."""
+    """Return one motion, shape (4, 4), for the links beyond an arm and their grabbed bodies, for ``world.moved``."""
     end = set(links_beyond(body.scene, arm))
     held = [one for grab in body.grabs if grab.link in end for one in held_with(grab.body)]
     links = [(one, link) for one in held for link in range(len(one.scene.links))]

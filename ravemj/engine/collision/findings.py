@@ -1,20 +1,21 @@
-"""What reports tell of a query: the pairs of links or geometries that collide, contact points, distances."""
+"""Results of collision queries: colliding pairs, contact points, distances."""
 
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from typing import Literal, NamedTuple, Protocol
 
+from ravemj.core.graphs import Pair
 from ravemj.engine.collision.pairs import Pairs
+from ravemj.engine.collision.patches import patches
 from ravemj.engine.collision.shapes import Contact
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 
 Listed = Literal["first pair", "links", "geometries"]
-"""What is listed: only the first pair of links, each pair of links, or each pair of geometries."""
+"""Pairs to list: only the first pair of links, each pair of links, or each pair of geometries."""
 
 
 class GeometryOf(NamedTuple):
-    """A geometry: its body, the index of its link in the body, and its own index in the link."""
+    """Geometry by its body, link index and geometry index."""
 
     body: BodyState
     link: int
@@ -22,14 +23,14 @@ class GeometryOf(NamedTuple):
 
     @classmethod
     def of(cls, world: CollisionWorld, geom: int) -> "GeometryOf":
-        """Return the geometry that a geom of MuJoCo's belongs to."""
-        return cls(*world.owner(geom), world.geometry(geom))
+        """Return the geometry of a MuJoCo geom."""
+        return cls(*world.geometry(geom))
 
 
 class Collision(NamedTuple):
-    """Two geometries that touch or overlap, or the first two of two links.
+    """Colliding pair of geometries, or the first of two links.
 
-    ``contacts`` are the contact points of all pairs of their geometries, where wanted.
+    ``contacts`` are the contact points of all geometry pairs, if requested.
     """
 
     first: GeometryOf
@@ -42,7 +43,7 @@ Counts = Callable[[Collision], bool]
 
 
 class Wanted(NamedTuple):
-    """What a report should tell."""
+    """Requested contents of a report."""
 
     listed: Listed = "first pair"  # which collisions
     contacts: bool = False  # their contact points; without them, the search for the first pair ends sooner
@@ -51,27 +52,27 @@ class Wanted(NamedTuple):
 
 
 class Findings(NamedTuple):
-    """What was found of what is wanted."""
+    """Result of a collision query."""
 
-    collisions: list[Collision]  # those that count
-    distance: float  # the least one [m], not negative, or the one that was given where none is less
-    nearest: Collision | None  # the geometries that are so near, where there are any
+    collisions: list[Collision]  # those not ignored
+    distance: float  # the smallest one [m], not negative; the given limit if none is smaller
+    nearest: Collision | None  # the nearest geometries, if any
     within: int  # number of pairs within the tolerance
 
 
 class Checker(Protocol):
-    """Collision queries with the options of an environment, and with the functions of users that decide what counts.
+    """Collision queries with the options of an environment and its user callbacks.
 
     The caller holds the lock.
     """
 
     @property
     def is_plain(self) -> bool:
-        """Whether the engine's own tests answer as this does: no function of a user, no other geometries."""
+        """Whether the engine's default tests give the same answers: no user callbacks, no geometry groups."""
         ...
 
-    def world(self) -> AbstractContextManager[CollisionWorld]:
-        """Return the world with the geometries that the queries are about."""
+    def world(self) -> CollisionWorld:
+        """Return the collision world of the queries."""
         ...
 
     def collides(self, world: CollisionWorld, pairs: Pairs) -> bool:
@@ -79,14 +80,14 @@ class Checker(Protocol):
         ...
 
     def find(self, world: CollisionWorld, pairs: Pairs) -> Findings:
-        """Return what a report should tell of the pairs."""
+        """Return the requested contents of a report on the pairs."""
         ...
 
 
 def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, counts: Counts | None) -> Findings:
-    """Return what a report should tell of pairs of geoms.
+    """Return the requested contents of a report on geom pairs.
 
-    Distances greater than ``distance`` [m] are of no interest; without ``counts`` all collisions count.
+    Distances above ``distance`` [m] are skipped; ``counts`` may ignore collisions.
     """
     collisions, nearest = _collisions(world, pairs, wanted, counts), None
     if wanted.distance:
@@ -98,8 +99,8 @@ def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, c
 
 
 def _collisions(world: CollisionWorld, pairs: Pairs, wanted: Wanted, counts: Counts | None) -> list[Collision]:
-    listed, contacts = wanted.listed, wanted.contacts
-    found: dict[object, Collision] = {}
+    listed = wanted.listed
+    found: dict[object, tuple[Collision, list[Pair]]] = {}
     for pair in world.hits(pairs):
         first, second = (GeometryOf.of(world, geom) for geom in pair)
         key = (first, second) if listed == "geometries" else (first[:2], second[:2])
@@ -109,9 +110,13 @@ def _collisions(world: CollisionWorld, pairs: Pairs, wanted: Wanted, counts: Cou
             collision = Collision(first, second, [])
             if counts is not None and not counts(collision):
                 continue
-            found[key] = collision
-        if contacts:
-            found[key].contacts.append(world.shapes.contact(*pair))
+            found[key] = collision, []
+        if wanted.contacts:
+            found[key][1].append(pair)
         elif listed == "first pair":
             break
-    return list(found.values())
+    touching = [(collision, pair) for collision, some in found.values() for pair in some]
+    contacts = patches(world, [pair for _, pair in touching]) if touching else []
+    for (collision, _), points in zip(touching, contacts, strict=True):
+        collision.contacts.extend(points)
+    return [collision for collision, _ in found.values()]

@@ -1,4 +1,4 @@
-"""Collision tests of a body at many joint values, which planners ask most; what the body holds follows its joints."""
+"""Collision tests of a body at many joint values, the hot path of planners; grabbed bodies follow the joints."""
 
 from collections.abc import Callable, Generator, Sequence
 from typing import NamedTuple
@@ -18,10 +18,10 @@ from ravemj.engine.simulation.body import SavedConfiguration
 
 
 class HeldRoots:
-    """The root links of what a body holds: children of the world in the model.
+    """Root links of grabbed bodies, which are children of the world in the model.
 
-    Inside ``on_carriers`` they hang on their carriers: ``mj_kinematics`` places them, and ``mj_collision`` looks at
-    them and what is fixed to the world. Where one comes before its carrier (``are_late``), ``mj_kinematics`` has to
+    Within ``on_carriers`` they are children of their carriers, so that ``mj_kinematics`` places them, and
+    ``mj_collision`` tests them against fixed geoms. If one precedes its carrier (``are_late``), ``mj_kinematics`` must
     run twice.
     """
 
@@ -45,7 +45,7 @@ class HeldRoots:
 
     @block
     def on_carriers(self) -> Generator[None]:
-        """Make them children of their carriers, and of the world again; the caller restores their poses there."""
+        """Context manager that attaches them to their carriers, then to the world; the caller restores their poses."""
         with restoring(self._detach):
             self._attach()
             yield
@@ -53,7 +53,7 @@ class HeldRoots:
     def _attach(self) -> None:
         for index, carrier, position, wxyz, offset, turn in self._roots:
             self._parents[index] = carrier
-            self._dof_counts[index] = 1  # else MuJoCo would take it for fixed to the world
+            self._dof_counts[index] = 1  # otherwise MuJoCo would treat it as fixed to the world
             position[...] = offset
             wxyz[...] = turn
         for index, root in self._welds:
@@ -67,7 +67,7 @@ class HeldRoots:
 
 
 class _Root(NamedTuple):
-    """A root link that is held, and the link that holds it, by MuJoCo's indices."""
+    """Grabbed root link and the grabbing link, by MuJoCo's indices."""
 
     body_id: int
     carrier: int
@@ -81,43 +81,87 @@ _Kind = Callable[[CollisionWorld, BodyState, MovedBy | None], Pairs]
 _KINDS: tuple[_Kind, ...] = (body_and_others, itself)
 
 _KEY = 1 << 31
-"""More than the number of geoms: makes one number of a pair."""
+"""Upper bound of the number of geoms, to encode a pair in one number."""
 
 _MANY = 50
-"""For fewer configurations threads do not pay."""
+"""Number of configurations below which threads are not worthwhile."""
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
-    """Return a fast test of values of some joints, or None where links are displaced from their joints.
+    """Return a fast test of values of some joints, or None if links are displaced from their joints.
 
-    It looks at what the joints move, and answers for a body that stays as it is otherwise, in a world that stays as it
-    is; the caller holds the lock all the time. What the body holds moves along. The model of the world is moved, the
-    body at most by its joints: ``body.restore`` brings both back.
+    It tests the moved links and grabbed bodies, for a world that does not change otherwise; the caller holds the lock
+    all the time. The test moves the world's model, and possibly the body's joints: ``body.restore`` restores both.
     """
     world = body.simulation.collisions()
     if body.kinematics.displaced:
         return None
-    return _MovingTest(world, body, _Placement(world, body, dofs), _Chosen.of(world, body, dofs, _KINDS))
+    return _MovingTest(world, body, Placement(world, body, dofs), _Chosen.of(world, body, dofs, _KINDS))
 
 
-def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDArray[np.bool_]:
-    """Return for each configuration [rad or m], shape (n, dof), whether the body collides; shape (n,).
+class Among(NamedTuple):
+    """Selected geom pairs of a batch of configurations.
 
-    With ``itself_too``, collisions with itself count. The caller holds the lock. The body is back in its configuration
-    afterwards, and so is what it holds.
+    Attributes:
+        others: Whether to test the body against other bodies.
+        itself: Whether to test the body against itself.
+        dofs: The joints of the configurations; only pairs that they move relative to each other are tested. None means
+            all joints and all pairs.
     """
+
+    others: bool = True
+    itself: bool = True
+    dofs: tuple[int, ...] | None = None
+
+    @property
+    def kinds(self) -> tuple[_Kind, ...]:
+        """Return the queries."""
+        return tuple(kind for kind, counts in zip(_KINDS, (self.others, self.itself), strict=True) if counts)
+
+
+def batch_collides(body: BodyState, values: Floats, among: Among) -> NDArray[np.bool_]:
+    """Return for each configuration [rad or m], shape (n, dofs), whether the body collides; shape (n,).
+
+    The caller holds the lock. Afterwards the configurations of the body and grabbed bodies are restored.
+    """
+    with kept_in_place(body):
+        _bring_links_back(body, values)
+        world = body.simulation.collisions()
+        dofs = range(body.dof) if among.dofs is None else among.dofs
+        chosen = _Chosen.of(world, body, dofs, among.kinds)
+        if among.dofs is None and any(map(world.collide, chosen.resting)):
+            return np.ones(len(values), dtype=bool)
+        return _MovingTest(world, body, Placement(world, body, dofs), chosen).of_many(values)
+
+
+def batch_distances(body: BodyState, values: Floats, among: Among) -> Floats:
+    """Return for each configuration [rad or m], shape (n, dofs), the smallest signed distance [m], shape (n,).
+
+    It is infinite if there are no pairs. The caller holds the lock, and the configuration is restored afterwards.
+    """
+    found = np.full(len(values), np.inf)
+    with kept_in_place(body):
+        for number, row in enumerate(values):
+            body.set_values(row)
+            world = body.simulation.collisions()
+            for kind in among.kinds:
+                found[number] = world.nearest(kind(world, body, None), float(found[number]))[0]
+    return found
+
+
+@block
+def kept_in_place(body: BodyState) -> Generator[None]:
+    """Bring a body and what it holds back to where they are, at the end of the block."""
     before, stamp = body.configuration(), body.stamp
     held = [(grab.body, grab.body.configuration()) for grab in body.grabs]
     with restoring(lambda: _restore(body, before, held, stamp)):
-        if len(values) and body.kinematics.displaced:
-            body.set_values(values[0])  # brings displaced links back to their joints
-        world = body.simulation.collisions()
-        kinds = _KINDS if itself_too else _KINDS[:1]
-        dofs = range(body.dof)
-        chosen = _Chosen.of(world, body, dofs, kinds)
-        if any(map(world.collide, chosen.resting)):
-            return np.ones(len(values), dtype=bool)
-        return _MovingTest(world, body, _Placement(world, body, dofs), chosen).of_many(values)
+        yield
+
+
+def _bring_links_back(body: BodyState, values: Floats) -> None:
+    """Move links back to the poses of their joints if scripts displaced them."""
+    if len(values) and body.kinematics.displaced:
+        body.set_values(body.kinematics.values())
 
 
 def _restore(
@@ -130,7 +174,7 @@ def _restore(
 
 
 class _Chosen(NamedTuple):
-    """The pairs of geoms that a test of a body is about."""
+    """Selected geom pairs of a test of a body."""
 
     meant: frozenset[int]  # ``_keys`` of those that MuJoCo looks at, in both orders
     masks: Masks  # for MuJoCo to look at these
@@ -140,7 +184,7 @@ class _Chosen(NamedTuple):
 
     @classmethod
     def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
-        """Choose the pairs, once for a world in which bodies only move."""
+        """Select the pairs, for a world in which bodies only move."""
         moved = MovedBy(tuple(dofs))
         return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
 
@@ -163,27 +207,26 @@ class _Chosen(NamedTuple):
 
 
 def _as_array(pairs: Pairs) -> Ints:
-    """Return the geoms of pairs, shape (n, 2)."""
     return np.stack([pairs.first, pairs.second], axis=1)
 
 
 def _apart_from(world: CollisionWorld, pairs: Pairs, others: Pairs) -> Pairs:
-    """Return those of some pairs that are not among others."""
+    """Return the pairs that are not among others."""
     known = _as_array(others)
     kept = ~np.isin(_keys(_as_array(pairs)), _keys(np.concatenate([known, known[:, ::-1]])))
     return world.make_pairs(pairs.first[kept], pairs.second[kept])
 
 
 def _keys(pairs: Ints) -> Ints:
-    """Return a number for each pair."""
+    """Encode each pair as a number."""
     return pairs[:, 0] * _KEY + pairs[:, 1]
 
 
-class _Placement:
+class Placement:
     """Moves joints of a body in the model of the world.
 
     Attributes:
-        is_plain: Whether joint values are written into ``qpos`` as they are, or with multiples for mimic joints.
+        is_plain: Whether joint values are copied to ``qpos``, possibly with affine mimic joints.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> None:
@@ -213,7 +256,7 @@ class _Placement:
             self._qpos[index] = multiple.follow(values.item(column))
 
     def qpos_of_many(self, values: Floats) -> Floats:
-        """Return ``qpos`` of the world for many configurations, shape (n, nq), where the placement is plain."""
+        """Return ``qpos`` of the world for many configurations, shape (n, nq), if the placement is plain."""
         qpos = np.tile(self._qpos, (len(values), 1))
         qpos[:, self._places] = values
         for column, multiple, index in self._followers:
@@ -222,9 +265,9 @@ class _Placement:
 
 
 class _MovingTest:
-    """See ``moving_test``: MuJoCo's own collision detection, and the pairs of geoms that it leaves out."""
+    """Implementation of ``moving_test``: MuJoCo's collision detection, and tests of the pairs that it ignores."""
 
-    def __init__(self, world: CollisionWorld, body: BodyState, place: _Placement, chosen: _Chosen) -> None:
+    def __init__(self, world: CollisionWorld, body: BodyState, place: Placement, chosen: _Chosen) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
         self._held = HeldRoots(world, body) if body.grabs else None
@@ -241,7 +284,7 @@ class _MovingTest:
         else:
             self._detect_with(self._held)
         if data.ncon:
-            touch = self._world.shapes.touch  # of meshes, MuJoCo takes the hulls
+            touch = self._world.shapes.touch  # MuJoCo uses the hulls of meshes
             for first, second in data.contact.geom.tolist():
                 if first * _KEY + second in self._meant and touch(first, second):
                     return True
@@ -250,8 +293,8 @@ class _MovingTest:
     def of_many(self, values: Floats) -> NDArray[np.bool_]:
         """Return for each configuration, shape (n, dofs), whether the body collides.
 
-        Where nothing is held and MuJoCo looks at all pairs, its threads first count the contacts of all configurations.
-        Those with contacts are looked at again, unless all that MuJoCo finds are convex shapes that are meant.
+        Without grabbed bodies, and if MuJoCo tests all pairs, its threads first count the contacts of all
+        configurations. Those with contacts are tested again, unless MuJoCo's result is already exact.
         """
         if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
             return np.array([self(one) for one in values], dtype=bool)
@@ -264,7 +307,7 @@ class _MovingTest:
         return touching
 
     def _detect_with(self, held: HeldRoots) -> None:
-        """Let MuJoCo look for contacts, with what is held where its carriers are."""
+        """Run MuJoCo's collision detection with grabbed bodies at their carriers."""
         with held.on_carriers():
             mujoco.mj_kinematics(self._model, self._data)
             if held.are_late:

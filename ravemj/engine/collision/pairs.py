@@ -1,4 +1,4 @@
-"""Pairs of geoms, which of them are near each other, and MuJoCo's collision detection of them."""
+"""Candidate geom pairs of queries, a broad phase, and MuJoCo's collision detection."""
 
 from collections.abc import Callable, Generator
 from functools import partial
@@ -15,13 +15,15 @@ from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
 from ravemj.engine.simulation.world_model import WorldModel
 
 _BODIES_PER_PAIR = 64
-"""So many bodies take MuJoCo's collision detection as long as one pair takes here: it looks at the masks of all."""
+"""Number of bodies for which MuJoCo's collision detection takes as long as one exact pair test."""
 
 _ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
 _NO_NUMBERS: list[int] = []
 
 _MARGIN = 1e-6  # m; MuJoCo's collision detection finds what is this near: more than exact tests call touching
 _OVERRIDE = int(mujoco.mjtEnableBit.mjENBL_OVERRIDE)
+_NO_TREES = int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
+_FEW_GEOMS = 16  # of a body; for so many, trees of geoms take longer than a look at each pair
 _MOST_CONTACTS = 1 / 4096  # for each byte of MuJoCo's working memory, where a contact takes 600
 
 Bools = NDArray[np.bool_]
@@ -30,23 +32,23 @@ _NO_GEOMS = np.zeros((0, 2), dtype=np.int32)
 
 
 class Masks(NamedTuple):
-    """Values of MuJoCo's ``body_contype`` and ``body_conaffinity`` with which it looks only at some pairs of bodies."""
+    """MuJoCo's ``body_contype`` and ``body_conaffinity`` that restrict it to some pairs of bodies."""
 
     types: _Bits
     affinities: _Bits
 
 
 class Detection:
-    """MuJoCo's collision detection, which finds hulls that touch.
+    """MuJoCo's collision detection, which finds contacts of convex hulls.
 
-    It leaves out the geoms of one weld group, between which the model has no joint, those of a group and the one that
-    it hangs on, unless that is the world's, and what the model excludes.
+    It ignores geoms of one weld group (without a joint between them), of a group and its parent group, unless that is
+    the world's, and excluded pairs.
 
     Attributes:
         positions: Centres of spheres around all geoms [m], shape (n, 3).
         radii: Their radii [m], shape (n,).
-        all: The masks with which MuJoCo looks at all bodies.
-        is_overruled: Whether geoms are where their links are not, so that only spheres find what is near.
+        all: The masks that admit all bodies.
+        is_overruled: Whether geoms are displaced from their links, so that only bounding spheres are valid.
     """
 
     def __init__(self, model: WorldModel, shapes: ShapeTests) -> None:
@@ -61,17 +63,18 @@ class Detection:
         self._bodies = self._model.geom_bodyid
         self._welds = self._model.body_weldid[self._bodies]
         self._geom_masks = self._model.geom_contype, self._model.geom_conaffinity
-        self._types, self._affinities = self._model.body_contype, self._model.body_conaffinity
-        self.all = Masks(self._types.copy(), self._affinities.copy())
+        self._masks = Masks(self._model.body_contype, self._model.body_conaffinity)
+        self.all = Masks(self._masks.types.copy(), self._masks.affinities.copy())
+        self._look_at_all = self.overlaps(self.all)
         self._stamp, self._found_stamp, self._questions, self._is_shared = -1, -1, 0, False
         self._found: NDArray[np.int32] | None = None
 
     def are_welded(self, first: Ints, second: Ints) -> Bools:
-        """Return for each pair of geoms whether no joint is between them."""
+        """Return for each pair of geoms whether there is no joint between them."""
         return self._welds[first] == self._welds[second]
 
     def finds(self, first: Ints, second: Ints, masks: Masks | None = None) -> Bools:
-        """Return for each pair of geoms whether MuJoCo's collision detection looks at it; ``masks`` restrict it."""
+        """Return for each pair of geoms whether MuJoCo's collision detection tests it; ``masks`` restrict it."""
         weld_ids = self._model.body_weldid
         welds, others = weld_ids[self._bodies[first]], weld_ids[self._bodies[second]]
         carriers = weld_ids[self._model.body_parentid]
@@ -86,16 +89,19 @@ class Detection:
         return ~((welds == others) | hanging | excluded) & seen
 
     def masks(self, first: Ints, second: Ints) -> Masks:
-        """Return masks for pairs of geoms, with which MuJoCo may look at more pairs of the same bodies than these."""
+        """Return masks that admit pairs of geoms, and possibly more pairs of the same bodies."""
         types, affinities = np.zeros((2, self.body_count), dtype=np.int32)
         types[self._bodies[first]] = affinities[self._bodies[second]] = 1
         return Masks(types, affinities)
 
-    def detect(self, masks: Masks) -> NDArray[np.int32] | None:
+    def detect(self, look: Callable[[], None]) -> NDArray[np.int32] | None:
         """Look for hulls that touch or nearly touch now.
 
-        If there was more than one question about the last configuration, all bodies are looked at, once for all
-        questions about this one.
+        If there was more than one query in the last configuration, all bodies are tested, once for all queries in this
+        one.
+
+        Args:
+            look: What ``overlaps`` returned for the masks of the question.
 
         Returns:
             Both geoms of each contact, shape (n, 2); None if they may be too many for MuJoCo's memory.
@@ -106,55 +112,71 @@ class Detection:
         if self._is_shared:
             if self._found_stamp == self._stamp:
                 return self._found
-            masks = self.all
-        option, flags = self._option, self._option.enableflags
-        try:
-            option.enableflags = flags | _OVERRIDE
-            self._detect_masked(masks)
-        finally:  # no signal is handled in it
-            option.enableflags = flags
+            look = self._look_at_all
+        self.detect_near(look)
         count = self._data.ncon
         self._found = _NO_GEOMS if not count else self._data.contact.geom.copy() if count < self._most else None
         self._found_stamp = self._stamp if self._is_shared else -1  # last, as an interrupt may have come before
         return self._found
 
+    def detect_near(self, look: Callable[[], None]) -> None:
+        """Let MuJoCo find the contacts of hulls that touch or nearly touch; ``overlaps`` returns ``look``."""
+        option, flags = self._option, self._option.enableflags
+        try:
+            option.enableflags = flags | _OVERRIDE
+            look()
+        finally:  # no signal is handled in it
+            option.enableflags = flags
+
     def overlaps(self, masks: Masks) -> Callable[[], None]:
         """Return a function that looks for hulls that overlap now."""
-        everything = partial(mujoco.mj_collision, self._model, self._data)
-        return everything if masks is self.all else partial(self._detect_masked, masks)
+        model, data, detect = self._model, self._data, mujoco.mj_collision
+        if masks is self.all:
+            return partial(detect, model, data)
+        # Memory views copy few numbers in half the time that arrays take.
+        types, affinities = self._masks.types.data, self._masks.affinities.data
+        some_types, some_affinities = masks.types.data, masks.affinities.data
+        all_types, all_affinities = self.all.types.data, self.all.affinities.data
 
-    def _detect_masked(self, masks: Masks) -> None:
-        try:
-            self._types[...], self._affinities[...] = masks
-            mujoco.mj_collision(self._model, self._data)
-        finally:  # no signal is handled in it
-            self._types[...], self._affinities[...] = self.all
+        def look() -> None:
+            try:
+                types[:], affinities[:] = some_types, some_affinities
+                detect(model, data)
+            finally:  # no signal is handled in it
+                types[:], affinities[:] = all_types, all_affinities
+
+        return look
 
     @block
     def masked(self, masks: Masks) -> Generator[None]:
-        """Have MuJoCo look only at the pairs of masks inside the ``with``."""
-        with restoring(self._unmask):
-            self._types[...], self._affinities[...] = masks
+        """Have MuJoCo look only at the pairs of masks inside the ``with``; where bodies have few geoms, at each pair.
+
+        It finds the same contacts with trees of geoms, but takes longer.
+        """
+        flags = self._option.disableflags
+        with restoring(lambda: self._mask(self.all, flags)):
+            self._mask(masks, flags | _NO_TREES if self._model.body_geomnum.max() <= _FEW_GEOMS else flags)
             yield
 
-    def _unmask(self) -> None:
-        self._types[...], self._affinities[...] = self.all
+    def _mask(self, masks: Masks, flags: int) -> None:
+        self._masks.types[...], self._masks.affinities[...] = masks
+        self._option.disableflags = flags
 
 
 class Pairs:
-    """Pairs of geoms that a query is about: the first geoms, shape (n,), and the second ones."""
+    """Candidate geom pairs of a query: the first geoms, shape (n,), and the second ones."""
 
     def __init__(self, first: Ints, second: Ints, detection: Detection, *, once: bool = False) -> None:
-        """Take pairs; with ``once`` they are looked at only once, so that preparing them is not worth its time."""
+        """Store pairs; ``once`` skips preparations for repeated use."""
         self.first, self.second = first, second
-        self._detection = detection
+        self._detection, self._model = detection, detection.model
         one_by_one = once or len(first) * _BODIES_PER_PAIR <= detection.body_count
         found = np.zeros(len(first), dtype=bool) if one_by_one else detection.finds(first, second)
         self._rest = np.flatnonzero(~found)
         numbers = np.flatnonzero(found).tolist()
         both = zip(first[found].tolist(), second[found].tolist(), strict=True)
         self._numbers = {_ordered(*pair): number for pair, number in zip(both, numbers, strict=True)}
-        self._masks = detection.masks(first[found], second[found])
+        self._look = detection.overlaps(detection.masks(first[found], second[found]))
         self._spheres = _Spheres(first[self._rest], second[self._rest], detection)
         self._rest_is_welded = bool(detection.are_welded(first[self._rest], second[self._rest]).all())
         self._rest_stamp, self._rest_is_exact = -1, False
@@ -164,16 +186,16 @@ class Pairs:
 
     def near(self) -> list[int]:
         """Return the numbers of the pairs that may touch, in order. The caller holds the lock."""
-        detection = self._detection
+        detection, model = self._detection, self._model
         if detection.is_overruled:
             return self._all_spheres.near().tolist()
-        if self._stamp != detection.model.stamp and self._numbers:
+        if self._stamp != model.stamp and self._numbers:
             self._detect()
         if self._are_too_many:
             return self._all_spheres.near().tolist()
-        if not self._rest_is_welded or self._rest_stamp != detection.model.pose_stamp:
+        if not self._rest_is_welded or self._rest_stamp != model.pose_stamp:
             self._rest_near, self._rest_is_exact = self._rest[self._spheres.near()].tolist(), False
-            self._rest_stamp = detection.model.pose_stamp
+            self._rest_stamp = model.pose_stamp
         elif not self._rest_is_exact:  # what is asked again while joints move
             touch = detection.shapes.touch
             self._rest_near = [number for number in self._rest_near if touch(*self.geoms(number))]
@@ -182,14 +204,14 @@ class Pairs:
 
     def _detect(self) -> None:
         """Find which of the pairs that MuJoCo looks at have hulls that touch."""
-        geoms = self._detection.detect(self._masks)
-        found = b"" if geoms is None else geoms.tobytes()
+        geoms = self._detection.detect(self._look)
+        found = b"" if geoms is None or geoms is _NO_GEOMS else geoms.tobytes()
         if geoms is not None and found != self._found:
             numbers, touching = self._numbers, {_ordered(*pair) for pair in geoms.tolist()}
             self._touching = sorted(numbers[pair] for pair in touching if pair in numbers)
             self._found = found
         self._are_too_many = geoms is None
-        self._stamp = self._detection.model.stamp  # last, as an interrupt may have come before
+        self._stamp = self._model.stamp  # last, as an interrupt may have come before
 
     def geoms(self, number: int) -> tuple[int, int]:
         """Return both geoms of a pair."""
@@ -200,14 +222,14 @@ class Pairs:
         return _Spheres(self.first, self.second, self._detection)
 
     def gaps(self) -> Floats:
-        """Return how far apart the spheres of each pair are [m], negative where they overlap, shape (n,)."""
+        """Return the gaps between the bounding spheres of each pair [m], negative if they overlap, shape (n,)."""
         positions, radii = self._detection.positions, self._detection.radii
         apart = np.linalg.norm(positions[self.first] - positions[self.second], axis=1)
         return apart - radii[self.first] - radii[self.second]
 
 
 class _Spheres:
-    """Spheres around pairs of geoms."""
+    """Bounding spheres of geom pairs."""
 
     def __init__(self, first: Ints, second: Ints, detection: Detection) -> None:
         count = len(first)
@@ -215,13 +237,13 @@ class _Spheres:
         self._geoms = np.concatenate([first, second])
         reach = detection.radii[first] + detection.radii[second]
         self._square = (reach * (1 + 1e-9) + 2 * TOUCHING) ** 2
-        # For what is computed each time: making new arrays takes longer than filling these.
+        # Buffers of repeated computations: allocating arrays takes longer than filling these.
         self._centers = np.empty((2 * count, 3))
         self._from, self._apart = self._centers[:count], self._centers[count:]
         self._distance = np.empty(count)
 
     def near(self) -> Ints:
-        """Return the numbers of the pairs whose spheres touch, in order."""
+        """Return the indices of the pairs whose spheres touch, in order."""
         apart = self._apart
         self._positions.take(self._geoms, 0, self._centers, "clip")  # all are there; the default mode is slower
         apart -= self._from
@@ -234,5 +256,5 @@ def _ordered(first: int, second: int) -> tuple[int, int]:
 
 
 def _match(types: _Bits, affinities: _Bits, first: NDArray[np.integer], second: NDArray[np.integer]) -> Bools:
-    """Return for each pair whether the masks let MuJoCo look at it."""
+    """Return for each pair whether the masks admit it."""
     return ((types[first] & affinities[second]) | (types[second] & affinities[first])) != 0

@@ -1,6 +1,6 @@
-"""What is tested against what: the pairs of geoms of each kind of query.
+"""Geom pairs of each type of collision query.
 
-A body that holds others, or is held, takes part with all of them, and is not tested against them.
+A body takes part with all bodies that it has grabbed or that have grabbed it, and is not tested against them.
 """
 
 from collections.abc import Iterable
@@ -21,22 +21,22 @@ from ravemj.model.scene import Bounds, KinBody
 
 
 class MovedBy(NamedTuple):
-    """The links that some DOFs move, or the pairs of links that they move against each other."""
+    """Links moved by some DOFs, or the pairs of links moved relative to each other."""
 
     dofs: tuple[int, ...]
 
 
 Links = frozenset[int] | MovedBy | None
-"""Indices of the links of a body that take part; None: all."""
+"""Indices of the links of a body that take part; None means all."""
 
 LinkPairs = frozenset[Pair] | MovedBy | None
-"""Pairs of links of a body, the smaller index first; None: all."""
+"""Pairs of links of a body, the smaller index first; None means all."""
 
 LinkOf = tuple[BodyState, int]
-"""A body and the index of one of its links."""
+"""Link by its body and index."""
 
 _touching_at_rest: "WeakKeyDictionary[BodyState, tuple[Floats | None, frozenset[Pair]]]" = WeakKeyDictionary()
-"""For each body its rest pose, and the pairs of links that touch in it."""
+"""Rest pose of each body, and the pairs of links that touch in it."""
 
 
 def body_and_others(
@@ -49,18 +49,19 @@ def body_and_others(
     """Return the pairs of a body and all other bodies.
 
     Args:
-        world: Where they are.
-        body: The body with what it holds, or one link, without what that holds.
-        links: Only these links of the body, and what they hold.
-        without_bodies: Other bodies that are left out.
-        without_links: Links that are left out, of the body itself as well.
+        world: The collision world.
+        body: The body with its grabbed bodies, or one link without grabbed bodies.
+        links: Restriction to these links of the body and their grabbed bodies.
+        without_bodies: Other bodies to ignore.
+        without_links: Links to ignore, also of the body itself.
     """
 
     def find() -> tuple[Ints, Ints]:
         others = _without(world, world.geoms_of_others(body_of(body)), without_bodies, without_links)
         return cross(_without(world, _geoms(world, body, links), frozenset(), without_links), others)
 
-    return world.pairs(("others", body, links, without_bodies, without_links), find)
+    is_whole = links is None and not without_bodies and not without_links  # then the body alone is the query
+    return world.pairs(body if is_whole else ("others", body, links, without_bodies, without_links), find)
 
 
 def each_other(
@@ -68,8 +69,8 @@ def each_other(
 ) -> Pairs:
     """Return the pairs of two bodies, of a link and a body, or of two links.
 
-    There are none if one body holds the other, nor of a link and its own body; two links of one body are tested,
-    adjacent or not. ``links``: only these links of the first of two bodies, and what they hold.
+    There are none if one body has grabbed the other, nor of a link and its own body; two links of one body are tested
+    even if adjacent. ``links`` restricts the first body to these links and their grabbed bodies.
     """
 
     def find() -> tuple[Ints, Ints]:
@@ -88,7 +89,7 @@ def each_other(
 
 
 def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> Pairs:
-    """Return the pairs within a body and what it holds; where asked, only those of these links or what they hold."""
+    """Return the self-collision pairs of a body and its grabbed bodies, optionally of some links or pairs only."""
 
     def find() -> tuple[Ints, Ints]:
         wanted = moved_apart(body.scene, asked.dofs) if isinstance(asked, MovedBy) else asked
@@ -98,7 +99,7 @@ def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> P
 
 
 def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
-    """Return the pairs of a link, or what it holds, and the rest of its body, as far as ``itself`` has them."""
+    """Return the pairs of a link and its grabbed bodies with the rest of its body, as far as in ``itself``."""
     body, index = link
     others = range(len(body.scene.links))
     return itself(world, body, frozenset(ordered_pair(index, other) for other in others))
@@ -122,14 +123,14 @@ def _within(
 
 
 def tested_pairs(world: CollisionWorld, body: BodyState) -> list[Pair]:
-    """Return the pairs of links, the smaller index first, that are neither adjacent nor touch in the rest pose.
+    """Return the pairs of links, the smaller index first, that are neither adjacent nor in contact in the rest pose.
 
-    The rest pose is that in which the body was added, or which ``SetNonCollidingConfiguration`` declared.
+    The rest pose is the pose at the addition of the body, or declared by ``SetNonCollidingConfiguration``.
     """
     known = _touching_at_rest.get(body)
     if known is None or known[0] is not body.rest_poses:
         _touching_at_rest[body] = known = body.rest_poses, _find_touching(world, body)
-    return [pair for pair in separate_pairs(body.scene) if pair not in known[1]]
+    return [pair for pair in separate_pairs(world.model.description(body)) if pair not in known[1]]
 
 
 def _find_touching(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
@@ -147,9 +148,9 @@ def touching_pairs(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
     """Return the pairs of links, the smaller index first, that touch and are not adjacent, enabled or not."""
 
     def find() -> tuple[Ints, Ints]:
-        links = range(len(body.scene.links))
-        geoms = [world.geoms_of_link(body, link, enabled_only=False) for link in links]
-        return joined(cross(geoms[first], geoms[second]) for first, second in separate_pairs(body.scene))
+        described = world.model.description(body)
+        geoms = [world.geoms_of_link(body, link, enabled_only=False) for link in range(len(described.links))]
+        return joined(cross(geoms[first], geoms[second]) for first, second in separate_pairs(described))
 
     hits = world.hits(world.pairs(("separate links", body), find))
     return frozenset(ordered_pair(world.owner(first)[1], world.owner(second)[1]) for first, second in hits)
@@ -162,7 +163,7 @@ def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) ->
 
 
 def moved_apart(body: KinBody, dofs: Iterable[int]) -> frozenset[Pair]:
-    """Return the pairs of links, the smaller index first, that any of the DOFs moves against each other."""
+    """Return the pairs of links, the smaller index first, that any of the DOFs moves relative to each other."""
     movers = [dofs_moving(body, link) & set(dofs) for link in range(len(body.links))]
     return frozenset((a, b) for a, b in combinations(range(len(movers)), 2) if movers[a] != movers[b])
 
@@ -174,12 +175,12 @@ def moved_links(body: KinBody, dofs: Iterable[int]) -> frozenset[int]:
 
 
 def body_of(thing: BodyState | LinkOf) -> BodyState:
-    """Return a body itself, or the body of a link."""
+    """Return a body, or the body of a link."""
     return thing if isinstance(thing, BodyState) else thing[0]
 
 
 def _geoms(world: CollisionWorld, thing: BodyState | LinkOf, links: Links = None) -> Ints:
-    """Return the geoms of a link, of some links and what they hold, or of a body and all that is connected to it."""
+    """Return the geoms of a link, of links with grabbed bodies, or of a body and all bodies connected by grabs."""
     if not isinstance(thing, BodyState):
         return world.geoms_of_link(*thing)
     if links is None:
@@ -192,12 +193,12 @@ def _geoms(world: CollisionWorld, thing: BodyState | LinkOf, links: Links = None
 
 
 def _held(world: CollisionWorld, body: BodyState) -> Ints:
-    """Return the geoms of a body and of all that it holds."""
+    """Return the geoms of a body and its grabbed bodies."""
     return np.concatenate([world.geoms_of_body(one) for one in held_with(body)])
 
 
 def held_with(body: BodyState) -> list[BodyState]:
-    """Return a body and all that it holds, and so on."""
+    """Return a body and its grabbed bodies, recursively."""
     return [body, *(one for grab in body.grabs for one in held_with(grab.body))]
 
 
@@ -211,9 +212,9 @@ def _nothing() -> Ints:
 
 
 def touching_region(body: BodyState) -> Bounds | None:
-    """Return the box of base positions [m] beyond which a body touches no other one, at any joint values.
+    """Return the box of base positions [m] outside which a body cannot touch other bodies at any joint values.
 
-    None if there is no other body with shapes.
+    None if there are no other shapes.
     """
     attached = body.simulation.attached(body)
     others = _boxes(one for one in body.simulation.bodies if one not in attached)
@@ -233,5 +234,5 @@ def _boxes(bodies: Iterable[BodyState]) -> list[Bounds]:
 
 
 def _distance(box: Bounds, point: Floats) -> float:
-    """Return the greatest distance of a point from a box."""
+    """Return the maximum distance of a point from a box."""
     return float(np.linalg.norm(np.maximum(np.abs(box.low - point), np.abs(box.high - point))))

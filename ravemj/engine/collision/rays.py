@@ -1,4 +1,4 @@
-"""Rays: where they meet the surface of a geom first. Meshes are their triangles."""
+"""Ray casting: first hits of rays with geoms. Meshes are their triangles."""
 
 import math
 from copy import copy
@@ -15,33 +15,32 @@ _GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 _FAR = 1e10
 
 _SHORTEST = 1e-14
-"""Length of a direction [m] that MuJoCo takes for none, and a little more."""
+"""Length of a direction [m] slightly above the one that MuJoCo treats as zero."""
 
 
 class RayHit(NamedTuple):
-    """Where a ray meets a geom."""
+    """Hit of a ray on a geom."""
 
     geom: int
-    fraction: float  # how far along the ray, from 0 to 1
+    fraction: float  # fraction of the ray, from 0 to 1
     position: Floats  # in the world [m], shape (3,)
     normal: Floats  # of the surface, outwards, of length 1, shape (3,)
 
 
 class RayCaster:
-    """Casts rays at some geoms of a model: one with ``mj_ray``, many in one call of ``mj_multiRay``.
+    """Casts rays against geoms of a model: one with ``mj_ray``, many in one call of ``mj_multiRay``.
 
-    MuJoCo takes the geoms of certain groups that are not wholly transparent. A copy of the model has all of them
-    visible and in the group that is meant, so that threads that draw the model meanwhile notice nothing.
+    MuJoCo tests geoms of selected groups that are not fully transparent. A copy of the model has all of them visible
+    and in the selected group, so that concurrent drawing of the model is not affected.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> None:
-        """Take a model, its state, and the geoms that rays can meet where no others are named."""
+        """Store a model, its state, and the default target geoms."""
         self._model, self._data, self._geoms = copy(model), data, geoms
         self._model.geom_rgba[:, 3] = 1.0
         self._targets: Ints | None = None
 
     def _aim_at(self, geoms: Ints | None) -> None:
-        """Let rays meet these geoms only."""
         geoms = self._geoms if geoms is None else geoms
         if self._targets is not geoms and (self._targets is None or not np.array_equal(self._targets, geoms)):
             self._model.geom_group[:] = _LEFT_OUT
@@ -49,9 +48,10 @@ class RayCaster:
         self._targets = geoms
 
     def first_hit(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
-        """Return where a ray first meets a surface; one that starts inside a solid meets it where it comes out.
+        """Return the first hit of a ray. A ray that starts inside a solid reports its exit point.
 
-        It begins at ``start`` in the world [m], shape (3,), and is as long as its direction [m], shape (3,).
+        It starts at ``start`` in the world [m], shape (3,), and its range is the length of ``direction`` [m], shape
+        (3,).
         """
         if math.hypot(*direction.tolist()) <= _SHORTEST:
             return None
@@ -70,12 +70,12 @@ class RayCaster:
         geoms: Ints | None = None,
         normals: Floats | None = None,
     ) -> tuple[Floats, NDArray[np.int32]]:
-        """Return what rays from one point meet first; inside of a solid, it is where they come out.
+        """Return the first hit of each ray from a common origin; inside a solid, it is the exit point.
 
-        Geoms beyond ``reach`` [m] may be left out. ``normals`` is filled with the outward unit normals there, (n, 3).
+        Geoms beyond ``reach`` [m] may be ignored. ``normals`` receives the outward unit normals at the hits, (n, 3).
 
         Returns:
-            How far along each ray, in lengths of its direction, and the geom, each (n,); -1 where it meets nothing.
+            The distance of each hit in lengths of its direction, and the geom, each (n,); -1 without a hit.
         """
         self._aim_at(geoms)
         count = len(directions)
@@ -89,16 +89,16 @@ class RayCaster:
     def first_hits(
         self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return where rays first meet a surface, in one call for all that begin at the same point.
+        """Return the first hits of rays, in one call for all rays with the same start.
 
         Args:
-            rays: Start and direction of each; the direction is as long as the ray [m], shape (n, 6).
-            geoms: The geoms that they can meet.
-            front_facing_only: Whether hits from behind, on the inside of a surface, are left out.
+            rays: Start and direction of each ray; the length of the direction is the range [m], shape (n, 6).
+            geoms: The target geoms.
+            front_facing_only: Whether to ignore hits from behind, on the inside of a surface.
 
         Returns:
-            Which rays meet something, shape (n,); and position and outward normal of each hit, shape (n, 6), zeros
-            for the others.
+            Whether each ray hits, shape (n,); and position and outward normal of each hit, shape (n, 6), zeros without
+            a hit.
         """
         found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
         if len(rays) == 1:
@@ -121,7 +121,7 @@ class RayCaster:
 
 
 def _of_one_start(rays: Floats, chosen: Ints) -> list[Ints]:
-    """Return the indices of the chosen rays in sets that begin at the same point."""
+    """Group the chosen rays by start; return their indices."""
     order = chosen[np.lexsort(rays[chosen, :3].T)]
     ends = np.flatnonzero((rays[order[1:], :3] != rays[order[:-1], :3]).any(axis=1)) + 1
     return np.split(order, ends)

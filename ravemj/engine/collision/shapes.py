@@ -1,5 +1,6 @@
-"""Whether two geoms touch, how far they are apart, how deep they are in each other."""
+"""Exact pair tests of geoms: contact, distance, penetration depth."""
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import mujoco
@@ -11,19 +12,19 @@ if TYPE_CHECKING:
     from ravemj.engine.collision.triangles import TriangleTests
 
 TOUCHING = 1e-10
-"""Shapes this near [m] touch, and count as colliding."""
+"""Maximum distance of shapes in contact [m]."""
 
-_RANGE = 1e-8  # m; MuJoCo looks no farther when only touching is asked for
-_GRAZING = 1e-6  # m; hulls that are less deep in each other may just touch
+_RANGE = 1e-8  # [m]; MuJoCo's search distance if only contact is tested
+_GRAZING = 1e-6  # [m]; penetration depth up to which hulls may merely touch
 _FAR = 1e10  # m
 
 
 class Contact(NamedTuple):
-    """Where two geoms are in each other."""
+    """Contact between two geoms: position, normal, depth."""
 
     position: Floats  # the middle between the deepest point of each, in the world [m], shape (3,)
     normal: Floats  # unit vector out of the second geom towards the first, shape (3,)
-    depth: float  # how far they are in each other [m]; 0 where they just touch
+    depth: float  # penetration depth [m]; 0 if they merely touch
 
 
 def _triangle_tests(model: mujoco.MjModel, data: mujoco.MjData) -> "TriangleTests":
@@ -41,7 +42,7 @@ class ShapeTests:
         self._segment = np.zeros(6)
 
     def is_concave(self, geom: int) -> bool:
-        """Return whether a geom is a mesh that does not fill its hull."""
+        """Return whether a geom is a non-convex mesh."""
         return self._triangles is not None and self._triangles.is_concave(geom)
 
     def touch(self, first: int, second: int) -> bool:
@@ -50,7 +51,7 @@ class ShapeTests:
         triangles = self._triangles
         if hulls > TOUCHING or triangles is None:
             return hulls <= TOUCHING
-        if hulls > -_GRAZING:  # whether triangles overlap that just touch is up to rounding; distances are not
+        if hulls > -_GRAZING:  # contact of triangles that merely touch is a matter of rounding; distances are not
             return self.distance(first, second, _RANGE) <= TOUCHING
         if triangles.is_concave(first):
             return triangles.touch(first, second, TOUCHING)
@@ -69,12 +70,31 @@ class ShapeTests:
             self._segment[:] = np.roll(self._segment, 3)
         return hulls
 
+    def closest(self, first: int, second: int, limit: float) -> tuple[float, Floats]:
+        """Return ``distance``, and the nearest (or deepest) point of each geom, in one row [m], shape (6,)."""
+        distance = self.distance(first, second, limit)
+        return distance, self._segment.copy()
+
     def contact(self, first: int, second: int) -> Contact:
         """Return the deepest contact of two geoms that touch."""
-        depth = max(-self.distance(first, second), 0.0)
-        start, end = self._segment[:3].copy(), self._segment[3:].copy()
-        normal = end - start
+        return self._contact(first, second, max(-self.distance(first, second), 0.0), self._segment)
+
+    def contacts_of_triangles(self, first: int, second: int) -> list[Contact]:
+        """Return the contacts of two geoms that touch, one of which is concave: one for each pair of triangles."""
+        triangles = self._triangles
+        assert triangles is not None, "one of them is a mesh"
+        ours, theirs = (first, second) if triangles.is_concave(first) else (second, first)
+        pairs = list(triangles.overlaps(ours, theirs, TOUCHING))
+        points = [(distance, segment if ours == first else np.roll(segment, 3)) for distance, segment in pairs]
+        found = [self._contact(first, second, max(-distance, 0.0), segment) for distance, segment in points]
+        return found or [self.contact(first, second)]
+
+    def _contact(self, first: int, second: int, depth: float, segment: Floats) -> Contact:
+        """Return the contact of which the deepest points of both geoms are given, in one row [m], shape (6,)."""
+        x, y, z, u, v, w = segment.tolist()  # plain floats: numpy takes ten times as long for so few
+        normal = u - x, v - y, w - z
         if depth <= TOUCHING:  # no direction in the two points
-            normal = self._data.geom_xpos[first] - self._data.geom_xpos[second]
-        length = float(np.linalg.norm(normal))
-        return Contact((start + end) / 2, normal / length if length else np.array([0.0, 0.0, 1.0]), depth)
+            normal = (self._data.geom_xpos[first] - self._data.geom_xpos[second]).tolist()
+        length = math.hypot(*normal)
+        direction = [part / length for part in normal] if length else [0.0, 0.0, 1.0]
+        return Contact(np.array([(x + u) / 2, (y + v) / 2, (z + w) / 2]), np.array(direction), depth)

@@ -1,12 +1,11 @@
-"""Meshes as the triangles that they consist of, where MuJoCo would take their convex hulls.
+"""Tests of non-convex meshes by their triangles, of which MuJoCo would use the convex hulls.
 
-FCL keeps a tree of boxes over the triangles of each mesh; it finds those that overlap, and how far meshes are apart.
-MuJoCo measures how deep two triangles, or a triangle and a solid, are in each other. To MuJoCo a triangle is a mesh of
-three corners, the last one twice, so a scratch model with two such meshes and one geom of any other shape takes them in
-turn.
+FCL's bounding volume hierarchies find overlapping triangles and distances of meshes. MuJoCo measures the depth between
+two triangles, or a triangle and a solid. For MuJoCo a triangle is a mesh of three vertices, the last one repeated; a
+scratch model with two such meshes and one geom of any other shape is reused for all of them.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import chain
 
 import fcl
@@ -18,7 +17,7 @@ from ravemj.formats.meshes import area, volume
 from ravemj.model.scene import Mesh
 
 NOT_FILLED = 1e-3
-"""The part of its hull's area and volume that a mesh may lack and still be convex."""
+"""Maximum deficit of area and volume relative to the hull up to which a mesh is convex."""
 
 _XML = """<mujoco><asset>
 <mesh name="a" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/><mesh name="b" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>
@@ -28,9 +27,9 @@ _XML = """<mujoco><asset>
 _TRIANGLE, _OTHER_TRIANGLE, _SOLID = range(3)
 
 _Candidate = tuple[float, Floats, Floats | None]
-"""A lower bound of the distance [m], a triangle of a mesh, and one of another mesh where that is what is measured."""
+"""Lower bound of the distance [m], a triangle of a mesh, and one of the other mesh if that is measured."""
 
-_SLACK = 1e-4  # m; boxes are wider by this, since FCL's test of a box and a triangle ends at an error of 1e-6
+_SLACK = 1e-4  # [m]; margin of boxes, since FCL's test of a box and a triangle has errors of 1e-6
 
 _ANY = fcl.CollisionRequest()
 _ALL = fcl.CollisionRequest(num_max_contacts=2**31 - 1)
@@ -38,9 +37,9 @@ _NEAREST = fcl.DistanceRequest(enable_nearest_points=True)
 
 
 class TriangleTests:
-    """Tests of meshes that are not convex, in one compiled model.
+    """Tests of non-convex meshes of one compiled model.
 
-    What is inside a closed mesh and touches no triangle is apart from it.
+    A shape inside a closed mesh that touches no triangle does not collide.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -54,7 +53,7 @@ class TriangleTests:
         self._corners = self._scratch.mesh_vert.reshape(2, 4, 3)
 
     def is_concave(self, geom: int) -> bool:
-        """Return whether a geom is a mesh that does not fill its hull or has holes."""
+        """Return whether a geom is a non-convex mesh, or has holes."""
         mesh = int(self._model.geom_dataid[geom])
         if mesh < 0:
             return False
@@ -63,7 +62,7 @@ class TriangleTests:
         return not self._is_convex[mesh]
 
     def touch(self, mesh: int, other: int, touching: float) -> bool:
-        """Return whether a mesh and another geom overlap, or a solid is no farther away than ``touching`` [m]."""
+        """Return whether a mesh and another geom overlap, or a solid is within ``touching`` [m]."""
         overlaps = fcl.CollisionResult()
         if not fcl.collide(self._placed(mesh), self._placed(other), _ANY, overlaps):
             return False
@@ -75,9 +74,9 @@ class TriangleTests:
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
 
     def distance(self, mesh: int, other: int, limit: float, segment: Floats) -> float:
-        """Return the signed distance [m] of a mesh and another geom, or ``limit`` if it is not less.
+        """Return the signed distance [m] of a mesh and another geom, at most ``limit``.
 
-        ``segment`` takes the nearest or deepest points of mesh and other, in the world, shape (6,).
+        ``segment`` receives the nearest or deepest points of mesh and other, in the world, shape (6,).
         """
         if not self._is_mesh(other):
             candidates = self._triangles_of(mesh).near(*self._place_solid(mesh, other), limit)
@@ -85,25 +84,38 @@ class TriangleTests:
         placed = self._placed(mesh), self._placed(other)
         overlaps, nearest = fcl.CollisionResult(), fcl.DistanceResult()
         if fcl.collide(*placed, _ALL, overlaps):
-            return self._deepest(mesh, other, overlaps.contacts, limit, segment)
+            return self._least(mesh, _OTHER_TRIANGLE, self._pairs(mesh, other, overlaps.contacts), limit, segment)
         distance = fcl.distance(*placed, _NEAREST, nearest)
         if distance < limit:
             segment[:] = np.concatenate(nearest.nearest_points)
         return min(distance, limit)
 
-    def _deepest(self, mesh: int, other: int, overlaps: Iterable[fcl.Contact], limit: float, segment: Floats) -> float:
-        """Return ``distance`` of two meshes of which some triangles overlap."""
-        pairs = np.array(sorted({(overlap.b1, overlap.b2) for overlap in overlaps}))
+    def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
+        """Yield signed distance [m] and ``segment`` of each triangle that touches a solid or one of another mesh."""
+        found, place = fcl.CollisionResult(), _OTHER_TRIANGLE
+        if self._is_mesh(other):
+            fcl.collide(self._placed(mesh), self._placed(other), _ALL, found)
+            candidates = self._pairs(mesh, other, found.contacts)
+        else:
+            candidates, place = self._triangles_of(mesh).near(*self._place_solid(mesh, other), touching), _SOLID
+        for candidate in candidates:
+            segment = np.zeros(6)
+            distance = self._least(mesh, place, [candidate], 2 * touching, segment)
+            if distance <= touching:
+                yield distance, segment
+
+    def _pairs(self, mesh: int, other: int, overlaps: Iterable[fcl.Contact]) -> Iterable[_Candidate]:
+        """Return the triangles of two meshes that overlap."""
+        pairs = np.array(sorted({(overlap.b1, overlap.b2) for overlap in overlaps}), dtype=int).reshape(-1, 2)
         rotation, position = self._pose_in(mesh, other)
         ours = self._triangles_of(mesh).corners[pairs[:, 0]]
         theirs = self._triangles_of(other).corners[pairs[:, 1]] @ rotation.T + position
-        candidates = ((-np.inf, one, two) for one, two in zip(ours, theirs, strict=True))
-        return self._least(mesh, _OTHER_TRIANGLE, candidates, limit, segment)
+        return ((-np.inf, one, two) for one, two in zip(ours, theirs, strict=True))
 
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
-        """Put a shape that is no mesh into the scratch model, and return a box around it, along the axes of the mesh.
+        """Put a solid into the scratch model, and return its bounding box along the axes of the mesh.
 
-        The box is its centre and half its edges, in the mesh's frame.
+        The box is given by centre and half extents in the mesh's frame.
         """
         rotation, position = self._pose_in(mesh, solid)
         self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]
@@ -121,7 +133,7 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return ``distance`` of the nearest candidate; those whose bound is least come first.
+        """Return ``distance`` of the nearest candidate, in the order of lower bounds.
 
         Triangles are measured against the geom ``place`` of the scratch model, until one is as near as ``enough`` [m].
         """
@@ -164,7 +176,7 @@ class TriangleTests:
         return rotation.T @ second_rotation, rotation.T @ (second_position - position)
 
     def _placed(self, geom: int) -> fcl.CollisionObject:
-        """Return a mesh where it is now, or a box around another shape, for FCL."""
+        """Return a mesh at its present pose, or the bounding box of another shape, for FCL."""
         rotation, position = self._pose(geom)
         if not self._is_mesh(geom):
             position = position + rotation @ self._model.geom_aabb[geom, :3]
@@ -180,7 +192,7 @@ class TriangleTests:
 
 
 class _Triangles:
-    """The triangles of a mesh: their corners, shape (n, 3, 3), and FCL's tree of boxes around them."""
+    """Triangles of a mesh: their vertices, shape (n, 3, 3), and FCL's bounding volume hierarchy."""
 
     def __init__(self, vertices: Floats, triangles: Ints) -> None:
         self.corners = vertices[triangles]
@@ -191,9 +203,9 @@ class _Triangles:
         self.tree.endModel()
 
     def near(self, centre: Floats, half: Floats, limit: float) -> Iterable[_Candidate]:
-        """Yield the triangles whose boxes are no farther than ``limit`` from a box, the nearest first.
+        """Yield the triangles whose boxes are within ``limit`` of a box, the nearest first.
 
-        ``centre`` and ``half`` are its centre and half its edges, in the frame of the mesh [m], shape (3,).
+        ``centre`` and ``half`` are its centre and half extents in the frame of the mesh [m], shape (3,).
         """
         apart = np.maximum(np.maximum(self._low - centre - half, centre - half - self._high), 0.0)
         bounds = np.sqrt((apart * apart).sum(axis=1))

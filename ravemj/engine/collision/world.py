@@ -1,6 +1,5 @@
-"""What collision checking knows of a world: which geom is whose, and which pairs of geoms each query is about."""
+"""Collision world: owners of geoms, and cached geom pairs of queries."""
 
-import os
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.blocks import block, restoring
 from ravemj.core.caching import cached_property
+from ravemj.core.threads import batch_threads
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Detection, Masks, Pairs
 from ravemj.engine.collision.rays import RayCaster
@@ -23,22 +23,22 @@ if TYPE_CHECKING:
 _Made = TypeVar("_Made")
 
 MOST_PAIRS = 300_000
-"""Pairs of geoms, and masks of bodies, that are kept for all queries together."""
+"""Maximum number of cached pairs and masks."""
 
 MOST_AT_ONCE = 1000
-"""Configurations that threads work on together, so that memory does not grow with their number."""
+"""Maximum number of configurations per call of the threads, which bounds memory."""
 
 _WORTH_MASKS = 1.5
-"""Setting masks pays where MuJoCo would look at so many times as many pairs without."""
+"""Factor of pairs saved from which setting masks is worthwhile."""
 
-_POSITIONS = 1  # mjSTAGE_POS: what follows from joint positions, contacts among it
+_POSITIONS = 1  # mjSTAGE_POS: results of joint positions, including contacts
 
 
 class CollisionWorld:
-    """The geoms of all bodies in the present model, and the pairs that were asked for before.
+    """Geoms of all bodies in the present model, and cached pairs of queries.
 
-    ``Simulation.collisions`` returns it, up to date. Bodies may move in the meantime; whatever else changes makes a new
-    one: ``stamp`` is the ``collision_stamp`` that it was made at.
+    ``Simulation.collisions`` returns it, up to date. It stays valid while bodies move; any other change requires a new
+    one: ``stamp`` is its ``collision_stamp``.
     """
 
     def __init__(self, bodies: tuple[BodyState, ...], model: WorldModel, stamp: int) -> None:
@@ -48,12 +48,14 @@ class CollisionWorld:
         self.detection = Detection(model, self.shapes)
         self._number = {body: number for number, body in enumerate(self.bodies)}
         self._pairs: dict[Hashable, Pairs] = {}
+        self.known_pairs = self._pairs.get  # of a query that was asked before, or None
         self._kept: dict[Hashable, Any] = {}
+        self._geometries: dict[int, tuple[BodyState, int, int]] = {}
         self._pair_count = 0
         self._find_owners(model.model)
 
     def _find_owners(self, model: mujoco.MjModel) -> None:
-        """Find body and link of each geom; the arrays have a place for each MuJoCo body first."""
+        """Find body and link of each geom, in arrays over MuJoCo's bodies."""
         owners, links = np.full(model.nbody, -1), np.zeros(model.nbody, dtype=int)
         enabled = np.zeros(model.nbody, dtype=bool)
         for number, body in enumerate(self.bodies):
@@ -65,26 +67,26 @@ class CollisionWorld:
         self._collides = self._is_solid & enabled[of_geom]
 
     def group(self, body: BodyState) -> list[BodyState]:
-        """Return a body and all that are connected to it by grabbing; it comes first."""
+        """Return a body, followed by all bodies connected to it by grabs."""
         return self.kept(("group", body), lambda: body.simulation.attached(body))
 
     def geoms_of_body(self, body: BodyState, *, enabled_only: bool = True) -> Ints:
-        """Return the geoms of a body that collide, or would if all its links were enabled."""
+        """Return the collision geoms of a body, optionally with those of disabled links."""
         number = self._number.get(body, -2)
         among = self._collides if enabled_only else self._is_solid
         return np.flatnonzero(among & (self._owner == number))
 
     def geoms_of_link(self, body: BodyState, link: int, *, enabled_only: bool = True) -> Ints:
-        """Return the geoms of a link that collide, or would if it were enabled."""
+        """Return the collision geoms of a link, optionally even if it is disabled."""
         geoms = self.geoms_of_body(body, enabled_only=enabled_only)
         return geoms[self._link[geoms] == link]
 
     def geoms_of_group(self, body: BodyState) -> Ints:
-        """Return the geoms of a body and all that are connected to it by grabbing."""
+        """Return the collision geoms of a body and all bodies connected to it by grabs."""
         return self.kept(body, lambda: np.concatenate([self.geoms_of_body(one) for one in self.group(body)]))
 
     def geoms_of_others(self, body: BodyState) -> Ints:
-        """Return the geoms of the bodies that are not connected to this one by grabbing."""
+        """Return the collision geoms of the bodies not connected to a body by grabs."""
         numbers = [self._number[one] for one in self.group(body) if one in self._number]
         return np.flatnonzero(self._collides & ~np.isin(self._owner, numbers))
 
@@ -92,28 +94,32 @@ class CollisionWorld:
         """Return the body and the index of the link that a geom belongs to."""
         return self.bodies[int(self._owner[geom])], int(self._link[geom])
 
-    def geometry(self, geom: int) -> int:
-        """Return which of its link's geometries a geom belongs to."""
-        body, link = self.owner(geom)
-        part = self.model.part(body)
-        number = geom - int(self._model.body_geomadr[part.body_ids[link]])
-        return int(np.searchsorted(np.cumsum(part.names.geoms[link]), number, side="right"))
+    def geometry(self, geom: int) -> tuple[BodyState, int, int]:
+        """Return the body, the index of the link and that of the geometry that a geom belongs to."""
+        known = self._geometries.get(geom)
+        if known is None:
+            body, link = self.owner(geom)
+            part = self.model.part(body)
+            number = geom - int(self._model.body_geomadr[part.body_ids[link]])
+            place = int(np.searchsorted(np.cumsum(part.names.geoms[link]), number, side="right"))
+            known = self._geometries[geom] = body, link, place
+        return known
 
     def labels(self, geoms: NDArray[np.int32]) -> Ints:
-        """Return the indices of body and link of geoms (...), as (..., 2): 0 and -1 for the geom -1, which is none."""
+        """Return the body and link indices of geoms (...), as (..., 2); 0 and -1 for the geom -1, which means none."""
         indices = np.array([*(body.index for body in self.bodies), 0])
         bodies, links = indices[self._owner[geoms]], self._link[geoms]
         nothing = geoms < 0
         return np.stack([np.where(nothing, 0, bodies), np.where(nothing, -1, links)], axis=-1)
 
     def kept(self, query: Hashable, make: Callable[[], _Made]) -> _Made:
-        """Return what was made for a query before, or make it."""
+        """Return the cached result for a query, or make it."""
         if query not in self._kept:
             self._kept[query] = make()
         return self._kept[query]
 
     def pairs(self, query: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
-        """Return the pairs that a query is about, which ``find`` finds where they are not known yet."""
+        """Return the cached pairs of a query, computed by ``find`` on first use."""
         pairs = self._pairs.get(query)
         if pairs is None:
             first, second = find()
@@ -126,15 +132,15 @@ class CollisionWorld:
         return pairs
 
     def make_pairs(self, first: Ints, second: Ints) -> Pairs:
-        """Return pairs of geoms for a query that is made once."""
+        """Return geom pairs for a single query."""
         return Pairs(first, second, self.detection, once=True)
 
     def best_masks(self, first: Ints, second: Ints) -> tuple[Masks, bool]:
-        """Return the masks with which MuJoCo finds pairs of geoms fastest.
+        """Return the fastest masks with which MuJoCo finds geom pairs.
 
         Returns:
-            The masks, and whether MuJoCo looks at no other pairs with them and all geoms are convex. That is False as
-            well if there are too many geoms to count their pairs.
+            The masks, and whether they admit no other pairs and all geoms are convex; also False if there are too many
+            geoms to count their pairs.
         """
         masks = self.detection.masks(first, second)
         if self._model.ngeom**2 >= 2 * MOST_PAIRS:
@@ -150,17 +156,18 @@ class CollisionWorld:
         return any(map(self.shapes.is_concave, self._colliding.tolist()))
 
     def have_contacts(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Return for each of ``MOST_AT_ONCE`` configurations at most, shape (n, nq), whether MuJoCo finds contacts."""
-        if _processors() == 1:
+        """Return for each configuration, at most ``MOST_AT_ONCE``, shape (n, nq), whether MuJoCo finds contacts."""
+        threads = batch_threads()
+        if threads == 1:
             return self._have_contacts_one_by_one(masks, qpos)
-        batch, count = self._batch, len(qpos)
+        batch, count = self.kept(("batch", threads), lambda: self._batch(threads)), len(qpos)
         batch.bind("qpos")[:count] = qpos
         with self.detection.masked(masks):
             batch.forward(np.arange(count), stage=_POSITIONS)
         return batch.bind("ncon")[:count] > 0
 
     def _have_contacts_one_by_one(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Do the same where there is one processor, on which a ``Batch`` takes longer, since it computes more."""
+        """Do the same in one thread; a ``Batch`` is slower there, since it computes more."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
         counts: list[int] = []
@@ -172,12 +179,11 @@ class CollisionWorld:
                 counts.append(data.ncon)
         return np.array(counts) > 0
 
-    @cached_property
-    def _batch(self) -> "Batch":
-        """Many states of the model, in which bodies without joints move, too, since it reads the model itself."""
+    def _batch(self, threads: int) -> "Batch":
+        """States of the model for threads; they share the model, in which bodies without joints move, too."""
         from mujoco.batch import Batch  # noqa: PLC0415 - slow to import
 
-        batch = Batch(self._model, MOST_AT_ONCE)
+        batch = Batch(self._model, MOST_AT_ONCE, threads)
         batch.set_models(self._model)
         batch.bind("ncon")
         return batch
@@ -185,14 +191,14 @@ class CollisionWorld:
     def collide(self, pairs: Pairs) -> bool:
         """Return whether any of the pairs touch or overlap."""
         near = pairs.near()
-        return bool(near) and any(self.shapes.touch(*pairs.geoms(number)) for number in near)
+        return any(self.shapes.touch(*pairs.geoms(number)) for number in near) if near else False
 
     def hits(self, pairs: Pairs) -> Iterator[tuple[int, int]]:
         """Yield the pairs that touch or overlap."""
         return (geoms for geoms in map(pairs.geoms, pairs.near()) if self.shapes.touch(*geoms))
 
     def nearest(self, pairs: Pairs, limit: float) -> tuple[float, tuple[int, int] | None]:
-        """Return the least signed distance of the pairs [m] and the pair, or the limit and None if none is nearer."""
+        """Return the smallest signed distance of the pairs [m] and the pair; the limit and None if none is nearer."""
         gaps, found = pairs.gaps(), None
         for number in np.argsort(gaps, kind="stable"):
             if gaps[number] >= limit:
@@ -204,7 +210,7 @@ class CollisionWorld:
         return limit, found
 
     def count_within(self, pairs: Pairs, tolerance: float) -> int:
-        """Return how many of the pairs are nearer than a tolerance [m]."""
+        """Return the number of pairs closer than a tolerance [m]."""
         near: list[int] = np.flatnonzero(pairs.gaps() <= tolerance).tolist()
         beyond = float(np.nextafter(tolerance, np.inf))
         measured = (self.shapes.distance(*pairs.geoms(number), beyond) for number in near)
@@ -212,7 +218,7 @@ class CollisionWorld:
 
     @cached_property
     def rays(self) -> RayCaster:
-        """Casts rays at what collides, or at other geoms."""
+        """Ray caster against all colliding geoms by default."""
         return RayCaster(self._model, self._data, self._colliding)
 
     @cached_property
@@ -221,7 +227,7 @@ class CollisionWorld:
 
     @block
     def moved(self, motions: Mapping[tuple[BodyState, int], Floats]) -> Generator[None]:
-        """Put links elsewhere for the tests inside the ``with``, by motions in the world (4, 4); bodies stay."""
+        """Context manager that displaces links for tests by motions in the world (4, 4); bodies do not move."""
         positions, rotations = self._data.geom_xpos, self._data.geom_xmat
         with restoring(self._move_back):
             self.detection.is_overruled = True
@@ -236,17 +242,12 @@ class CollisionWorld:
         mujoco.mj_kinematics(self._model, self._data)
 
 
-def _processors() -> int:
-    """Return how many processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def cross(first: Ints, second: Ints) -> tuple[Ints, Ints]:
-    """Return all pairs of two sets of geoms."""
+    """Return all pairs between two sets of geoms."""
     return np.repeat(first, len(second)), np.tile(second, len(first))
 
 
 def joined(pairs: Iterable[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
-    """Return the pairs of several sets of pairs, one after the other."""
+    """Concatenate sets of pairs."""
     first, second = np.concatenate([np.zeros((2, 0), dtype=int), *map(np.array, pairs)], axis=1)
     return first, second

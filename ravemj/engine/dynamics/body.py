@@ -10,22 +10,23 @@ import numpy as np
 from ravemj.core.transforms import ZERO, Floats, Ints, Vec3, cross_rows
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap
 from ravemj.engine.dynamics.joint_velocities import JointVelocities
-from ravemj.engine.dynamics.tree import Tree
+from ravemj.engine.dynamics.stacked import StackedJacobians, with_base_columns
+from ravemj.engine.dynamics.tree import CoordinateTree
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.scene import Joint
 
 
-class Rows:
+class DerivativeRows:
     """Derivatives by MuJoCo's velocities, such as a Jacobian or generalised forces.
 
     Attributes:
-        matrix: What MuJoCo writes, shape (..., nv).
+        matrix: MuJoCo's output, shape (..., nv).
     """
 
     def __init__(self, shape: tuple[int, ...], nv: int, columns: Ints | None) -> None:
-        """Make room for numbers of a shape (without the last axis) for each of MuJoCo's ``nv`` velocities.
+        """Allocate an array with a last axis of MuJoCo's ``nv`` velocities.
 
-        ``columns``: that of each DOF, or ``nv`` for a DOF that moves nothing; None: they are not one to one.
+        ``columns`` are the columns of the DOFs, ``nv`` for a DOF without effect; None if they are not one to one.
         """
         count = math.prod(shape)
         self._numbers = np.zeros(count * nv + 1)  # the last number stays 0
@@ -35,27 +36,27 @@ class Rows:
             self._places = np.where(columns < nv, firsts + columns, count * nv)
 
     def of_dofs(self, coupling: Floats | None) -> Floats:
-        """Return the derivatives by the DOFs, shape (..., dof); a copy. The coupling matrix is (nv, dof), or none."""
+        """Return a copy of the derivatives by the DOFs, shape (..., dof), using a coupling matrix (nv, dof), if any."""
         return self._numbers[self._places] if coupling is None else self.matrix.dot(coupling)
 
 
 AT_REST = 1e-12
-"""Speed [rad/s or m/s] that counts as none: dry friction jumps there, and speeds read off links are rounded."""
+"""Speed [rad/s or m/s] that counts as zero: dry friction is discontinuous there, and speeds have rounding errors."""
 
 
 class Motors:
     """Motors of the joints between links, one for each velocity coordinate."""
 
     def __init__(self, armature: Floats, coulomb: Floats, viscous: Floats) -> None:
-        """Take their data, each of shape (coordinates,).
+        """Store motor data, each of shape (coordinates,).
 
-        Inertia of the rotors behind their gears [kg m^2], friction at any speed [N m] and per speed [N m s/rad].
+        Rotor inertia at the joint [kg m^2], Coulomb friction [N m] and viscous friction [N m s/rad].
         """
         self._armature, self._coulomb, self._viscous = armature, coulomb, viscous
 
     @classmethod
-    def of(cls, kinematics: BodyKinematics, tree: Tree) -> Self | None:
-        """Return the motors of a body; None if all its joints move freely and without rotors."""
+    def for_body(cls, kinematics: BodyKinematics, tree: CoordinateTree) -> Self | None:
+        """Return the motors of a body; None if all joints are without friction and rotors."""
         data = np.zeros((3, tree.count))
         for joint, places in zip(kinematics.body.all_joints, kinematics.joint_qpos, strict=True):
             for axis, place in zip(joint.axes, places, strict=False):
@@ -76,17 +77,17 @@ class Motors:
 
 
 class BodyDynamics:
-    """Derivatives of one body's motion.
+    """Jacobians and dynamics of one body.
 
-    Velocities of links are six numbers in world axes: that of the link's origin [m/s] and the angular one [rad/s].
+    Link velocities are linear (of the link's origin) [m/s], then angular [rad/s], in world axes.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:
         self._kinematics = kinematics
         self._model, self._data = model, _ = kinematics.model, kinematics.data
-        self.tree = Tree(kinematics)
+        self.tree = CoordinateTree(kinematics)
         self.couplings = CouplingMap(kinematics, self.tree)
-        self.motors = Motors.of(kinematics, self.tree)
+        self.motors = Motors.for_body(kinematics, self.tree)
         self._body_ids: list[int] = kinematics.body_ids.tolist()
         self._root_ids = model.body_rootid[kinematics.body_ids]
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]
@@ -95,12 +96,14 @@ class BodyDynamics:
         self._coupling_matrix = None if constant is None else self._matrix(constant)
         columns = self._columns()
         self._are_one_to_one = columns is not None
-        self._moving, self._turning = (Rows((3,), model.nv, columns) for _ in range(2))
-        self._forces, self._by_velocity, self._rest = (Rows((), model.nv, columns) for _ in range(3))
-        self._xipos: list[Floats] = list(self._data.xipos)  # views, since making one takes time
+        self._columns_of_dofs = columns
+        self._stacked: dict[int, StackedJacobians] = {}
+        self._moving, self._turning = (DerivativeRows((3,), model.nv, columns) for _ in range(2))
+        self._forces, self._by_velocity, self._rest = (DerivativeRows((), model.nv, columns) for _ in range(3))
+        self._xipos: list[Floats] = list(self._data.xipos)  # views, created once
         self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
-        self._free_fall = (ZERO, np.zeros(3))  # the last gravity asked for, as given and as an array
-        self._velocities: Floats | None = None  # of the links: those that the data are set for
+        self._free_fall = (ZERO, np.zeros(3))  # the last gravity: as given, and as an array
+        self._velocities: Floats | None = None  # those of the links currently set in the data
         self._velocities_stamp = -1
         self._with_roots: bool = False
         self._are_moving: bool = False
@@ -109,7 +112,7 @@ class BodyDynamics:
         self._rest_qacc = np.zeros(model.nv)
 
     def _columns(self) -> Ints | None:
-        """Return which of MuJoCo's velocities is that of each DOF, ``nv`` if none is; None if DOFs couple."""
+        """Column of each DOF among MuJoCo's velocities, ``nv`` if none; None if DOFs are coupled."""
         constant = self.couplings.constant
         if constant is None or not self.couplings.is_one_to_one:
             return None
@@ -127,24 +130,47 @@ class BodyDynamics:
         """Return the coupling in the present configuration."""
         return self.couplings.constant or self.couplings.at(self._kinematics.values(), second=second)
 
-    def _of_dofs(self, rows: Rows) -> Floats:
-        """Return what MuJoCo wrote as a derivative by the DOFs, shape (..., dof); a copy."""
+    def _of_dofs(self, rows: DerivativeRows) -> Floats:
+        """Return a copy of MuJoCo's result as a derivative by the DOFs, shape (..., dof)."""
         if self._are_one_to_one:
             return rows.of_dofs(None)
         matrix = self._coupling_matrix
         return rows.of_dofs(self._matrix(self._coupling()) if matrix is None else matrix)
 
     def translation_jacobian(self, link: int, point: Floats) -> Floats:
-        """Return the derivative of the position of a link's point, in the world, by the DOF values, shape (3, dof)."""
+        """Return the derivative of a link point's world position by the DOF values, shape (3, dof)."""
         self._kinematics.place_coms()
         mujoco.mj_jac(self._model, self._data, self._moving.matrix, None, point, self._body_ids[link])
         return self._of_dofs(self._moving)
 
     def rotation_jacobian(self, link: int) -> Floats:
-        """Return a link's angular velocity, in world axes, for each DOF's unit velocity, shape (3, dof)."""
+        """Return a link's angular velocity, in world axes, per unit velocity of each DOF, shape (3, dof)."""
         self._kinematics.place_coms()
         mujoco.mj_jacBody(self._model, self._data, None, self._turning.matrix, self._body_ids[link])
         return self._of_dofs(self._turning)
+
+    def jacobians(
+        self, links: Sequence[int], points: Floats | None = None, dofs: Ints | None = None, *, base: bool = False
+    ) -> Floats:
+        """Return the Jacobians of world points (k, 3) fixed to links, by default of the links' origins.
+
+        Returns:
+            Shape (k, 6, columns): ``translation_jacobian`` of each point above ``rotation_jacobian``. The columns are
+                those of ``dofs``, by default all, then optionally those of a base twist, see ``with_base_columns``.
+        """
+        kinematics, count = self._kinematics, len(links)
+        if points is None:
+            kinematics.place()
+            points = self._data.xpos.take(kinematics.body_ids.take(links), 0)
+        stacked = self._stacked.get(count)
+        if stacked is None:
+            rows = DerivativeRows((count, 6), self._model.nv, self._columns_of_dofs)
+            self._stacked[count] = stacked = StackedJacobians(kinematics, rows)
+        stacked.fill(links, points)
+        jacobians = self._of_dofs(stacked.rows)
+        if dofs is not None:
+            jacobians = jacobians.take(dofs, 2)
+        return with_base_columns(jacobians, points - kinematics.position(0)) if base else jacobians
 
     def hessian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
         """Return the derivatives of ``translation_jacobian`` and ``rotation_jacobian`` by the DOF values.
@@ -185,9 +211,9 @@ class BodyDynamics:
         return self._of_dofs(self._moving)
 
     def qvel(self, velocities: Floats, rates: Floats) -> Floats:
-        """Return MuJoCo's velocities in the body's own model, shape (nv,), from those of the roots among the links.
+        """Return MuJoCo's velocities in the body's own model, shape (nv,), from those of root links and DOFs.
 
-        ``rates`` are those of the DOFs [rad/s or m/s], shape (dof,).
+        ``rates`` are the DOF velocities [rad/s or m/s], shape (dof,).
         """
         qvel = np.zeros(self._model.nv)
         if rates.any():
@@ -204,20 +230,20 @@ class BodyDynamics:
             target[first + 3 : first + 6] = values[root][3:] @ rotation
 
     def _arms(self) -> Floats:
-        """Return where the links' origins are from the centre that MuJoCo's motions are about [m], shape (links, 3)."""
+        """Return the links' origins relative to the reference point of MuJoCo's motions [m], shape (links, 3)."""
         ids = self._kinematics.body_ids
         return self._data.xpos.take(ids, 0) - self._data.subtree_com.take(self._root_ids, 0)
 
     def _present_velocities(self, arms: Floats) -> Floats:
-        """Return the velocities of the links for those in MuJoCo's data, shape (links, 6); ``arms`` are ``_arms``."""
+        """Return the link velocities in MuJoCo's data, shape (links, 6); ``arms`` are ``_arms``."""
         motions = self._data.cvel.take(self._kinematics.body_ids, 0)
         spins = motions[:, :3]
         return np.concatenate((motions[:, 3:] + cross_rows(spins, arms), spins), axis=1)
 
     def link_velocities(self, rates: Floats, base: Floats) -> Floats:
-        """Return the velocities of the links, shape (links, 6), for those of the DOFs and of the first link, (6,).
+        """Return the link velocities, shape (links, 6), from DOF velocities and that of the first link, (6,).
 
-        Other links that no joint places are at rest.
+        Other root links are at rest.
         """
         velocities = np.zeros((len(self._body_ids), 6))
         velocities[0] = base
@@ -228,20 +254,20 @@ class BodyDynamics:
         return self._present_velocities(self._arms())
 
     def joint_velocities(self, velocities: Floats, joints: Sequence[Joint]) -> list[Floats]:
-        """Return the velocities of joints that velocities of links show; see ``JointVelocities``."""
-        return self._joint_velocities.of(joints, velocities)
+        """Return joint velocities computed from link velocities; see ``JointVelocities``."""
+        return self._joint_velocities.of_joints(joints, velocities)
 
     def dof_velocities(self, velocities: Floats) -> Floats:
-        """Return the velocities of the DOFs that velocities of links show, shape (links, 6) to (dof,)."""
+        """Return DOF velocities computed from link velocities, shape (links, 6) to (dof,)."""
         return self._joint_velocities.of_dofs(velocities)
 
     def link_accelerations(
         self, velocities: Floats, accelerations: Floats, external: Mapping[int, Floats] | None = None
     ) -> Floats:
-        """Return the accelerations of the links, of their origins and angular, shape (links, 6).
+        """Return the accelerations of the links, linear (of origins), then angular, shape (links, 6).
 
-        Links that no joint places go on turning as they do, so that their origins accelerate by ``w x v``; ``external``
-        are further accelerations of these, shape (6,), linear first.
+        Root links keep their angular velocity, so that their origins accelerate by ``w x v``; ``external`` are
+        additional accelerations of root links, shape (6,), linear first.
         """
         data = self._data
         self._set_velocities(velocities)
@@ -256,12 +282,12 @@ class BodyDynamics:
         return np.concatenate((linear, turning), axis=1)
 
     def _set_velocities(self, velocities: Floats, *, with_roots: bool = True) -> None:
-        """Write velocities into MuJoCo's data, with what follows from them; nothing where they are there already.
+        """Write velocities and derived quantities into MuJoCo's data, unless they are already there.
 
         Args:
-            velocities: Those of the links, shape (links, 6), in an array that is never changed: those of the roots
-                count, and what the others show of the joints.
-            with_roots: Whether the roots move, too, and not only the joints.
+            velocities: Link velocities, shape (links, 6), in an immutable array; they determine those of roots and
+                joints.
+            with_roots: Whether to set the velocities of the roots, too.
         """
         kinematics = self._kinematics
         kinematics.place_coms()
@@ -273,7 +299,7 @@ class BodyDynamics:
             self._are_moving, self._roots_move = bool(velocities.any()), bool(velocities[kinematics.roots].any())
         self._velocities, self._velocities_stamp, self._with_roots = velocities, kinematics.stamp, with_roots
         if not (were_moving or self._are_moving):
-            return  # all is 0 in MuJoCo's data
+            return  # MuJoCo's data is 0
         if is_other or has_moved:
             self._rates = self.dof_velocities(velocities)
         self._rest_qacc[...] = 0.0
@@ -285,7 +311,7 @@ class BodyDynamics:
         mujoco.mj_comVel(self._model, self._data)
 
     def _set_joint_velocities(self) -> None:
-        """Write the velocities of the joints, and the accelerations that coupled ones have at constant velocities."""
+        """Write the joint velocities, and the accelerations of coupled joints at constant DOF velocities."""
         if self._coupling_matrix is not None:
             self._coupling_matrix.dot(self._rates, self._qvel)
             return
@@ -296,7 +322,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write accelerations of the DOFs, and further ones of roots, (6,), on top of those that velocities make."""
+        """Write DOF accelerations, and additional ones of roots, (6,), on top of velocity-dependent ones."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0
@@ -320,9 +346,9 @@ class BodyDynamics:
         gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> Floats:
-        """Return the generalised forces [N m or N], shape (dof,), for velocities of links and accelerations of DOFs.
+        """Return the generalised forces [N m or N], shape (dof,), for link velocities and DOF accelerations.
 
-        ``external`` are forces and moments on links at their centres of mass, in world axes, (6,), that are added.
+        ``external`` are additional forces and moments on links at their centres of mass, in world axes, (6,).
         """
         self._set_gravity(gravity)
         self._set_velocities(velocities)
@@ -333,7 +359,7 @@ class BodyDynamics:
         return self._of_dofs(self._forces)
 
     def _needed(self, forces: Floats) -> None:
-        """Write the forces that the motion in MuJoCo's data needs, shape (nv,)."""
+        """Write the generalised forces of the motion in MuJoCo's data, shape (nv,)."""
         mujoco.mj_rne(self._model, self._data, 1, forces)
         if self.motors is not None:
             inner = self._inner
@@ -346,7 +372,7 @@ class BodyDynamics:
         gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
-        """Return the parts of ``inverse``: of accelerations, of joint velocities, and of all else."""
+        """Return the components of ``inverse``: of accelerations, of joint velocities, and of all else."""
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
@@ -359,9 +385,9 @@ class BodyDynamics:
         return self._of_dofs(self._forces), self._of_dofs(self._by_velocity), self._of_dofs(self._rest)
 
     def _write_parts_of_joints(self) -> None:
-        """Write the parts of the forces for the motion in MuJoCo's data, where only joints without motors move.
+        """Write the force components for the motion in MuJoCo's data, if only joints without motors move.
 
-        MuJoCo leaves out accelerations if asked, and without gravity the velocities are what is left.
+        MuJoCo can omit accelerations; without gravity, only velocity effects remain.
         """
         by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
         mujoco.mj_rne(self._model, self._data, 1, by_acceleration)
@@ -372,7 +398,7 @@ class BodyDynamics:
         rest -= by_velocity
 
     def _write_parts_of_all(self, velocities: Floats) -> None:
-        """Write the parts of the forces for the motion in MuJoCo's data.
+        """Write the force components for the motion in MuJoCo's data.
 
         The part of the joint velocities is that with the base at rest and without gravity.
         """
@@ -400,5 +426,5 @@ class BodyDynamics:
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:
-    """Return the acceleration of a link that goes on turning as it does, shape (6,): its origin's is ``w x v``."""
+    """Return the acceleration of a link with constant angular velocity, shape (6,): its origin's is ``w x v``."""
     return np.concatenate((cross_rows(velocity[3:], velocity[:3]), np.zeros(3)))

@@ -1,4 +1,4 @@
-"""How the velocity coordinates of a body follow its DOFs.
+"""Coupling of a body's velocity coordinates to its DOFs.
 
 ``qvel = P(q) dq/dt`` with the coupling matrix P, which is constant but for mimic joints with curved equations and for
 spherical joints. By virtual work the generalised forces of the DOFs are ``P^T`` times those of the coordinates.
@@ -12,7 +12,7 @@ import numpy as np
 
 from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats, Ints, rows_from_wxyz
-from ravemj.engine.dynamics.tree import Tree
+from ravemj.engine.dynamics.tree import CoordinateTree
 from ravemj.engine.kinematics import NO_QPOS, BodyKinematics, SphericalJoint
 
 if TYPE_CHECKING:
@@ -22,22 +22,22 @@ Gradient = dict[int, Floats]
 Hessian = dict[tuple[int, int], Floats]
 
 SMALL = 0.1
-"""Below this angle [rad] series are exact where closed formulas lose digits."""
+"""Angle [rad] below which series are used, since closed formulas lose accuracy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
-    """P and its derivative at given joint values, of one configuration or of many (a last axis)."""
+    """P and its derivative at given joint values, of one or many configurations (last axis)."""
 
-    dof: int  # how many DOFs there are
-    count: int  # how many velocity coordinates there are
-    dofs: Ints  # the DOFs that are coordinates themselves
+    dof: int  # number of DOFs
+    count: int  # number of velocity coordinates
+    dofs: Ints  # the DOFs that equal a coordinate
     coordinates: Ints  # these coordinates
-    first: list[tuple[int, int, Floats]]  # further entries of P: coordinate, DOF, value
+    first: list[tuple[int, int, Floats]]  # other entries of P: coordinate, DOF, value
     second: list[tuple[int, int, int, Floats]]  # of P's derivative: coordinate, DOF that changes, DOF of column, value
 
     def forward(self, rates: Floats) -> Floats:
-        """Return P times something: velocities of the coordinates, shape (dof, ...) to (coordinates, ...)."""
+        """Multiply by P: velocities of the coordinates, shape (dof, ...) to (coordinates, ...)."""
         moved = np.zeros((self.count, *rates.shape[1:]))
         moved[self.coordinates] = rates[self.dofs]
         for coordinate, dof, value in self.first:
@@ -45,7 +45,7 @@ class Coupling:
         return moved
 
     def backward(self, forces: Floats) -> Floats:
-        """Return P^T times something: forces on the DOFs, shape (coordinates, ...) to (dof, ...)."""
+        """Multiply by P^T: forces on the DOFs, shape (coordinates, ...) to (dof, ...)."""
         collected = np.zeros((self.dof, *forces.shape[1:]))
         collected[self.dofs] = forces[self.coordinates]
         for coordinate, dof, value in self.first:
@@ -61,9 +61,9 @@ class Coupling:
 
 
 class CouplingMap:
-    """The coupling matrix of a body at any joint values."""
+    """Coupling matrix of a body as a function of joint values."""
 
-    def __init__(self, kinematics: BodyKinematics, tree: Tree) -> None:
+    def __init__(self, kinematics: BodyKinematics, tree: CoordinateTree) -> None:
         self._kinematics = kinematics
         dofs = np.flatnonzero(kinematics.qpos_indices != NO_QPOS)
         coordinates = np.array([tree.of_qpos[qpos] for qpos in kinematics.qpos_indices[dofs].tolist()], dtype=int)
@@ -73,12 +73,12 @@ class CouplingMap:
             (one.joint, self._coordinate(tree, one.joint), _Partials(one.expression)) for one in kinematics.mimic.joints
         ]
         is_affine = all(one.expression.affine is not None for one in kinematics.mimic.joints)
-        self.constant: Coupling | None = None  # the coupling, if it is the same at all joint values
+        self.constant: Coupling | None = None  # the coupling, if it is constant
         if is_affine and not self._spherical:
             self.constant = self._at(np.zeros(kinematics.dof), second=False)
         self.is_one_to_one = not (self._spherical or self._mimic)  # every velocity coordinate is that of one DOF
 
-    def _coordinate(self, tree: Tree, joint: int) -> int:
+    def _coordinate(self, tree: CoordinateTree, joint: int) -> int:
         places = self._kinematics.joint_qpos[joint]
         return tree.of_qpos[places[0]] if places else NO_QPOS
 
@@ -109,7 +109,7 @@ class CouplingMap:
 
 
 class _Partials:
-    """An equation with its derivatives, which are made when they are first wanted."""
+    """Mimic equation with its derivatives, computed on first use."""
 
     def __init__(self, expression: "Expression") -> None:
         self.expression = expression
@@ -131,7 +131,7 @@ class _Partials:
         gradients: dict[int, Gradient],
         hessians: dict[int, Hessian] | None,
     ) -> tuple[Gradient, Hessian]:
-        """Return the derivatives by the DOFs, from those of the joints that are followed."""
+        """Return the derivatives by the DOFs, from those of the leading joints."""
         gradient: Gradient = {}
         hessian: Hessian = {}
         moving = [name for name in self.names if _index(name) in gradients]
@@ -169,7 +169,7 @@ def _value(expression: "Expression", named: dict[str, Floats], values: Floats) -
 
 
 def _add_spherical(coupling: Coupling, joint: SphericalJoint, coordinate: int, vector: Floats, *, second: bool) -> None:
-    """Add the entries of a spherical joint, whose coordinates turn about the axes of the child link."""
+    """Add the entries of a spherical joint, whose coordinates are about the axes of the child link."""
     rest = np.array(rows_from_wxyz(joint.joint.T_parent_child.wxyz)).T
     rate, changes = rotation_rate(vector)
     first = joint.dofs.start
@@ -185,10 +185,10 @@ def _entries(matrix: Floats) -> "list[tuple[tuple[int, int], Floats]]":
 
 
 def rotation_rate(vector: Floats) -> tuple[Floats, list[Floats]]:
-    """Return the matrix that takes the rate of a rotation vector to the angular velocity in the turned axes.
+    """Return the right Jacobian of SO(3): angular velocity in rotated axes per rate of a rotation vector.
 
-    The right Jacobian of SO(3), I - a [v] + b [v]^2 with a = (1 - cos t) / t^2, b = (t - sin t) / t^3 and t = |v|.
-    For a vector (3, ...) it has shape (3, 3, ...), and so have its derivatives by the vector's three components.
+    It is I - a [v] + b [v]^2 with a = (1 - cos t) / t^2, b = (t - sin t) / t^3 and t = |v|. For a vector (3, ...) it
+    has shape (3, 3, ...), and so have its derivatives by the vector's three components.
     """
     square = (vector * vector).sum(axis=0)
     a, a_slope = _series(square, 2)
@@ -223,7 +223,7 @@ def _series(square: Floats, first: int) -> tuple[Floats, Floats]:
 
 
 def _crossing(vector: Floats) -> Floats:
-    """Return the matrix that takes the cross product with a vector, shape (3, 3, ...)."""
+    """Return the cross product matrix of a vector, shape (3, 3, ...)."""
     x, y, z = vector
     zero = np.zeros_like(x)
     return np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]])

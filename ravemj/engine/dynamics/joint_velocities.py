@@ -1,4 +1,4 @@
-"""Velocities of joints, read off the velocities of links, which are the state in OpenRAVE."""
+"""Joint velocities computed from link velocities, which are the state in OpenRAVE."""
 
 from collections.abc import Sequence
 
@@ -13,10 +13,10 @@ _ONES = np.ones(3)
 
 
 class JointAxes:
-    """Which links joints are between, and their axes; ``..._ids`` are MuJoCo's indices, and others those of links."""
+    """Axes of joints and the links that they connect; ``..._ids`` are MuJoCo's indices, others link indices."""
 
     def __init__(self, joints: Sequence[Joint], body_ids: Ints, ids: Ints | None = None) -> None:
-        """Take joints, with MuJoCo's indices of them, or None where one has none, or has several axes."""
+        """Store joints with MuJoCo's indices, or None if one has none or several axes."""
         self.ids = ids
         self.parents = np.array([joint.parent for joint in joints], dtype=int)
         self.children = np.array([joint.child for joint in joints], dtype=int)
@@ -29,9 +29,9 @@ class JointAxes:
         self._seen: tuple[Floats, Floats, Floats] | None = None
 
     def relative(self, velocities: Floats) -> tuple[Floats, Floats]:
-        """Return how fast child links are against their parents, for velocities of the links, shape (links, 6).
+        """Return the velocities of child links relative to their parents, for link velocities, shape (links, 6).
 
-        These are in an array that is never changed: the same one is asked for in one configuration after the other.
+        The array is immutable, and is queried in many configurations.
 
         Returns:
             Angular velocities, for sliders those of the origins, shape (joints, 3), and matrices that take the cross
@@ -47,7 +47,7 @@ class JointAxes:
 
 
 class JointVelocities:
-    """Reads velocities of a body's joints off those of its links."""
+    """Computes joint velocities of a body from link velocities."""
 
     def __init__(self, kinematics: BodyKinematics) -> None:
         self._kinematics = kinematics
@@ -56,16 +56,16 @@ class JointVelocities:
         ids = np.searchsorted(kinematics.model.jnt_qposadr, places) if has_ids else None
         self._of_dofs = JointAxes(joints, kinematics.body_ids, ids)
 
-    def of(self, joints: Sequence[Joint], velocities: Floats) -> list[Floats]:
-        """Return the velocities of joints, active or passive, that velocities of links, shape (links, 6), show.
+    def of_joints(self, joints: Sequence[Joint], velocities: Floats) -> list[Floats]:
+        """Return the velocities of joints, active or passive, from link velocities, shape (links, 6).
 
-        They are for each joint those of its axes [rad/s or m/s], shape (axes,).
+        The result has for each joint those of its axes [rad/s or m/s], shape (axes,).
         """
         return self._shown(velocities, JointAxes(joints, self._kinematics.body_ids))
 
     def of_dofs(self, velocities: Floats) -> Floats:
-        """Return the velocities of the DOFs that velocities of links show, shape (links, 6) to (dof,)."""
-        if not np.count_nonzero(velocities):  # faster than any
+        """Return the DOF velocities from link velocities, shape (links, 6) to (dof,)."""
+        if not np.count_nonzero(velocities):  # faster than ``any``
             return np.zeros(self._kinematics.dof)
         if self._of_dofs.special:
             return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
@@ -83,7 +83,6 @@ class JointVelocities:
         return shown
 
     def _of_first_axes(self, velocities: Floats, of: JointAxes) -> Floats:
-        """Return the velocities of the first axes of joints, shape (joints,)."""
         kinematics, data = self._kinematics, self._kinematics.data
         kinematics.place()
         if of.ids is None or kinematics.displaced:
@@ -99,7 +98,6 @@ class JointVelocities:
         return (axes * relative).dot(_ONES)
 
     def _two_rates(self, joint: Joint, velocities: Floats) -> Floats:
-        """Return the velocities of a joint with two axes, shape (2,)."""
         data, model = self._kinematics.data, self._kinematics.model
         places = self._kinematics.joint_qpos[self._kinematics.body.all_joints.index(joint)]
         if not places:

@@ -1,4 +1,4 @@
-"""Which joint of a body carries which."""
+"""Tree of a body's joints."""
 
 import mujoco
 import numpy as np
@@ -9,8 +9,8 @@ from ravemj.engine.kinematics import BodyKinematics
 NONE = -1
 
 
-class Tree:
-    """The velocity coordinates of the joints between links, and what they move.
+class CoordinateTree:
+    """Tree of the velocity coordinates of the joints between links, and the links that they move.
 
     A coordinate is one velocity of MuJoCo's: that of a hinge, a slider, an axis of a ``hinge2``, or one of the three of
     a spherical joint; mimic joints have some, too. Coordinates are counted in the order of ``qvel`` without the free
@@ -25,17 +25,17 @@ class Tree:
         joints = model.dof_jntid[dofs]
         kinds = model.jnt_type[joints]
         self.slides = kinds == mujoco.mjtJoint.mjJNT_SLIDE
-        # For each coordinate the one that carries it, or NONE.
+        # parent coordinate of each coordinate, or NONE
         self.parents = [index_of.get(int(model.dof_parentid[dof]), NONE) for dof in dofs]
-        # For each one the last one that moves its axis: itself, and for the axes of a spherical joint, which turn with
+        # For each one the last one that moves its axis: itself; for the axes of a spherical joint, which rotate with
         # it, the joint's third.
         thirds = model.jnt_dofadr[joints] + 2 - dofs
         self.carriers = np.arange(self.count) + np.where(kinds == mujoco.mjtJoint.mjJNT_BALL, thirds, 0)
-        self.of_qpos: dict[int, int] = {}  # the first coordinate of each joint, by the joint's place in ``qpos``
+        self.of_qpos: dict[int, int] = {}  # first coordinate of each joint, by its index in ``qpos``
         for index, joint in enumerate(joints):
             self.of_qpos.setdefault(int(model.jnt_qposadr[joint]), index)
         link_of = {body_id: link for link, body_id in enumerate(kinematics.body_ids.tolist())}
-        self.last = [NONE] * len(link_of)  # for each link the last coordinate that moves it
+        self.last = [NONE] * len(link_of)  # last coordinate that moves each link
         for body_id in sorted(link_of):  # MuJoCo's parents come before their children
             link, parent = link_of[body_id], link_of.get(int(model.body_parentid[body_id]))
             if parent is not None:
@@ -46,7 +46,7 @@ class Tree:
         self.moves = self._moves()
 
     def _moves(self) -> Floats:
-        """Return 1 where a coordinate moves a link, else 0; shape (links, count)."""
+        """Return 1 if a coordinate moves a link, else 0; shape (links, count)."""
         moves = np.zeros((len(self.last), self.count))
         for link, last in enumerate(self.last):
             index = last

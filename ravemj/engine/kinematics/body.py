@@ -20,12 +20,12 @@ from ravemj.model.scene import Joint, KinBody
 
 
 class LinkPoses:
-    """Gathers the poses of links from MuJoCo's positions and rotations, as fast as numpy can."""
+    """Collects link poses from MuJoCo's positions and rotations with few numpy calls."""
 
     def __init__(self, data: mujoco.MjData, body_ids: Ints) -> None:
         self._xpos, self._xmat = data.xpos.reshape(-1), data.xmat.reshape(-1)
         positions, rotations = len(self._xpos), len(self._xmat)
-        self._numbers = np.append(np.zeros(positions + rotations), (0.0, 1.0))  # and what the last rows consist of
+        self._numbers = np.append(np.zeros(positions + rotations), (0.0, 1.0))  # and the constant last row
         self._positions, self._rotations = np.split(self._numbers[:-2], [positions])
         self._places = np.full((len(body_ids), 4, 4), positions + rotations)
         self._places[:, 3, 3] += 1
@@ -33,20 +33,20 @@ class LinkPoses:
         self._places[:, :3, :3] = positions + 9 * body_ids[:, None, None] + np.arange(9).reshape(3, 3)
 
     def matrices(self) -> Floats:
-        """Return the poses, shape (links, 4, 4); a copy."""
+        """Return a copy of the poses, shape (links, 4, 4)."""
         self._positions[...], self._rotations[...] = self._xpos, self._xmat
         return self._numbers[self._places]
 
 
 class SphericalJoint(NamedTuple):
-    """A spherical joint: three DOFs that are a rotation vector, and a quaternion in ``qpos``."""
+    """Spherical joint: three DOFs that are a rotation vector, and a quaternion in ``qpos``."""
 
     joint: Joint
     dofs: slice
     qpos: slice
 
     def to_qpos(self, vector: Sequence[float]) -> tuple[float, float, float, float]:
-        """Return MuJoCo's quaternion; it turns in the child's axes, the rotation vector in the parent's."""
+        """Return MuJoCo's quaternion, which is in the child's axes; the rotation vector is in the parent's."""
         rest = self.joint.T_parent_child.wxyz
         turned = wxyz_from_rotation_vector((vector[0], vector[1], vector[2]))
         return multiply(conjugate(rest), multiply(turned, rest))
@@ -59,31 +59,31 @@ class SphericalJoint(NamedTuple):
 
 
 NO_QPOS = -1
-"""In place of an index into ``qpos``, where a joint has none since it moves no link."""
+"""Index of a joint without ``qpos``, since it moves no link."""
 
 _BODY, _JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 
 
 class Configuration(NamedTuple):
-    """Where the links of a body are, and why: what ``BodyKinematics.restore`` needs."""
+    """Saved state of a ``BodyKinematics``."""
 
     qpos: Floats  # of the body's own model
-    positions: Floats  # of the links in their parents at rest, in MuJoCo's order
-    quaternions: Floats  # their orientations there, wxyz
+    positions: Floats  # rest positions of the links in their parents, in MuJoCo's order
+    quaternions: Floats  # rest orientations, wxyz
     passive: list[list[float]]  # values of the passive joints; those of mimic joints that move a link are in ``qpos``
-    displaced: bool  # whether links are where their joints do not place them
+    displaced: bool  # whether links are displaced from their joints
 
 
 class BodyKinematics:
     """The configuration of one body, in a MuJoCo model that has its links and joints but no shapes.
 
-    Each root hangs on a free joint, so that ``qpos`` has its pose and ``qvel`` its velocity. Writing marks the links as
-    out of place; whoever reads them calls ``place`` first, which runs ``mj_kinematics`` if need be. The model is
-    compiled once. ``stamp`` grows with every write; ``pose_stamp`` is that of the last write of more than joint values.
+    Each root has a free joint, so that ``qpos`` contains its pose and ``qvel`` its velocity. Writing invalidates the
+    link poses; readers call ``place`` first, which runs ``mj_kinematics`` if necessary. The model is compiled once.
+    ``stamp`` increases with every write; ``pose_stamp`` is the stamp of the last write of more than joint values.
     """
 
     def __init__(self, body: KinBody) -> None:
-        """Compile a body, in the configuration that its description has.
+        """Compile a body, in the configuration of its description.
 
         Raises:
             CompileError: MuJoCo refuses it.
@@ -93,11 +93,11 @@ class BodyKinematics:
         self.model, self.data = model, data = compiled.model, compiled.data
         self.qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat.reshape(-1, 3, 3)
         self.stamp = self.pose_stamp = 0
-        self._placed_stamp = self._coms_stamp = -1  # ``stamp`` when poses and centres of mass were last up to date
+        self._placed_stamp = self._coms_stamp = -1  # ``stamp`` of the last update of poses and centres of mass
         (names,) = compiled.mjcf.names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
         self._body_ids: list[int] = self.body_ids.tolist()
-        # The links that no joint places; the first link is one. Each has a free joint in ``qpos`` and in ``qvel``.
+        # The root links, of which the first link is one. Each has a free joint in ``qpos`` and in ``qvel``.
         self.roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         free = model.body_jntadr[self.body_ids[self.roots]]
         self.root_qpos: list[int] = model.jnt_qposadr[free].tolist()
@@ -106,9 +106,9 @@ class BodyKinematics:
         self.inner_qpos = _others(model.nq, self.root_qpos, 7)
         self.inner_qvel = _others(model.nv, self.root_qvel, 6)
         self._rest = (model.body_pos.copy(), model.body_quat.copy())
-        self.displaced = False  # whether links are where their joints do not place them; ``set_values`` ends that
+        self.displaced = False  # whether links are displaced from their joints; ``set_values`` ends that
         self._find_joints(names.joints)
-        # Views are made once, since making one takes as long as writing a pose.
+        # Views are created once, since that takes as long as writing a pose.
         self._one = np.eye(4)
         self._position, self._rotation = self._one[:3, 3], self._one[:3, :3]
         self._link_poses = LinkPoses(data, self.body_ids)
@@ -117,7 +117,7 @@ class BodyKinematics:
         self.set_values(np.array([axis.value for axis in body.dof_axes]))
 
     def _find_joints(self, names: tuple[tuple[str, ...], ...]) -> None:
-        """Find the joints, which have these names in the model."""
+        """Find the joints by their names in the model."""
         body = self.body
         # For each joint, active ones and then passive ones, the places of its axes in ``qpos``; none for a joint that
         # moves no link.
@@ -146,7 +146,7 @@ class BodyKinematics:
         ]
 
     def describe(self, body: KinBody) -> None:
-        """Take over a description of the body with other limits or masses; its links and joints are the same."""
+        """Update the description of the body with changed limits or masses; links and joints are the same."""
         before = self.body.links
         self.body = body
         axes = body.dof_axes
@@ -160,11 +160,11 @@ class BodyKinematics:
 
     @cached_property
     def shown_values(self) -> ShownValues:
-        """Reads the joint values off poses of the links."""
+        """Computes joint values from link poses."""
         return ShownValues(self.body.joints, self.first_dofs)
 
     def _find_mimic_joints(self, body: KinBody) -> None:
-        """Find the mimic joints, and those among them that are a multiple of a DOF."""
+        """Find the mimic joints, and those among them that are affine in a DOF."""
         # A body without DOFs has no mimic joints: OpenRAVE never sets a value there.
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self._mimic_qpos = {one.joint: places[0] for one in self.mimic.joints if (places := self.joint_qpos[one.joint])}
@@ -176,18 +176,18 @@ class BodyKinematics:
         self._are_multiples = len(self._multiples) == len(self.mimic.joints)
 
     def _touch(self) -> None:
-        """Take note that more than joint values was written."""
+        """Mark a write of more than joint values."""
         self.stamp += 1
         self.pose_stamp = self.stamp
 
     def place(self) -> None:
-        """Bring the poses of the links up to date."""
+        """Update the poses of the links."""
         if self._placed_stamp != self.stamp:
             mujoco.mj_kinematics(self.model, self.data)
             self._placed_stamp = self.stamp
 
     def place_coms(self) -> None:
-        """Bring poses, centres of mass and the axes of motion up to date, which Jacobians and dynamics need."""
+        """Update poses, centres of mass and motion axes, for Jacobians and dynamics."""
         if self._coms_stamp != self.stamp:
             self.place()
             if self.displaced:
@@ -196,9 +196,9 @@ class BodyKinematics:
             self._coms_stamp = self.stamp
 
     def values(self) -> Floats:
-        """Return the joint values [rad or m], shape (dof,); a copy.
+        """Return a copy of the joint values [rad or m], shape (dof,).
 
-        A weld's is 0; a joint that closes a loop has the value that the poses of its links show.
+        Welds are 0; for a joint that closes a loop, the value is computed from the link poses.
         """
         if self._all_move:
             return self._written[self._places].copy()
@@ -212,15 +212,15 @@ class BodyKinematics:
         return values
 
     def set_values(self, values: Floats, *, clamp_mimic: bool = True) -> None:
-        """Set the joint values and so the poses of the links: forward kinematics, no limits of DOFs checked.
+        """Set the joint values and thereby the link poses; DOF limits are not checked.
 
         Args:
             values: Joint values [rad or m], shape (dof,).
-            clamp_mimic: Whether mimic joints stop at their limits.
+            clamp_mimic: Whether to clamp mimic joints to their limits.
         """
         if self.displaced:
             self._undo_displacement()
-        self.stamp += 1  # first, so that an interrupt leaves no poses out of date
+        self.stamp += 1  # first, so that an interrupt does not leave outdated poses
         self._written[self._places] = values if self._all_move else values[self._moving]
         if not self._is_plain:
             for ball in self.spherical:
@@ -229,11 +229,9 @@ class BodyKinematics:
                 self._set_mimic(values, clamp=clamp_mimic)
 
     def _set_mimic(self, values: Floats, *, clamp: bool) -> None:
-        """Write the values of the mimic joints."""
         if self._are_multiples:
-            plain, qpos = values.tolist(), self.qpos
             for dof, multiple, place in self._multiples:
-                qpos[place] = multiple.follow(plain[dof], clamp=clamp)
+                self.qpos[place] = multiple.follow(values.item(dof), clamp=clamp)
             return
         known = self.first_values(values)
         self.mimic.evaluate(known, clamp=clamp)
@@ -244,20 +242,20 @@ class BodyKinematics:
                 self._passive_values[one.joint - len(self.first_dofs)][0] = known[one.joint]
 
     def first_values(self, values: Floats) -> list[float]:
-        """Return the first value of each joint, active ones and then passive ones, for given DOF values."""
+        """Return the first value of each joint, active, then passive ones, for given DOF values."""
         plain = values.tolist()
         active = plain if len(self.first_dofs) == self.dof else [plain[first] for first in self.first_dofs]
         return active + [passive[0] for passive in self._passive_values]
 
     @property
     def multiples(self) -> list[tuple[int, Multiple, int]] | None:
-        """The mimic joints as multiples of DOFs: the DOF, the equation and the index in ``qpos``; None for others."""
+        """The mimic joints as affine functions of DOFs: the DOF, the equation and the index in ``qpos``; else None."""
         return self._multiples if self._are_multiples else None
 
     def passive_values(self, index: int) -> Floats:
-        """Return the values of a passive joint [rad or m], shape (axes,); a copy.
+        """Return a copy of the values of a passive joint [rad or m], shape (axes,).
 
-        One that closes a loop has the value that the poses of its links show.
+        For a joint that closes a loop, the value is computed from the link poses.
         """
         joint = self.body.passive_joints[index]
         if not (joint.places_child or joint.static) and self.dof:
@@ -269,30 +267,30 @@ class BodyKinematics:
         return np.array(values if place is None else [self.qpos[place], *values[1:]])
 
     def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
-        """Take over MuJoCo's configuration from a model in which time moved the body.
+        """Copy MuJoCo's configuration from a model in which simulation moved the body.
 
-        It has the positions of all joints, the free joints of the roots included, or only of those between links.
+        It contains the positions of all joints, including the free joints of roots, or only those between links.
         """
         self.qpos[self.inner_qpos if inner_only else slice(None)] = qpos
         self._touch()
 
     def _undo_displacement(self) -> None:
-        """Let the joints place the links again that ``place_links`` put elsewhere; the roots stay."""
+        """Undo ``place_links``: joints determine the link poses again; the roots do not move."""
         self.model.body_pos[:], self.model.body_quat[:] = self._rest
         self.displaced = False
         self._touch()
 
     def inner_index(self, qpos: int) -> int:
-        """Return the place of an index into ``qpos`` among ``inner_qpos``."""
+        """Return the index among ``inner_qpos`` for an index into ``qpos``."""
         return qpos - 7 * sum(root < qpos for root in self.root_qpos)
 
     def rest_transform(self, link: int) -> Floats:
-        """Return the pose of a link in its parent where no joint between them has moved, shape (4, 4)."""
+        """Return a link's zero-configuration pose in its parent, shape (4, 4)."""
         (x, y, z), (w, i, j, k) = (parts[self.body_ids[link]].tolist() for parts in self._rest)
         return Pose((x, y, z), (w, i, j, k)).matrix()
 
     def displace(self, link: int, T_parent_link: Floats) -> None:
-        """Change the pose of a link in its parent where no joint between them has moved, until ``set_values``."""
+        """Temporarily override a link's zero-configuration pose; the next ``set_values`` resets it."""
         body_id = self.body_ids[link]
         self.model.body_pos[body_id] = T_parent_link[:3, 3]
         self.model.body_quat[body_id] = wxyz_from_rows(T_parent_link[:3, :3].tolist())
@@ -300,39 +298,48 @@ class BodyKinematics:
         self._touch()
 
     def set_root_transform(self, root: int, T_world_link: Floats) -> None:
-        """Move a root, of which ``root`` is the place in ``roots``, and what hangs on it."""
+        """Move a root, given by its index in ``roots``, and its descendants."""
         first = self.root_qpos[root]
         self.qpos[first : first + 3] = T_world_link[:3, 3]
         self.qpos[first + 3 : first + 7] = wxyz_from_rows(T_world_link[:3, :3].tolist())
         self._touch()
 
     def set_transform(self, T_world_link0: Floats) -> None:
-        """Move the body rigidly, with the joint values as they are, by the pose of its first link, shape (4, 4)."""
+        """Move the body rigidly, keeping joint values, by the pose of its first link, shape (4, 4)."""
         if self.roots == [0]:
             self.set_root_transform(0, T_world_link0)
-        elif self.roots:  # the first link may hang on another one, where no joint has a DOF
+        elif self.roots:  # the first link may have a parent, if no joint has a DOF
             motion = T_world_link0 @ inverse(self.link_transform(0))
             for root, moved in enumerate([motion @ self.link_transform(link) for link in self.roots]):
                 self.set_root_transform(root, T_world_link0 if self.roots[root] == 0 else moved)
 
-    def set_root_wxyz(self, wxyz: Wxyz) -> None:
-        """Write the orientation of the first link as this quaternion rather than its negative."""
+    def set_pose(self, T_world_link0: Pose) -> None:
+        """Move the body rigidly, like ``set_transform``; the sign of the quaternion is kept."""
+        if self.roots == [0]:
+            first = self.root_qpos[0]
+            self.qpos[first : first + 7] = T_world_link0.position + T_world_link0.wxyz
+            self._touch()
+        else:
+            self.set_transform(T_world_link0.matrix())
+            self._set_root_wxyz(T_world_link0.wxyz)
+
+    def _set_root_wxyz(self, wxyz: Wxyz) -> None:
+        """Write the orientation of the first link with the given sign of the quaternion."""
         if 0 in self.roots:
             first = self.root_qpos[self.roots.index(0)]
             self.qpos[first + 3 : first + 7] = wxyz
-            self._touch()
 
     def configuration(self) -> Configuration:
-        """Return all that ``restore`` needs, also of another object for the same body."""
+        """Return the state for ``restore``, also of another object for the same body."""
         passive = [list(values) for values in self._passive_values]
         model = self.model
         return Configuration(self.qpos.copy(), model.body_pos.copy(), model.body_quat.copy(), passive, self.displaced)
 
     def restore(self, configuration: Configuration) -> bool:
-        """Go back to a configuration.
+        """Restore a configuration.
 
         Returns:
-            False, and nothing changes, if it is that of another set of links and joints.
+            False without a change if it belongs to other links and joints.
         """
         qpos, positions, quaternions, passive, displaced = configuration
         if qpos.shape != self.qpos.shape or positions.shape != self.model.body_pos.shape:
@@ -347,17 +354,22 @@ class BodyKinematics:
         return True
 
     def link_transforms(self) -> Floats:
-        """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
+        """Return a copy of ``T_world_link`` of every link, shape (links, 4, 4)."""
         self.place()
         return self._link_poses.matrices()
 
     def link_transform(self, link: int) -> Floats:
-        """Return ``T_world_link`` of one link, shape (4, 4); a copy."""
+        """Return a copy of ``T_world_link`` of one link, shape (4, 4)."""
         self.place()
         body_id = self._body_ids[link]
         self._position[...] = self._xpos[body_id]
         self._rotation[...] = self._xmat[body_id]
         return self._one.copy()
+
+    def position(self, link: int) -> Floats:
+        """Return the origin of one link in the world [m], shape (3,); a view."""
+        self.place()
+        return self._xpos[self._body_ids[link]]
 
     def link_pose(self, link: int) -> Pose:
         """Return ``T_world_link`` of one link."""
@@ -368,22 +380,22 @@ class BodyKinematics:
 
 
 def _others(count: int, first: list[int], width: int) -> slice | Ints:
-    """Return the indices below a count that are in none of some ranges of one width."""
+    """Return the indices below a count outside of ranges of one width."""
     taken = {index for start in first for index in range(start, start + width)}
     return _index_range(np.array([index for index in range(count) if index not in taken], dtype=int))
 
 
 def fixed_view(numbers: Floats, indices: Ints) -> tuple[Floats, EllipsisType | Ints]:
-    """Return an array and an index into it for some of the numbers, which are often written.
+    """Return an array and an index into it, for frequent writes to some elements.
 
-    Where the indices follow one another they are a view, made once, and the index is ``...``, which is fastest.
+    For consecutive indices they are a view and ``...``, which is fastest.
     """
     some = _index_range(indices)
     return (numbers[some], ...) if isinstance(some, slice) else (numbers, some)
 
 
 def _index_range(indices: Ints) -> slice | Ints:
-    """Return the indices as a slice if they follow one another, since slices are faster."""
+    """Return consecutive indices as a slice, since slices are faster."""
     plain = indices.tolist()
     first = plain[0] if plain else 0
     if plain == list(range(first, first + len(plain))):

@@ -1,9 +1,9 @@
-"""Links put where their joints do not place them.
+"""Links displaced from the poses given by their joints.
 
-OpenRAVE's state are the poses of the links, and joint values are read off them. MuJoCo's are joint values, from which
-``mj_kinematics`` computes the poses. Where poses are given, the joint values that they show are set, and what is left
-goes into the fixed part of a link's pose in its parent, ``body_pos`` and ``body_quat``, so that the next
-``mj_kinematics`` gives these poses again.
+OpenRAVE's state are the link poses, from which it computes joint values. MuJoCo's state are joint values, from which
+``mj_kinematics`` computes the poses. To set given poses, the joint values computed from them are set, and the remaining
+displacement is written into the link's fixed pose in its parent, ``body_pos`` and ``body_quat``, so that the next
+``mj_kinematics`` reproduces these poses.
 """
 
 from typing import TYPE_CHECKING
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from ravemj.engine.kinematics.body import BodyKinematics
 
 ROUNDING = 1e-10
-"""A link this far [m or in its matrix] from where its joint places it is where its joint places it."""
+"""Displacement [m, or of matrix elements] below which a link is considered undisplaced."""
 
 _NO_DISPLACEMENT = ROUNDING / 1000  # of a link in its parent; in a chain they add up
 _ONE_AXIS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 
 def place_links(kinematics: "BodyKinematics", T_world_links: Floats, last_values: Floats) -> None:
-    """Put every link at a pose, shape (links, 4, 4); joints get the values that the poses show.
+    """Set all link poses, shape (links, 4, 4); joint values are computed from them.
 
-    ``last_values`` are joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,).
+    Hinge values are shifted by full turns nearest to ``last_values`` [rad or m], shape (dof,).
     """
     for root, link in enumerate(kinematics.roots):
         kinematics.set_root_transform(root, T_world_links[link])
@@ -37,7 +37,7 @@ def place_links(kinematics: "BodyKinematics", T_world_links: Floats, last_values
 
 
 def _displace(kinematics: "BodyKinematics", placed: Floats, wanted: Floats) -> None:
-    """Change the fixed part of links' poses so that they come where they are wanted."""
+    """Change the links' fixed poses so that they reach their goals."""
     link_of = np.zeros(kinematics.model.nbody, dtype=int)
     link_of[kinematics.body_ids] = np.arange(len(placed))
     parents = link_of[kinematics.model.body_parentid[kinematics.body_ids]]
@@ -59,12 +59,11 @@ def _inverses(transforms: Floats) -> Floats:
 
 
 def fix_to_parents(model: mujoco.MjModel, data: mujoco.MjData, positions: Floats, quaternions: Floats) -> None:
-    """Put the axes of joints where their parent links have them, as in OpenRAVE (random-api-234).
+    """Move joint axes to their parent links, as in OpenRAVE (random-api-234).
 
-    MuJoCo has them in the child links. The two axes of a ``hinge2`` and the ball of a spherical joint stay there.
-
-    ``mj_kinematics`` has run. ``positions`` and ``quaternions`` (wxyz) are where joints at rest place each link in its
-    parent, shapes (nbody, 3) [m] and (nbody, 4).
+    MuJoCo defines them in the child links; those of ``hinge2`` and spherical joints stay there. ``mj_kinematics`` must
+    have run. ``positions`` and ``quaternions`` (wxyz) are the rest poses of links in their parents, shapes (nbody, 3)
+    [m] and (nbody, 4).
     """
     for body_id in np.flatnonzero(model.body_jntnum == 1).tolist():
         joint, parent = int(model.body_jntadr[body_id]), int(model.body_parentid[body_id])

@@ -1,4 +1,4 @@
-"""Joint values that the poses of links show, of all joints at once."""
+"""Joint values computed from link poses, for all joints at once."""
 
 import math
 from collections.abc import Sequence
@@ -10,15 +10,15 @@ from ravemj.model.joints import ROUNDING, measured_values
 from ravemj.model.scene import Joint
 
 _VALUE_ROUNDING = 1e-12
-"""The values [rad or m] of a pose are this exact, for links up to some metres apart."""
+"""Accuracy of values [rad or m] computed from poses, for links up to some metres apart."""
 
 _EYE = np.eye(4).ravel()
 
 
 class ShownValues:
-    """Reads the values of a body's active joints off the poses of its links.
+    """Computes the values of a body's active joints from link poses.
 
-    It is ``measured_values`` for arrays: what is the same for all poses is computed once.
+    It is ``measured_values`` for arrays, with constants precomputed.
     """
 
     def __init__(self, joints: Sequence[Joint], first_dofs: Sequence[int]) -> None:
@@ -32,8 +32,8 @@ class ShownValues:
     def read(self, T_world_links: Floats, last_values: Floats) -> Floats:
         """Return the values [rad or m], shape (dof,).
 
-        They are the last ones where only rounding is between them, so that values do not drift when poses are put back;
-        those of hinges are next to the last ones, full turns apart.
+        Values that differ from the last ones only by rounding are not changed, to avoid drift; hinge values are shifted
+        by full turns nearest to the last ones.
         """
         values = last_values.copy()
         if len(dofs := self._hinges.dofs):
@@ -65,15 +65,15 @@ class _SingleAxes:
         self._R_child_parent = rest[:, :3, :3].transpose(0, 2, 1)
 
     def _turned(self, T_world_links: Floats) -> tuple[Floats, Floats]:
-        """Return by what rotation each child is turned from where it is at rest, and the rotation of the parent."""
+        """Return the rotation of each child from its rest orientation, and the rotation of the parent."""
         R_parent_world = T_world_links[self._parents, :3, :3].transpose(0, 2, 1)
         return R_parent_world @ T_world_links[self._children, :3, :3] @ self._R_child_parent, R_parent_world
 
     def angles(self, T_world_links: Floats) -> Floats:
-        """Return the values of hinges, at most half a turn from the value 0."""
+        """Return the values of hinges, at most half a turn from 0."""
         turned, _ = self._turned(T_world_links)
         products = turned.reshape(-1, 9) @ _PRODUCTS + _EYE
-        largest = products[:, ::5].argmax(axis=1)  # of the squares, so that no digits are lost
+        largest = products[:, ::5].argmax(axis=1)  # scaled by the squares, for accuracy
         quaternions = products.reshape(-1, 4, 4)[np.arange(len(turned)), largest]
         moved = 2 * np.arctan2((quaternions[:, 1:] * self._directions).sum(axis=1), quaternions[:, 0])
         moved -= math.tau * np.rint((self._references + moved) / math.tau)
@@ -97,9 +97,9 @@ def _settled(shown: Floats, last: Floats) -> Floats:
 
 
 def _products() -> Floats:
-    """Return the matrix from a rotation matrix, by rows, to four times the products of its quaternion's components.
+    """Return the matrix from a rotation matrix, by rows, to four times the products of quaternion components.
 
-    The products are those of w, x, y, z with one another, shape (9, 16), less 1 for each square.
+    Shape (9, 16), for all products of w, x, y, z; 1 is subtracted from each square.
     """
     xx, xy, xz, yx, yy, yz, zx, zy, zz = np.eye(9)
     return (

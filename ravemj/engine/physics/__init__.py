@@ -1,4 +1,4 @@
-"""What bodies do in time: MuJoCo's dynamics."""
+"""Physics: MuJoCo's dynamics of bodies."""
 
 from ravemj.engine.physics.loads import Loads, Motor, Spring
 from ravemj.engine.physics.world import Physics

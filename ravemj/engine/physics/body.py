@@ -1,4 +1,4 @@
-"""A body that MuJoCo moves."""
+"""Body in the physics model."""
 
 import mujoco
 import numpy as np
@@ -9,9 +9,9 @@ from ravemj.engine.simulation import BodyState
 
 
 class PhysicalBody:
-    """A body in the model of physics, where its roots may be free; the simulation says where it is, and follows.
+    """Body in the physics model, in which its roots may be free; it exchanges its state with the simulation.
 
-    ``rows`` are the places of the velocity coordinates of ``state.dynamics.tree`` in ``qvel``.
+    ``rows`` are the indices of the velocity coordinates of ``state.dynamics.tree`` in ``qvel``.
     """
 
     def __init__(self, state: BodyState, model: mujoco.MjModel, data: mujoco.MjData, part: ModelPart) -> None:
@@ -26,7 +26,7 @@ class PhysicalBody:
         self._enabled = (True,) * len(state.scene.links)
 
     def take_over(self) -> None:
-        """Go where the body is in the simulation, and as fast, if somebody changed that."""
+        """Copy configuration and velocity from the simulation, if they changed."""
         if self.part.stamp != self.state.kinematics.stamp:
             self.part.take(self.state.kinematics)
         velocities = self.state.link_velocities()
@@ -39,7 +39,6 @@ class PhysicalBody:
             self._enable_links(self.state.link_enabled)
 
     def _enable_links(self, enabled: tuple[bool, ...]) -> None:
-        """Let the enabled links collide, and no others."""
         model = self.model
         for body_id, is_enabled in zip(self.body_ids, enabled, strict=True):
             geoms = slice(model.body_geomadr[body_id], model.body_geomadr[body_id] + model.body_geomnum[body_id])
@@ -51,11 +50,11 @@ class PhysicalBody:
 
     @property
     def can_move(self) -> bool:
-        """Whether it has a joint, or nothing holds it."""
+        """Whether it has a joint or is not fixed."""
         return self.part.is_free or len(self.rows) > 0
 
     def give_velocities(self) -> None:
-        """Tell the simulation how fast the body moves."""
+        """Copy the velocity of the body to the simulation."""
         data, body_ids = self.data, self.body_ids
         spins = data.cvel[body_ids, :3]
         arms = data.xpos[body_ids] - data.subtree_com[self.model.body_rootid[body_ids]]

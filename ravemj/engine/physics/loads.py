@@ -1,4 +1,4 @@
-"""What pushes bodies during a step of physics: forces, motors, and the spring with which people pull them."""
+"""Loads on bodies during a physics step: forces, motors, and the spring of interactive dragging."""
 
 from dataclasses import dataclass
 
@@ -11,19 +11,19 @@ from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.simulation import BodyState
 
 _FREQUENCY = 15.0
-"""Natural frequency of what hangs on a spring [rad/s]: it follows within a fifth of a second, and hangs 4 cm low."""
+"""Natural frequency of the dragging spring [rad/s]: it settles within a fifth of a second, with a sag of 4 cm."""
 
 
 @dataclass
 class Motor:
-    """Joints that are to move at given velocities [rad/s or m/s], shape (len(dofs),)."""
+    """Motor: joints driven at given velocities [rad/s or m/s], shape (len(dofs),)."""
 
     dofs: Ints
     velocities: Floats
 
 
 class Loads:
-    """What pushes one body: torques and forces during the next step only, and a motor until it is let go."""
+    """External forces and joint torques of a body for the next time step, and a motor that stays until released."""
 
     def __init__(self, state: BodyState, motor: Motor | None = None) -> None:
         self._state = state
@@ -33,22 +33,22 @@ class Loads:
         self._forces, self._levers, self._moments = np.zeros((links, 3)), np.zeros((links, 3)), np.zeros((links, 3))
 
     def next(self) -> "Loads":
-        """Return what is left for the step after: the motor."""
+        """Return the loads of the following step: only the motor."""
         return Loads(self._state, self.motor)
 
     def push(self, link: int, force: Floats, position: Floats, *, add: bool) -> None:
-        """Let a force [N] act on a link at a position [m], both in the world; ``add``: forces that were there stay."""
+        """Apply a force [N] to a link at a position [m], both in the world; ``add`` keeps earlier forces."""
         T_world_link = self._state.link_transform(link)
         center = T_world_link[:3, :3] @ self._state.scene.links[link].inertial.com + T_world_link[:3, 3]
         self._forces[link] = force + add * self._forces[link]
         self._levers[link] = np.cross(position - center, force) + add * self._levers[link]
 
     def turn(self, link: int, moment: Floats, *, add: bool) -> None:
-        """Let a torque [N m], in world axes, act on a link; ``add``: torques that were there stay."""
+        """Apply a torque [N m], in world axes, to a link; ``add`` keeps earlier torques."""
         self._moments[link] = moment + add * self._moments[link]
 
     def apply(self, body: PhysicalBody) -> None:
-        """Let torques and forces act on a body in the model of physics, until they are replaced."""
+        """Apply torques and forces to a body in the physics model, until they are replaced."""
         data = body.data
         data.xfrc_applied[body.body_ids] = np.hstack([self._forces, self._levers + self._moments])
         if self.torques.any():
@@ -57,9 +57,9 @@ class Loads:
             data.qfrc_applied[body.rows] += np.linalg.lstsq(columns.T, self.torques)[0]
 
     def drive(self, body: PhysicalBody, applied: Floats) -> None:
-        """Let the motor act: the torques with which the joints have their velocities after a time step.
+        """Apply the motor: the torques with which the joints reach their velocities after a time step.
 
-        The accelerations of the model are computed; ``applied`` are the other forces on all its joints, shape (nv,).
+        The accelerations of the model must be computed; ``applied`` are the other joint forces, shape (nv,).
         """
         if self.motor is None:
             return
@@ -75,7 +75,7 @@ class Loads:
 
 
 def _motor_rows(body: PhysicalBody, motor: Motor) -> tuple[Ints, Floats, Floats]:
-    """Return where the driven joints are in ``qvel``, and their velocities and greatest torques."""
+    """Return the indices of the driven joints in ``qvel``, their velocities and maximum torques."""
     kinematics = body.state.kinematics
     coordinates = body.state.dynamics.tree.of_qpos
     places = np.flatnonzero(kinematics.qpos_indices[motor.dofs] != NO_QPOS)
@@ -87,9 +87,9 @@ def _motor_rows(body: PhysicalBody, motor: Motor) -> tuple[Ints, Floats, Floats]
 
 @dataclass(eq=False)
 class Spring:
-    """A spring between a point of a link and a place in the world, and a damper that keeps it from swinging.
+    """Spring between a point of a link and a world position, critically damped.
 
-    It is as stiff as suits the mass that it feels.
+    Its stiffness is adapted to the effective mass.
     """
 
     state: BodyState
@@ -99,15 +99,15 @@ class Spring:
 
     @property
     def place(self) -> Floats:
-        """Where the point is now, in the world [m], shape (3,)."""
+        """Present world position of the point [m], shape (3,)."""
         T_world_link = self.state.link_transform(self.link)
         return T_world_link[:3, :3] @ self.point + T_world_link[:3, 3]
 
     def act(self, body: PhysicalBody, applied: Floats) -> None:
-        """Let the spring act during the next time step, beside the forces applied to all links, shape (bodies, 6).
+        """Apply the spring during the next time step, in addition to ``applied``, shape (bodies, 6).
 
-        The force is m (w^2 d - 2 w v), critically damped, with d the way to the goal, v the velocity of the point and m
-        the mass that is felt there: the inverse of the mean of the diagonal of J M^-1 J^T.
+        The force is m (w^2 d - 2 w v), critically damped, with d the vector to the goal, v the velocity of the point
+        and m the effective mass: the inverse of the mean of the diagonal of J M^-1 J^T.
         """
         model, data, body_id = body.model, body.data, int(body.body_ids[self.link])
         mujoco.mj_forward(model, data)
@@ -116,7 +116,7 @@ class Spring:
         mujoco.mj_jac(model, data, jacobian, None, place, body_id)
         mujoco.mj_solveM(model, data, answers, jacobian)
         mobility = float(np.einsum("ij,ij->", jacobian, answers)) / 3
-        if mobility > 0:  # nothing else moves the link
+        if mobility > 0:  # the link is fixed
             pull = _FREQUENCY**2 * (self.goal - place) - 2 * _FREQUENCY * (jacobian @ data.qvel)
             force = pull / mobility
             wrench = np.concatenate([force, np.cross(place - data.xipos[body_id], force)])

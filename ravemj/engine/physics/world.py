@@ -1,8 +1,8 @@
 """MuJoCo's dynamics for the bodies of a simulation.
 
-The simulation's own model holds every body where it is put. Here is a second one, in which bodies without a static
-link are free. It has no state that the simulation has not: before each step it takes over what users moved, and after
-it the simulation follows. So it can be made anew whenever bodies come, go or change.
+In the simulation's own model, the poses of bodies are prescribed. This second model has free bodies, unless they have a
+static link. Its state is copied from the simulation before each step and back afterwards, so it can be recompiled
+whenever bodies are added, removed or changed.
 """
 
 import itertools
@@ -26,16 +26,16 @@ from ravemj.model.scene import Scene
 _LOG = logging.getLogger("ravemj")
 
 LONGEST_STEP = 0.002
-"""The longest time step [s] that is computed at once; longer ones are divided."""
+"""Maximum internal time step [s]; longer steps are divided."""
 
 
 class Physics:
-    """Moves the bodies of a simulation as their masses, forces, joints and contacts say."""
+    """Dynamics of a simulation's bodies: masses, forces, joints and contacts."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self.self_collisions = True  # of links of one body with one another
-        self.spring: Spring | None = None  # what someone pulls with
+        self.self_collisions = True  # collisions between links of one body
+        self.spring: Spring | None = None  # spring of interactive dragging
         self._loads: dict[BodyState, Loads] = {}
         self._bodies: dict[BodyState, PhysicalBody] = {}
         self._made_of: list[object] = []
@@ -43,13 +43,13 @@ class Physics:
         self._data = mujoco.MjData(self._model)
 
     def loads(self, state: BodyState) -> Loads:
-        """Return what pushes a body during the next step, to be changed."""
+        """Return the mutable loads on a body for the next step."""
         if state not in self._loads:
             self._loads[state] = Loads(state)
         return self._loads[state]
 
     def step(self, timestep: float) -> None:
-        """Let time [s] pass: the bodies move, and the simulation follows."""
+        """Advance by a time [s], and copy the result to the simulation."""
         self.prepare()
         model, data = self._model, self._data
         count = math.ceil(timestep / LONGEST_STEP)
@@ -77,7 +77,7 @@ class Physics:
         self._give_back()
 
     def _drive(self, applied: Floats) -> None:
-        """Let motors act during the next time step."""
+        """Apply motors for the next time step."""
         driven = [state for state, loads in self._loads.items() if loads.motor is not None and state in self._bodies]
         if driven:
             self._data.qfrc_applied[:] = applied
@@ -86,7 +86,7 @@ class Physics:
                 self._loads[state].drive(self._bodies[state], applied)
 
     def prepare(self) -> None:
-        """Make the model anew if the bodies are others, and take over gravity and what users moved."""
+        """Recompile the model if the set of bodies changed; copy gravity and user-set poses."""
         states = self._simulation.bodies
         parts = (part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs))
         made_of: list[object] = [self.self_collisions, *parts]
@@ -109,7 +109,7 @@ class Physics:
         }
 
     def _add_grabs(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
-        """Hang what bodies hold on them, and let them not collide with it."""
+        """Attach grabbed bodies, and exclude their ignored collisions."""
         names = dict(zip(self._simulation.bodies, written.names, strict=True))
         for state, own in names.items():
             for grab in state.grabs:
@@ -150,10 +150,10 @@ class Physics:
         return force - applied[:3], torque - applied[3:]
 
     def link_acceleration(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
-        """Return the acceleration of a link's origin without that of free fall, and its angular acceleration.
+        """Return the acceleration of a link's origin minus gravity, and its angular acceleration.
 
-        That is what an accelerometer there measures [m/s^2], gravity's opposite at rest, and [rad/s^2], each of shape
-        (3,), in world axes; zero if no step has seen the body.
+        These are the reading of an accelerometer [m/s^2], upwards at rest, and [rad/s^2], each of shape (3,), in world
+        axes; zero before the first step.
         """
         body_id, acceleration = self._body_id(state, link), np.zeros(6)
         if body_id is not None:
@@ -162,7 +162,7 @@ class Physics:
         return acceleration[3:], acceleration[:3]
 
     def link_contacts(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
-        """Return the points where a link is touched [m] and the forces on it there [N], each (n, 3), in the world."""
+        """Return the contact points of a link [m] and the forces on it there [N], each (n, 3), in the world."""
         body_id = self._body_id(state, link)
         touches = [] if body_id is None else self._touches()
         felt = [touch for touch in touches if body_id in touch[0]]
@@ -171,13 +171,13 @@ class Physics:
     def contacts(self) -> tuple[Floats, Floats]:
         """Return the points of all contacts of the last step [m], and the force at each [N], each (n, 3), in the world.
 
-        The force is that on the body that can move, and on either of two that can.
+        The force is that on the movable body, or on either of two movable bodies.
         """
         touches, fixed = self._touches(), self._model.body_weldid == 0
         return _columns((point, -push if fixed[sides[1]] else push) for sides, point, push in touches)
 
     def mean_weight(self) -> float:
-        """Return the mean weight of the links that can move [N]; 0 where none can or nothing falls."""
+        """Return the mean weight of the movable links [N]; 0 if there are none or no gravity."""
         masses = self._model.body_mass[self._model.body_weldid > 0]
         return float(np.linalg.norm(self._simulation.gravity)) * float(masses.mean()) if len(masses) else 0.0
 
@@ -193,7 +193,7 @@ class Physics:
         return found
 
     def _body_id(self, state: BodyState, link: int) -> int | None:
-        """Return MuJoCo's index of a link, with the forces on it computed; None if no step has seen it."""
+        """Return MuJoCo's index of a link, after computing the forces on it; None before the first step."""
         body = self._bodies.get(state)
         if body is None:
             return None
@@ -202,12 +202,12 @@ class Physics:
         return int(body.body_ids[link])
 
     def _wrench(self, body_id: int, spatial: Floats, point: Floats) -> tuple[Floats, Floats]:
-        """Return force, and torque about a point, of MuJoCo's spatial force: torque about the tree's centre of mass."""
+        """Return force, and torque about a point, from a spatial force with torque about the tree's centre of mass."""
         center = self._data.subtree_com[self._model.body_rootid[body_id]]
         return spatial[3:].copy(), spatial[:3] - np.cross(point - center, spatial[3:])
 
     def _give_back(self) -> None:
-        """Let the simulation follow."""
+        """Copy the state to the simulation."""
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_comVel(self._model, self._data)
@@ -219,7 +219,7 @@ class Physics:
         for body in own:
             body.state.moved()
         for body in own:
-            body.part.stamp = body.state.kinematics.stamp  # it is where the simulation has it
+            body.part.stamp = body.state.kinematics.stamp  # it has not moved
         for body in moving:
             body.give_velocities()
 

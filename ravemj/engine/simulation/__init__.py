@@ -1,4 +1,4 @@
-"""Bodies, and the MuJoCo model made of them."""
+"""Bodies, and their common MuJoCo model."""
 
 from ravemj.engine.compiled import Compiled
 from ravemj.engine.simulation.body import BodyState

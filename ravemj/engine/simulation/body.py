@@ -14,7 +14,7 @@ from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.bounds import BodyBounds
 from ravemj.model.inertia import Inertias
 from ravemj.model.joints import rezeroed
-from ravemj.model.scene import Axis, Geometry, KinBody
+from ravemj.model.scene import Axis, Geometry, Joint, KinBody
 
 if TYPE_CHECKING:
     from ravemj.engine.batch import Batch
@@ -28,12 +28,12 @@ _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
 
 class GrabbedBody(NamedTuple):
-    """One body held by a link of another."""
+    """Body grabbed by a link of another."""
 
-    body: "BodyState"  # the held one
-    link: int  # index of the link that holds it
+    body: "BodyState"  # the grabbed body
+    link: int  # index of the grabbing link
     T_link_body: Floats
-    ignored: frozenset[int] = frozenset()  # indices of the holder's links that it does not collide with
+    ignored: frozenset[int] = frozenset()  # indices of the holder's links whose collisions with it are ignored
 
 
 class SavedConfiguration(NamedTuple):
@@ -44,19 +44,19 @@ class SavedConfiguration(NamedTuple):
 
 
 class BodyState:
-    """A body and its state; what the API objects of one body share.
+    """State of a body, shared by its API objects.
 
-    Joint values and poses are those of a MuJoCo model of the body alone (``own_kinematics``), whether the body is in
-    the world or not. It is compiled when first asked for; until then the body is where its description has it. That is
-    ``scene``: what files say, and what setters of the API changed since.
+    Joint values and poses are in a MuJoCo model of the body alone (``own_kinematics``), whether or not the body is in
+    the world. It is compiled on first use; until then the state is that of the description ``scene``, which contains
+    the file's values and later changes by the API.
     """
 
     def __init__(self, scene: KinBody, simulation: "Simulation") -> None:
         self.simulation = simulation  # the world that it was made for
-        self.index = 0  # in the world, from 1; 0 while it is not in the world
+        self.index = 0  # in the world, from 1; 0 outside of the world
         self.stamp = 0  # grows with every change of pose
         self._grabs: tuple[GrabbedBody, ...] = ()
-        self.holders: WeakSet[BodyState] = WeakSet()  # the bodies that hold it
+        self.holders: WeakSet[BodyState] = WeakSet()  # the bodies that have grabbed it
         self._link_enabled: tuple[bool, ...] = ()
         # The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the body was
         # added, or that of the body of which it is a copy.
@@ -65,7 +65,7 @@ class BodyState:
         self.rebuild(scene)
 
     def rebuild(self, scene: KinBody) -> None:
-        """Make the body anew of other links and joints, in the configuration that the scene has.
+        """Rebuild the body with other links and joints, in the configuration of the scene.
 
         Raises:
             RavemjError: the body is in the world.
@@ -80,13 +80,13 @@ class BodyState:
         self._forget_kinematics()
 
     def _forget_kinematics(self) -> None:
-        self._kinematics: BodyKinematics | None = None
+        self.known_kinematics: BodyKinematics | None = None  # ``own_kinematics`` if that was asked for before
         self._dynamics: BodyDynamics | None = None
         self._batch: Batch | None = None
 
     @property
     def link_enabled(self) -> tuple[bool, ...]:
-        """For each link, whether collision checking looks at it."""
+        """For each link, whether it takes part in collision checks."""
         return self._link_enabled
 
     @link_enabled.setter
@@ -98,7 +98,7 @@ class BodyState:
 
     @property
     def grabs(self) -> tuple[GrabbedBody, ...]:
-        """What it holds, in the order of grabbing."""
+        """Grabs, in the order of grabbing."""
         return self._grabs
 
     @grabs.setter
@@ -111,24 +111,19 @@ class BodyState:
         self.simulation.collision_stamp += 1
 
     @property
-    def is_compiled(self) -> bool:
-        """Whether the body has a model of its own already; if not, it is where its description has it."""
-        return self._kinematics is not None
-
-    @property
     def own_kinematics(self) -> BodyKinematics:
         """Joint values and link poses, in a model of the body alone.
 
         Raises:
             CompileError: MuJoCo refuses the body.
         """
-        if self._kinematics is None:
-            self._kinematics = BodyKinematics(self.scene)
-        return self._kinematics
+        if self.known_kinematics is None:
+            self.known_kinematics = BodyKinematics(self.scene)
+        return self.known_kinematics
 
     @property
     def kinematics(self) -> BodyKinematics:
-        """``own_kinematics``, for what OpenRAVE answers for bodies in an environment only: joint values.
+        """``own_kinematics`` of a body in the world; OpenRAVE has no joint values outside of it.
 
         Raises:
             RavemjError: the body is not in the world.
@@ -137,7 +132,7 @@ class BodyState:
         if not self.index:
             message = f"'{self.scene.name}' is not in an environment and has no joint values; add it first"
             raise RavemjError(message, ErrorCode.NotInitialized)
-        return self._kinematics or self.own_kinematics
+        return self.known_kinematics or self.own_kinematics
 
     @property
     def dynamics(self) -> "BodyDynamics":
@@ -150,7 +145,7 @@ class BodyState:
 
     @property
     def batch(self) -> "Batch":
-        """The chain of links, ready for many configurations; errors as for ``kinematics``."""
+        """The chain of links prepared for many configurations; errors as for ``kinematics``."""
         dynamics = self.dynamics
         if self._batch is None:
             from ravemj.engine.batch import Batch  # noqa: PLC0415 - slow to import
@@ -160,16 +155,16 @@ class BodyState:
 
     @property
     def inertias(self) -> Inertias:
-        """Mass properties of the links, as the scene has them now."""
-        return self.made_once(Inertias.of, self.scene.links)
+        """Mass properties of the links at present."""
+        return self.made_once(Inertias.from_links, self.scene.links)
 
     @property
     def bounds(self) -> BodyBounds:
-        """The extents of the links' geometries, as the scene has them now."""
+        """Extents of the links' geometries at present."""
         return self.made_once(BodyBounds, self.scene.links)
 
     def made_once(self, make: Callable[[_Part], _Made], part: _Part) -> _Made:
-        """Return what a function makes of a part of the scene; it is called again when the part is another one."""
+        """Return the cached result of a function of a part of the scene, recomputed if the part changes."""
         known = self._made.get(make)
         if known is None or known[0] is not part:
             self._made[make] = known = part, make(part)
@@ -177,29 +172,30 @@ class BodyState:
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
-        if self._kinematics is None:
+        if self.known_kinematics is None:
             return np.array([link.T_world_link.matrix() for link in self.scene.links]).reshape(-1, 4, 4)
-        return self._kinematics.link_transforms()
+        return self.known_kinematics.link_transforms()
 
     def link_transform(self, link: int) -> Floats:
         """Return ``T_world_link`` of one link, shape (4, 4); a copy."""
-        if self._kinematics is None:
+        if self.known_kinematics is None:
             return self.scene.links[link].T_world_link.matrix()
-        return self._kinematics.link_transform(link)
+        return self.known_kinematics.link_transform(link)
 
     def set_values(self, values: Floats, *, clamp_mimic: bool = True) -> None:
-        """Set the joint values [rad or m], shape (dof,), and place all links by them."""
+        """Set the joint values [rad or m], shape (dof,), and thereby the link poses."""
         self.will_move()
         self.kinematics.set_values(values, clamp_mimic=clamp_mimic)
         self.carry()
 
     def enter_limits(self) -> None:
         """Let joints that are outside their limits go to them."""
-        if self._kinematics is not None and not self._kinematics.limits.contain(values := self._kinematics.values()):
-            self.set_values(self._kinematics.limits.clamp(values))
+        kinematics = self.known_kinematics
+        if kinematics is not None and not kinematics.limits.contain(values := kinematics.values()):
+            self.set_values(kinematics.limits.clamp(values))
 
     def set_transform(self, T_world_link0: Floats) -> None:
-        """Move the body rigidly, with the joint values as they are, by the pose of its first link, shape (4, 4)."""
+        """Move the body rigidly, keeping joint values, by the pose of its first link, shape (4, 4)."""
         self.will_move()
         self.own_kinematics.set_transform(T_world_link0)
         self.carry()
@@ -209,17 +205,18 @@ class BodyState:
         return self.own_kinematics.link_pose(0) if self.scene.links else Pose()
 
     def set_pose(self, T_world_link0: Pose) -> None:
-        """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
-        self.set_transform(T_world_link0.matrix())
-        self.own_kinematics.set_root_wxyz(T_world_link0.wxyz)
+        """Move the body rigidly, like ``set_transform``; ``pose()`` keeps the sign of the quaternion."""
+        self.will_move()
+        self.own_kinematics.set_pose(T_world_link0)
+        self.carry()
 
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
-        """Put every link at a pose; joints get the values that the poses show.
+        """Set all link poses; joint values are computed from them.
 
         Args:
             T_world_links: Shape (links, 4, 4).
-            last_values: Joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,);
-                the body is in the world. None: the present values.
+            last_values: Joint values [rad or m], shape (dof,), nearest to which hinge values are shifted by full turns;
+                only for a body in the world. None means the present values.
         """
         kinematics = self.own_kinematics if last_values is None else self.kinematics
         self.will_move()
@@ -227,23 +224,23 @@ class BodyState:
         self.carry()
 
     def moved(self) -> None:
-        """Mark the model as out of date, and move the grabbed bodies along."""
+        """Mark the model as outdated, and move the grabbed bodies along."""
         self.will_move()
         self.carry()
 
     def will_move(self) -> None:
-        """Mark the model as out of date. Called before links move, so that no interrupt leaves it unmarked."""
+        """Mark the model as outdated. Called before links move, so that an interrupt cannot skip it."""
         self.stamp += 1
         if self.index:
             self.simulation.changed.add(self)
 
     def carry(self) -> None:
-        """Move the grabbed bodies to where they are held."""
+        """Move the grabbed bodies to their relative poses."""
         for grab in self._grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
     def link_velocities(self) -> Floats:
-        """Return the velocities of the links in world axes, (links, 6): of the origin [m/s], angular [rad/s]; a copy.
+        """Return a copy of the link velocities in world axes, (links, 6): of the origin [m/s], angular [rad/s].
 
         Moving links does not change them, as in OpenRAVE.
         """
@@ -251,24 +248,24 @@ class BodyState:
 
     @property
     def present_velocities(self) -> Floats:
-        """``link_velocities`` without a copy; the array is never changed, but replaced."""
+        """``link_velocities`` without a copy; the array is immutable, and replaced on changes."""
         return self._velocities
 
     def set_link_velocities(self, velocities: Floats) -> None:
-        """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
+        """Set the velocities of the links, shape (links, 6), and those of grabbed bodies."""
         self._velocities = velocities.copy()
         self._velocities.flags.writeable = False
         for grab in self.grabs:
             self._carry(grab)
 
     def _carry(self, grab: GrabbedBody) -> None:
-        """Give a held body the velocity of the link that holds it."""
+        """Set the velocity of a grabbed body to that of the grabbing link."""
         carrier = self._velocities[grab.link]
         arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
         grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
 
     def set_velocity(self, linear: Floats, angular: Floats) -> None:
-        """Let all links move as one, by the velocity of the first link's origin [m/s] and an angular one [rad/s]."""
+        """Set a rigid motion: the velocity of the first link's origin [m/s] and an angular velocity [rad/s]."""
         origins = self.link_transforms()[:, :3, 3]
         velocities = np.empty((len(origins), 6))
         velocities[:, :3] = linear + cross_rows(angular, origins - origins[:1])
@@ -276,7 +273,7 @@ class BodyState:
         self.set_link_velocities(velocities)
 
     def grab(self, grab: GrabbedBody) -> None:
-        """Hold a body; one that is held already, anew."""
+        """Grab a body. If it is already grabbed, its relative pose is updated."""
         if any(old.body is grab.body for old in self.grabs):
             self.grabs = [grab if old.body is grab.body else old for old in self.grabs]
         else:
@@ -284,11 +281,11 @@ class BodyState:
         self._carry(grab)
 
     def carries(self, body: "BodyState") -> bool:
-        """Return whether a body is this one, or held by it or by what it holds."""
+        """Return whether a body is this one, or grabbed by it directly or indirectly."""
         return body is self or any(grab.body.carries(body) for grab in self.grabs)
 
     def release(self, body: "BodyState") -> None:
-        """Let go of a body; nothing happens if it is not held."""
+        """Release a body; nothing happens if it is not grabbed."""
         self.grabs = [grab for grab in self.grabs if grab.body is not body]
 
     def configuration(self) -> SavedConfiguration:
@@ -296,7 +293,7 @@ class BodyState:
         return SavedConfiguration(self.own_kinematics.configuration(), self.scene)
 
     def restore(self, saved: SavedConfiguration) -> None:
-        """Bring joints and links back to a state that ``configuration`` returned, of this body or one like it."""
+        """Restore a state returned by ``configuration``, of this body or one of the same structure."""
         self.will_move()
         kinematics = self.own_kinematics
         if not kinematics.restore(saved.configuration):
@@ -306,19 +303,19 @@ class BodyState:
         self.carry()
 
     def copy(self, other: "BodyState", name: str | None = None) -> None:
-        """Become like another body, its configuration and flags included; what it holds is left out.
+        """Copy another body, including its configuration and flags, without grabs.
 
         Raises:
             RavemjError: this body is in the world.
         """
         self.rebuild(other.scene if name is None else replace(other.scene, name=name))
         self.link_enabled, self.rest_poses = other.link_enabled, other.rest_poses
-        if other._kinematics is not None:
-            self.own_kinematics.restore(other._kinematics.configuration())
+        if other.known_kinematics is not None:
+            self.own_kinematics.restore(other.known_kinematics.configuration())
         self._velocities = other.link_velocities()
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
-        """Change the description of the body where links and joints stay the same: names, limits, manipulators."""
+        """Change the description of the body except for links and joints: names, limits, manipulators."""
         scene = replace(self.scene, **changes)
         if not changes.keys().isdisjoint(("joints", "passive_joints")) and _welds(scene) != _welds(self.scene):
             self.remake(scene)
@@ -326,13 +323,13 @@ class BodyState:
         self.scene = scene
         if self.index:
             self.simulation.changed.add(self)
-        if self._kinematics is not None:
-            self._kinematics.describe(self.scene)
+        if self.known_kinematics is not None:
+            self.known_kinematics.describe(self.scene)
         if "passive_joints" in changes:
-            self._dynamics = self._batch = None  # which of several values a follower has depends on its limits
+            self._dynamics = self._batch = None  # the value of a multivalued mimic equation depends on the limits
 
     def remake(self, scene: KinBody) -> None:
-        """Take over a description with other DOFs, welds or equations; links stay until values are next set."""
+        """Replace the description by one with other DOFs, welds or equations; links move when values are next set."""
         saved = self.configuration()
         self.simulation.forget_model()
         self._forget_kinematics()
@@ -340,7 +337,7 @@ class BodyState:
         self.restore(saved)
 
     def rezero(self) -> None:
-        """Call the present values of the DOFs zero; the links stay where they are, until values are next set."""
+        """Make the present configuration the zero configuration; links move when values are next set."""
         T_world_links = self.link_transforms()
         scene = rezeroed(self.scene, T_world_links, self.kinematics.values().tolist())
         self.simulation.forget_model()
@@ -349,19 +346,19 @@ class BodyState:
         self.place_links(T_world_links)
 
     def edit_link(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Link
-        """Change the description of a link: its masses, its names; shapes by ``set_geometries``."""
+        """Change the description of a link, such as mass or name; for shapes use ``set_geometries``."""
         links = list(self.scene.links)
         links[index] = replace(links[index], **changes)
         self.edit(links=tuple(links))
 
     def set_geometries(self, link: int, geometries: "Sequence[Geometry]") -> None:
-        """Give a link other shapes; the model of the world is compiled anew when it is next asked for."""
+        """Replace the shapes of a link; the next use of the world's model recompiles it."""
         if self.index:
             self.simulation.forget_model()
         self.edit_link(link, geometries=tuple(geometries))
 
     def edit_geometry(self, link: int, index: int, **changes: Any) -> None:  # noqa: ANN401 - of a scene.Geometry
-        """Change the description of a shape; colours do not make the model compile anew."""
+        """Change the description of a shape; changed colours do not require recompilation."""
         geometries = list(self.scene.links[link].geometries)
         geometries[index] = replace(geometries[index], **changes)
         if changes.keys() <= _LOOKS:
@@ -372,16 +369,20 @@ class BodyState:
     def edit_joint(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Joint
         """Change the description of a joint; the index counts active joints and then passive ones."""
         joints = list(self.scene.all_joints)
-        joints[index] = replace(joints[index], **changes)
+        joints[index] = _still_moving(joints[index], replace(joints[index], **changes))
         count = len(self.scene.joints)
         self.edit(joints=tuple(joints[:count]), passive_joints=tuple(joints[count:]))
 
     def edit_axes(self, axes: "list[Axis]") -> None:
         """Replace the axes of all active joints, in DOF order."""
         rest: Iterator[Axis] = iter(axes)
-        self.edit(
-            joints=tuple(replace(joint, axes=tuple(next(rest) for _ in joint.axes)) for joint in self.scene.joints)
-        )
+        edited = ((joint, replace(joint, axes=tuple(next(rest) for _ in joint.axes))) for joint in self.scene.joints)
+        self.edit(joints=tuple(_still_moving(before, after) for before, after in edited))
+
+
+def _still_moving(before: Joint, after: Joint) -> Joint:
+    """Return ``after``, still movable if ``before`` was: limits of scripts weld nothing (random api-91001-36)."""
+    return replace(after, keeps_moving=True) if after.static and not before.static else after
 
 
 def _welds(body: KinBody) -> list[bool]:

@@ -1,4 +1,4 @@
-"""The state that viewers show while a script has the simulation."""
+"""Published state, which viewers show while a script holds the simulation's lock."""
 
 from threading import Lock
 
@@ -8,11 +8,11 @@ from ravemj.core.transforms import Floats
 
 
 class Published:
-    """A copy of the state of the world, for which nobody needs the lock of the simulation."""
+    """Copy of the state of the world that is readable without the lock of the simulation."""
 
     def __init__(self) -> None:
-        self.number = 0  # how many copies there were so far
-        self.is_wanted = False  # whether a viewer waits for the simulation; copies are made for nobody else
+        self.number = 0  # number of copies so far
+        self.is_wanted = False  # whether a viewer waits for the simulation; otherwise no copies are made
         self._lock = Lock()
         self._model: mujoco.MjModel | None = None
         self._data: mujoco.MjData | None = None
@@ -26,7 +26,7 @@ class Published:
             self.number += 1
 
     def copy_to(self, data: mujoco.MjData, model: mujoco.MjModel) -> bool:
-        """Write the state into that of a viewer; return False, and leave it, if it is of another model."""
+        """Copy the state to that of a viewer; return False without a change if it is of another model."""
         with self._lock:
             if self._data is None or self._model is not model:
                 return False

@@ -1,7 +1,7 @@
-"""The bodies of an environment and the MuJoCo model made of them."""
+"""Bodies of an environment and their common MuJoCo model."""
 
 import heapq
-from collections.abc import Generator, Mapping
+from collections.abc import Generator
 from typing import TYPE_CHECKING
 from weakref import WeakSet
 
@@ -24,43 +24,43 @@ if TYPE_CHECKING:
 _simulations: "WeakSet[Simulation]" = WeakSet()
 
 DEFAULT_GRAVITY: Vec3 = (0.0, 0.0, -9.797930195020351)
-"""OpenRAVE's, where a file has no physics engine."""
+"""OpenRAVE's gravity for files without a physics engine."""
 
 
 class Simulation:
-    """The bodies of an environment, and one MuJoCo model of all of them that is compiled when it is first asked for.
+    """Bodies of an environment, and one MuJoCo model of all of them that is compiled on first use.
 
-    Bodies know their joint values and poses by themselves; who asks for collisions, pictures or MJCF needs the model.
-    Adding, removing and reshaping bodies puts it out of date. Moving and enabling them does not.
+    Bodies store their joint values and poses themselves; collisions, pictures and MJCF use the model. Adding, removing
+    and reshaping bodies requires recompilation; moving and enabling them does not.
     """
 
     def __init__(self) -> None:
         _simulations.add(self)
-        self.lock = StateLock()  # held by every reader and writer of the model's state, such as the threads of viewers
-        self.drawings = Drawings()  # what scripts draw beside the bodies; needs no lock
-        self.published = Published()  # what viewers show while the lock is held; needs none
-        self.view = View()  # background and camera that the loaded files ask for
-        self.diagnostics = Diagnostics()  # what the last translation to MJCF found
-        self.version = 0  # grows by one with each compiled model
-        self.gravity = DEFAULT_GRAVITY  # acceleration of free fall in the world [m/s^2]
-        self.changed: set[BodyState] = set()  # moved or described anew since the model was last brought up to date
-        self.collision_stamp = 0  # grows when what may collide with what changes: links are enabled, bodies are held
-        self.clock: Clock | None = None  # simulation time; None where nobody lets it pass
-        self.physics: Physics | None = None  # moves the bodies in that time; None: they stay where they are put
+        self.lock = StateLock()  # held by every reader and writer of the model's state, such as threads of viewers
+        self.drawings = Drawings()  # drawings of scripts; needs no lock
+        self.published = Published()  # state shown by viewers while the lock is held; needs none
+        self.view = View()  # background and camera of the loaded files
+        self.diagnostics = Diagnostics()  # diagnostics of the last translation to MJCF
+        self.version = 0  # incremented with each compiled model
+        self.gravity = DEFAULT_GRAVITY  # gravitational acceleration in the world [m/s^2]
+        self.changed: set[BodyState] = set()  # bodies moved or edited since the last update of the model
+        self.collision_stamp = 0  # incremented if collision pairs change: links are enabled, bodies are grabbed
+        self.clock: Clock | None = None  # simulation time; None without a clock
+        self.physics: Physics | None = None  # dynamics; None if bodies stay in place
         self._places: list[BodyState | None] = []
-        self._gaps: list[int] = []  # a heap of the free places among these, and of some that are no longer free
+        self._gaps: list[int] = []  # a heap of the free indices, including some that are no longer free
         self._by_name: dict[str, BodyState] = {}
-        self._next_numbers: dict[str, int] = {}  # from which on ``free_name`` looks for a free one
+        self._next_numbers: dict[str, int] = {}  # lower bound of the numbers that ``free_name`` tries
         self._world: WorldModel | None = None
         self._collisions: CollisionWorld | None = None
 
     @property
     def bodies(self) -> tuple[BodyState, ...]:
-        """The bodies in the order of their index: that in which they were added, except that gaps are filled."""
+        """The bodies in the order of their indices: the order of addition, except that gaps are filled."""
         return tuple(body for body in self._places if body is not None)
 
     def body(self, name: str) -> BodyState | None:
-        """Return the body of that name, or None."""
+        """Return the body called ``name``, or None."""
         return self._by_name.get(name)
 
     def body_at(self, index: int) -> BodyState | None:
@@ -78,7 +78,7 @@ class Simulation:
         return body
 
     def insert(self, body: BodyState, index: int | None = None) -> None:
-        """Take a body into the world, in the pose that it has, with a free index or by default the first free one.
+        """Add a body at its present pose, with a free index, by default the first.
 
         Raises:
             RavemjError: a body of that name is already there, or the name is empty.
@@ -100,7 +100,7 @@ class Simulation:
         return (self._gaps[0] if self._gaps else len(self._places)) + 1
 
     def remove(self, body: BodyState) -> bool:
-        """Take a body out of the world; it keeps its pose. Return False if it was not there."""
+        """Remove a body from the world; it keeps its pose. Return False if it was not there."""
         with self.lock:
             if not self.holds(body):
                 return False
@@ -126,9 +126,9 @@ class Simulation:
         return body.simulation is self and body.index > 0
 
     def attached(self, body: BodyState) -> list[BodyState]:
-        """Return a body and all that are connected to it by grabbing, in whichever direction."""
+        """Return a body and all bodies connected to it by grabs, in either direction."""
         found = [body]
-        for one in found:  # which grows meanwhile
+        for one in found:  # which is extended in the loop
             near = [grab.body for grab in one.grabs]
             near += sorted(filter(self.holds, one.holders), key=lambda holder: holder.index)
             found += [other for other in dict.fromkeys(near) if other not in found]
@@ -150,10 +150,10 @@ class Simulation:
             body.edit(name=name)
 
     def check_name(self, body: BodyState, name: str) -> None:
-        """Check that a body can have a name.
+        """Check that a body can have a name: it is neither empty nor taken.
 
         Raises:
-            RavemjError: another body has it, or it is empty.
+            RavemjError: it is taken or empty.
         """
         if not name:
             raise RavemjError("a body's name should not be empty", ErrorCode.Assert)
@@ -161,7 +161,7 @@ class Simulation:
             raise RavemjError(f"there already is a body '{name}' in the environment", ErrorCode.BodyNameConflict)
 
     def free_name(self, name: str) -> str:
-        """Return the name, or one made of it by a number, that no body has."""
+        """Return a name that no body has: the given one, if possible, else with a number appended."""
         number, free = self._next_numbers.get(name, 0), name or "_"
         while free in self._by_name:
             free = f"{name}{number}"
@@ -178,7 +178,8 @@ class Simulation:
     def copy(self, other: "Simulation", *, bodies: bool = True) -> dict[BodyState, BodyState]:
         """Replace bodies, view and gravity by copies of another world's. The caller holds both locks.
 
-        Joints outside their limits go to them, as in OpenRAVE (random-api-232). Without ``bodies`` this world is empty.
+        Joints are clamped to their limits, as in OpenRAVE (random-api-232). Without ``bodies``, this world becomes
+        empty.
 
         Returns:
             For each body of the other world its copy.
@@ -196,18 +197,18 @@ class Simulation:
         return copies
 
     def set_gravity(self, gravity: Vec3) -> None:
-        """Set the acceleration of free fall [m/s^2]."""
+        """Set the gravitational acceleration [m/s^2]."""
         with self.lock:
             self.gravity = gravity
             if self._world is not None:
                 self._world.model.opt.gravity[:] = gravity
 
     def forget_model(self) -> None:
-        """Put the model out of date: the bodies or what they consist of are about to change."""
+        """Invalidate the model before the bodies or their shapes change."""
         self._world = None
 
     def compiled(self) -> "WorldModel":
-        """Return the model of the present bodies as they are now; it is compiled if bodies came, went or changed.
+        """Return the up-to-date model of the present bodies, recompiled if necessary.
 
         Raises:
             CompileError: MuJoCo refuses the model.
@@ -220,13 +221,13 @@ class Simulation:
             return world
 
     def publish(self) -> None:
-        """Let viewers that wait for the lock show where the bodies are; the caller holds it."""
+        """Publish the present poses for viewers that wait for the lock, which the caller holds."""
         if self.published.is_wanted:
             world = self.compiled()
             self.published.put(world.model, world.data)
 
     def compile(self) -> "WorldModel":
-        """Return the model of the present bodies, which may be elsewhere than they are; errors as for ``compiled``."""
+        """Return the model of the present bodies, whose poses may be outdated; errors as for ``compiled``."""
         with self.lock:
             if self._world is None:
                 self._world = self._compile()
@@ -234,7 +235,7 @@ class Simulation:
             return self._world
 
     def collisions(self) -> "CollisionWorld":
-        """Return what collision checking knows of the present bodies as they are now. The caller holds ``lock``."""
+        """Return the up-to-date collision world of the present bodies. The caller holds ``lock``."""
         model, stamp, known = self._world, self.collision_stamp, self._collisions
         if model is None or not model.stamp:
             model = self.compiled()
@@ -247,34 +248,6 @@ class Simulation:
             self._collisions = known = CollisionWorld(self.bodies, model, stamp)
         return known
 
-    @block
-    def described_as(
-        self, scenes: Mapping[BodyState, KinBody], known: "CollisionWorld | None"
-    ) -> "Generator[CollisionWorld]":
-        """Let bodies have other geometries for a while, and yield what collision checking knows of them then.
-
-        The caller holds ``lock``.
-
-        Args:
-            scenes: The descriptions of bodies, which differ from theirs in geometries alone.
-            known: What was yielded for these geometries before, which is used again; None: nothing.
-        """
-        kept = self._collisions, self.diagnostics, self.version
-        world, changed, own = self._world, self.changed, {body: body.scene for body in scenes}
-        self._world, self._collisions = None if known is None else known.model, known
-        self.changed = set(self.bodies)
-        for body, scene in scenes.items():
-            body.scene = scene
-        try:
-            yield self.collisions()
-        finally:
-            for body, scene in own.items():
-                body.scene = scene
-            self._collisions, self.diagnostics, self.version = kept
-            if self._world is not None:  # callbacks may have changed what the bodies consist of
-                self._world = world
-            self.changed = changed | self.changed
-
     def _compile(self) -> "WorldModel":
         from ravemj.engine.simulation.world_model import WorldModel  # noqa: PLC0415 - slow to import
 
@@ -282,14 +255,14 @@ class Simulation:
         world = WorldModel(self.bodies, self.view, self.diagnostics)
         world.model.opt.gravity[:] = self.gravity
         self.version += 1
-        # Links that scripts make are all called "base"; only who reads the MJCF wants to know its names.
+        # Links made by scripts are all called "base"; only readers of the MJCF need distinct names.
         send_warnings(finding for finding in self.diagnostics if finding.code != "renamed")
         return world
 
 
 @block
 def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
-    """Hold the locks of two environments. All callers take them in the same order, which prevents deadlocks."""
+    """Acquire the locks of two environments, always in the same order to prevent deadlocks."""
     first, second = sorted((one, other), key=id)
     with first.lock, second.lock:
         yield

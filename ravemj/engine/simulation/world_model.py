@@ -1,6 +1,6 @@
-"""The MuJoCo model of all bodies of an environment."""
+"""MuJoCo model of all bodies of an environment."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import mujoco
 
@@ -15,22 +15,36 @@ from ravemj.model.scene import KinBody, Link, Scene, View
 
 
 class WorldModel(Compiled):
-    """All bodies with their shapes in one model: for collisions, pictures and export.
+    """Model of all bodies with their shapes: for collisions, pictures and export.
 
-    Each body is at home in its own model (``BodyState.own_kinematics``). Here is a copy; ``take`` brings it up to date.
-    ``stamp`` grows with every change that was taken over, and is 0 before the first ``take``, when links are nowhere
-    yet; ``pose_stamp`` grows where more than joint values changed.
+    The state of each body is in its own model (``BodyState.own_kinematics``); ``take`` copies it here. ``stamp``
+    increases with every copied change, and is 0 before the first ``take``, when poses are undefined; ``pose_stamp``
+    increases if more than joint values changed.
     """
 
-    def __init__(self, bodies: Iterable[BodyState], view: View, diagnostics: Diagnostics) -> None:
+    def __init__(
+        self,
+        bodies: Iterable[BodyState],
+        view: View,
+        diagnostics: Diagnostics,
+        described: Mapping[BodyState, KinBody] | None = None,
+    ) -> None:
         """Compile bodies.
+
+        Args:
+            bodies: The bodies.
+            view: Background and camera.
+            diagnostics: Receives the warnings of the translation.
+            described: Descriptions that replace those of the bodies and differ only in geometries; later changes of
+                colours and masses do not affect them.
 
         Raises:
             CompileError: MuJoCo refuses the model.
         """
         self.stamp = self.pose_stamp = 0
         bodies = tuple(bodies)
-        scene = Scene(tuple(body.scene for body in bodies), view)
+        self._is_own = described is None
+        scene = Scene(tuple(body.scene if described is None else described[body] for body in bodies), view)
         super().__init__(scene, diagnostics)
         self.write_true_inertias(scene)
         self._described = dict(zip(bodies, scene.bodies, strict=True))
@@ -40,24 +54,32 @@ class WorldModel(Compiled):
         described = zip(self._described, self.mjcf.names, strict=True)
         return {body: ModelPart(self.model, self.data, names) for body, names in described}
 
+    def description(self, body: BodyState) -> KinBody:
+        """Return the description of a body in this model; its own if it is not in the model."""
+        return self._described.get(body, body.scene)
+
     def part(self, body: BodyState) -> ModelPart:
-        """Return where a body is in this model."""
+        """Return the part of this model that is a body."""
         return self._parts[body]
 
     def take(self, bodies: Iterable[BodyState]) -> None:
         """Take over what changed of some bodies: joint values, poses, masses, colours."""
+        parts, described = self._parts, self._described
         for body in bodies:
-            part, described = self._parts[body], self._described[body]
-            if body.scene is not described:
-                self._describe(part, described.links, body.scene.links)
-                self._described[body] = body.scene
-            if (body.is_compiled or not _is_at_reference(body.scene)) and part.take(body.own_kinematics):
+            part, scene = parts[body], body.scene
+            if self._is_own and scene is not described[body]:
+                self._describe(part, described[body].links, scene.links)
+                described[body] = scene
+            kinematics = body.known_kinematics
+            if kinematics is None and not _is_at_reference(scene):
+                kinematics = body.own_kinematics
+            if kinematics is not None and part.take(kinematics):
                 self.pose_stamp += 1
         self.stamp += 1
         mujoco.mj_kinematics(self.model, self.data)
 
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
-        """Give links other masses, and geometries other colours; what is drawn in place of one keeps its own."""
+        """Update masses of links and colours of geometries; surfaces drawn instead of a shape keep theirs."""
         from ravemj.formats.mjcf import rgba  # noqa: PLC0415 - slow to import
 
         for old, link, body_id, counts in zip(before, links, part.body_ids.tolist(), part.names.geoms, strict=True):
@@ -71,7 +93,7 @@ class WorldModel(Compiled):
                     geom += count
 
     def qpos_indices(self, body: BodyState) -> Ints:
-        """Return where each DOF of a body is in ``qpos``, shape (dof,); -1 where ``BodyKinematics`` has none."""
+        """Return the index of each DOF of a body in ``qpos``, shape (dof,); -1 if it has none."""
         kinematics, part = body.own_kinematics, self._parts[body]
         indices = kinematics.qpos_indices.copy()
         for number, index in enumerate(indices.tolist()):
@@ -81,5 +103,5 @@ class WorldModel(Compiled):
 
 
 def _is_at_reference(body: KinBody) -> bool:
-    """Return whether the joints of a body are loaded at the values for which MuJoCo compiles the poses."""
+    """Return whether the loaded joint values are those for which MuJoCo compiles the poses."""
     return all(axis.value == axis.reference for joint in body.all_joints for axis in joint.axes)

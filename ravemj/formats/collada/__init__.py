@@ -2,7 +2,7 @@
 
 A document names one scene of nodes that are seen, one of kinematics, and one of physics, and binds them to each other.
 ``scenes`` walks over it and fills a ``BodyBuilder`` for each robot; the other modules each read one kind of element.
-What a file refers to may stand in other files. Whatever leads nowhere is reported and left out, as OpenRAVE does it.
+References may lead to other files. Broken references are reported and left out, as in OpenRAVE.
 """
 
 from collections.abc import Callable
@@ -13,14 +13,15 @@ import numpy as np
 from ravemj.errors import Source, SourceError
 from ravemj.formats.collada.documents import Documents
 from ravemj.formats.file_access import FileAccess
+from ravemj.formats.suffixes import SUFFIXES as MODEL_SUFFIXES
 
 if TYPE_CHECKING:
     from ravemj.formats.collada.library import Library
     from ravemj.formats.collada.scenes import Content
     from ravemj.formats.meshes.collada.document import ColladaDocument
 
-SUFFIXES = (".dae", ".zae")
-"""Ends of the names of the files, in lower case."""
+SUFFIXES = MODEL_SUFFIXES["collada"]
+"""File suffixes, in lower case."""
 
 
 def read_file(
@@ -50,12 +51,12 @@ def read_file(
 
 
 def is_collada(uri: str) -> bool:
-    """Tell whether a URI names a COLLADA file, or something in one."""
+    """Return whether a URI refers to a COLLADA file, or an element in one."""
     return split_uri(uri)[0].lower().endswith(SUFFIXES)
 
 
 def split_uri(uri: str) -> tuple[str, str]:
-    """Return the path of a COLLADA file, and the id behind it, which is empty where there is none."""
+    """Split a URI into the path of a COLLADA file and the id after ``#``, which may be empty."""
     path, _, name = uri.rpartition("#")
     return (path, name) if path.lower().endswith(SUFFIXES) else (uri, "")
 
@@ -85,4 +86,4 @@ def _read(library: "Library", path: str, opened: "Callable[[], ColladaDocument]"
         message = f"the file is too large or nested too deep ({error or type(error).__name__})"
         raise SourceError(message, Source(path)) from error
     except ArithmeticError as error:
-        raise SourceError("a number in the file is too large to compute with", Source(path)) from error
+        raise SourceError("a number in the file is too large or too small to compute with", Source(path)) from error

@@ -8,7 +8,7 @@ import zlib
 from urllib.parse import unquote
 
 from ravemj.errors import Source, SourceError
-from ravemj.formats.limits import MOST_FILES, Budget, check_count, check_unpacked, most_unpacked
+from ravemj.formats.limits import MOST_FILES, ParsingBudget, check_count, check_unpacked, most_unpacked
 from ravemj.formats.meshes.collada.document import parse_tree, words
 from ravemj.formats.meshes.files import read_bytes
 
@@ -102,14 +102,14 @@ class Archive:
                 raise SourceError(f"'{name}' cannot be unpacked: {error.strerror}", Source(self.path)) from error
 
     def place(self, name: str) -> str:
-        """Return what a file of the archive is called in messages."""
+        """Return the name of a file of the archive for messages."""
         return f"{self.path}/{name}"
 
     def _named_by_manifest(self, manifest: Source) -> str | None:
         if self.member("manifest.xml") is None:
             return None
         content = self.read("manifest.xml")
-        Budget().add_document(content, manifest)
+        ParsingBudget().add_document(content, manifest)
         root = parse_tree(content, manifest.file)
         elements = [] if root is None else [*root.iter("{*}dae_root")]
         name = unquote("".join(words(elements[0])).partition("#")[0]) if elements else ""

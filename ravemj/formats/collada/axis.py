@@ -3,9 +3,7 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from ravemj.core.transforms import Vec3
+from ravemj.core.transforms import Vec3, not_subnormal
 from ravemj.formats.collada.library import Library
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
 from ravemj.model.scene import UNLIMITED, Axis
@@ -34,23 +32,23 @@ class AxisReader(NamedTuple):
 
     @property
     def is_revolute(self) -> bool:
-        """True where the axis turns, False where it slides."""
+        """Whether the axis is revolute; False for prismatic."""
         return local_name(self.element) == "revolute"
 
     @property
     def is_active(self) -> bool:
-        """True where the axis has a DOF."""
+        """Whether the axis has a DOF."""
         return self.library.truth(child(self.kinematics, "active"), True)
 
     @property
     def direction(self) -> Vec3:
-        """The unit vector in the joint's frame; z where the file has none."""
-        values = numbers(child(self.element, "axis"))[:3]
-        length = float(np.linalg.norm(values))
-        if len(values) < 3 or not 0 < length < math.inf:
+        """The unit vector in the joint's frame; z if the file has none."""
+        values = numbers(child(self.element, "axis"))[:3].tolist()
+        if len(values) < 3:
             return (0.0, 0.0, 1.0)
-        x, y, z = (values / length).tolist()
-        return x, y, z
+        x, y, z = not_subnormal((values[0], values[1], values[2]))
+        length = math.hypot(x, y, z)
+        return (x / length, y / length, z / length) if 0 < length < math.inf else (0.0, 0.0, 1.0)
 
     @property
     def wrap(self) -> float:
@@ -60,7 +58,7 @@ class AxisReader(NamedTuple):
 
     @property
     def dof_index(self) -> float:
-        """The DOF that OpenRAVE's writer gave to the axis; infinity for none."""
+        """The DOF index written by OpenRAVE's writer; infinity for none."""
         for element in children(self.kinematics, "index"):
             value = self.library.number(element) if element.get("semantic") == "OpenRAVE" else None
             if value is not None and value >= 0:
@@ -86,15 +84,15 @@ class AxisReader(NamedTuple):
         )
 
     def _limits(self) -> tuple[float, float, bool]:
-        """Return the limits, and whether the axis turns without end."""
+        """Return the limits, and whether the axis is circular."""
         if self.library.truth(child(self.kinematics, "locked"), False):
             return 0.0, 0.0, False
         if self.is_revolute and self.library.truth(self._newparam("circular"), False):
             return -UNLIMITED, UNLIMITED, True
         written = self._written_limits()
         if written is not None:
-            lower, upper = sorted(written)
-            return (0.0, 0.0, False) if lower == upper else (lower, upper, False)
+            lower, upper = written
+            return (0.0, 0.0, False) if lower >= upper else (lower, upper, False)
         if self.is_revolute:
             return -UNLIMITED, UNLIMITED, True
         return -_UNLIMITED_SLIDE, _UNLIMITED_SLIDE, False
@@ -122,11 +120,11 @@ class AxisReader(NamedTuple):
         return default if value is None or not math.isfinite(value) else abs(value * self._speed_unit())
 
     def _unit(self, angle: float) -> float:
-        """Return what a number of this axis has to be multiplied by, given the unit of angles [rad]."""
+        """Return the conversion factor of this axis' numbers, given the unit of angles [rad]."""
         return angle if self.is_revolute else self.library.metres(self.element)
 
     def _speed_unit(self) -> float:
-        """Return what speeds and values have to be multiplied by."""
+        """Return the conversion factor of speeds and values."""
         contributors = children(child(self.library.document_of(self.element).root, "asset"), "contributor")
         tools = (" ".join(words(child(item, "authoring_tool"))) for item in contributors)
         return self._unit(1.0 if any(tool in _RADIANS for tool in tools) else _DEGREE)

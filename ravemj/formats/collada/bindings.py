@@ -45,7 +45,7 @@ class AxisBinding:
 
 
 class Bindings:
-    """All bindings of a kinematics scene; of several for one thing the first counts.
+    """All bindings of a kinematics scene; of several bindings of one object the first counts.
 
     Attributes:
         models: The bindings of models.
@@ -86,7 +86,7 @@ class Bindings:
 
 
 def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> bool:
-    """Tell whether a binding may mean this instance of a model and of a joint."""
+    """Return whether a binding may refer to this instance of a model and of a joint."""
     for item in binding.through:
         kind = local_name(item)
         if kind == "instance_kinematics_model" and item is not instance:

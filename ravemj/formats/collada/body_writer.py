@@ -8,18 +8,19 @@ from ravemj.formats import settled
 from ravemj.formats.collada.extras import PROFILE
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.kinematics_model import Names, valid_name
-from ravemj.formats.collada.mathml_writer import TooDeepError, math_of
+from ravemj.formats.collada.mathml_writer import TooDeepError, math_of, read_as_0
 from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.system_writer import SystemWriter
 from ravemj.formats.collada.trees import Tree, trees_of
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.expressions import ExpressionError, joint_variables, parse, partials, substitute
 from ravemj.model.inertia import principal_frame, principal_moments
-from ravemj.model.joints import relative_pose, reported_anchor, rests
+from ravemj.model.joints import relative_pose, reported_anchor, rests, turns_about_z_of_child
 from ravemj.model.scene import Joint, KinBody, Mimic
 
+_Z: Vec3 = (0.0, 0.0, 1.0)
 DEEPEST = 140
-"""Links in a row, of which readers take a few more."""
+"""Maximum length of a chain of links; readers accept a few more."""
 
 
 class BodyWriter:
@@ -44,7 +45,7 @@ class BodyWriter:
                 self._loops.setdefault(link, []).append(index)
 
     def write(self) -> None:
-        """Write everything about the body."""
+        """Write all elements of the body."""
         nodes = self._sections.nodes
         for tree in self._trees:
             with nodes.inside("node", id=f"visual{tree.number}", name=self._body.name):
@@ -58,6 +59,7 @@ class BodyWriter:
         out = self._sections.kinematics_models
         with out.inside("kinematics_model", id=tree.model, name=self._body.name), out.inside("technique_common"):
             for index in tree.joints:
+                self._check_weld(self._joints[index])
                 self._write_joint(index, self._joints[index])
             if tree.links:
                 self._write_link(tree, tree.root, None, 0)
@@ -65,7 +67,7 @@ class BodyWriter:
                 self._write_formula(index, self._joints[index].mimic)
 
     def _write_formula(self, index: int, mimic: Mimic | None) -> None:
-        """Write what a joint follows."""
+        """Write the mimic formula of a joint."""
         if mimic is None or mimic.expression is None:
             return
         out, joint = self._sections.kinematics_models, self._joints[index]
@@ -75,6 +77,10 @@ class BodyWriter:
             message = f"the equation of joint '{joint.name}' is nested too deep for COLLADA; it is left out"
             self._diagnostics.warn("not-written", message, joint.source)
             return
+        unread = sorted(read_as_0(mimic.expression.root))
+        if unread:
+            message = f"OpenRAVE reads {', '.join(unread)} in the equation of joint '{joint.name}' as 0 in COLLADA"
+            self._diagnostics.warn("openrave-bug", message, joint.source, "save as OpenRAVE XML")
         with out.inside("formula", sid=f"formula{index}"):
             out.element_inside("target", "param", self._joint_path(f"joint{index}"))
             with out.inside("technique_common"):
@@ -100,7 +106,7 @@ class BodyWriter:
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _joint_path(self, variable: str) -> str:
-        """Return the path of a joint by the name of its variable."""
+        """Return the path of a joint, given the name of its variable in mimic equations."""
         index = int(variable.removeprefix("joint"))
         return f"{self._model_of_joint[index]}/joint{index}"
 
@@ -116,15 +122,27 @@ class BodyWriter:
                     out.element("technique", profile=PROFILE)
 
     def _directions(self, joint: Joint) -> list[Vec3]:
-        """Return the directions of a joint's axes in its own frame."""
+        """Return the directions of a joint's axes in its own frame; arbitrary for a weld at a hinge."""
+        if self._is_bare(joint):
+            return [_Z]
         # OpenRAVE turns the axes of a weld with its child, but for those of a slider.
         turns_with_child = joint.static and len(self._body.joints) > 0 and joint.kind != "slider"
         turn = conjugate(joint.T_parent_child.wxyz) if turns_with_child else UNIT_WXYZ
         directions = [rotate(turn, axis.direction) for axis in joint.axes]
         return [direction if direction == ZERO else settled.direction(direction) for direction in directions]
 
+    def _is_bare(self, joint: Joint) -> bool:
+        """Return whether OpenRAVE gives a joint the z axis of its child, whatever the file says."""
+        return joint.static and joint.kind == "hinge" and len(self._body.joints) > 0
+
+    def _check_weld(self, joint: Joint) -> None:
+        """Warn of a weld with another axis than OpenRAVE gives it."""
+        if self._is_bare(joint) and not turns_about_z_of_child(joint):
+            message = f"the axis of the weld '{joint.name}' is left out: in COLLADA it is the z axis of its child"
+            self._diagnostics.warn("not-written", message, joint.source)
+
     def _write_link(self, tree: Tree, index: int, joint: int | None, depth: int) -> None:
-        """Write a link and its node, with what its joints carry."""
+        """Write a link and its node, followed by its child joints and links."""
         if depth > DEEPEST:
             raise OutputError(f"COLLADA readers take no body with more than {DEEPEST} links in a row")
         body, links, nodes = self._body, self._sections.kinematics_models, self._sections.nodes
@@ -183,7 +201,7 @@ class BodyWriter:
         return anchor, settled.pose(T_frame_child)
 
     def _rest_pose(self, index: int) -> Pose:
-        """Return the pose of a joint's child in its parent where the file has the joint at 0."""
+        """Return the pose of a joint's child in its parent at the value 0 of the file."""
         joint = self._joints[index]
         if not self._body.joints:  # joints place nothing
             parent, child = (self._body.links[index].T_world_link for index in (joint.parent, joint.child))
@@ -214,7 +232,7 @@ class BodyWriter:
 
 
 def _joint_names(body: KinBody) -> dict[int, str]:
-    """Return names that readers keep apart, by the joints' indices; a name that they would change comes last."""
+    """Return unique names by joint index, also for readers that normalize names; names they would change come last."""
     names, used = [joint.name for joint in body.all_joints], Names(())
     order = sorted(range(len(names)), key=lambda index: not names[index] or valid_name(names[index]) != names[index])
     return {index: used.give(valid_name(names[index]) or f"joint{index}") for index in order}

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ravemj.formats.limits import Budget
+from ravemj.formats.limits import ParsingBudget
 
 if TYPE_CHECKING:  # lxml is slow to import
     from ravemj.formats.collada.archive import Archive
@@ -21,7 +21,7 @@ class Documents:
         places: For each document the archive that it lies in, or None, and its name there.
     """
 
-    budget: Budget = field(default_factory=Budget)
+    budget: ParsingBudget = field(default_factory=ParsingBudget)
     parsed: "dict[str, ColladaDocument]" = field(default_factory=dict[str, "ColladaDocument"])
     archives: "dict[str, Archive]" = field(default_factory=dict[str, "Archive"])
     places: "dict[str, tuple[Archive | None, str]]" = field(default_factory=dict[str, "tuple[Archive | None, str]"])

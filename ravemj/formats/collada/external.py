@@ -24,7 +24,7 @@ from ravemj.model.scene import KinBody
 _MODEL_PARTS = {"instance_kinematics_model", "instance_joint"}
 """Instances that a path of names has to go through, since one element may be in several of them."""
 _TOP = "external_node"
-"""What the outermost nodes are called, with a number: unlike the nodes in them, so that a path leads to one node."""
+"""Base name of the outermost nodes, followed by a number; unlike those of inner nodes, so that paths are unique."""
 
 
 class _BoundAxis(NamedTuple):
@@ -58,14 +58,14 @@ class ExternalBody(NamedTuple):
 
     Attributes:
         uri: The file, relative to the one that refers to it.
-        suffix: What the ids of its nodes get, since a document may show several copies of them.
+        suffix: Suffix of the ids of its nodes, since a document may contain several copies of them.
         system: The id of its articulated system.
         nodes: The ids of the outermost nodes that show it.
         models: For each kinematics model its path in the articulated system, and the path of the node that shows it.
         axes: Its axes.
         links: For each link where it comes from, and its path in the articulated system.
-        physics: What gives it masses.
-        T_world_file: What the file's poses have to be moved by.
+        physics: Instances of physics models with its masses.
+        T_world_file: Transform from the file's frame to the world.
     """
 
     uri: str
@@ -80,12 +80,12 @@ class ExternalBody(NamedTuple):
 
 
 def find_external(body: KinBody, number: int, target: str, scheme: str | None = None) -> ExternalBody:
-    """Return how the COLLADA file that a body was read from names its parts.
+    """Look up the names of a body's parts in the COLLADA file that it was read from.
 
     Args:
         body: The body.
         number: Its number in the document that will refer to it.
-        target: Where that document will lie.
+        target: Path of that document.
         scheme: What URIs of files in the folders of ``OPENRAVE_DATA`` start with; None for relative ones.
 
     Raises:
@@ -219,12 +219,12 @@ class _Finder:
 
 
 def _top(node: Node) -> Node:
-    """Return the outermost node around one, below the scene."""
+    """Return the outermost ancestor of a node below the scene."""
     return [*node.around()][-2]
 
 
 def write_reference(sections: Sections, body: KinBody, number: int, external: ExternalBody) -> None:
-    """Write a body, by its number, as a reference to another file: its name, pose and values, and what it holds."""
+    """Write a body as a reference to another file, with its name, pose, joint values and grabbed bodies."""
     name = f"body{number}"
     out = sections.nodes
     with out.inside("node", id=f"{name}_external", name=body.name):

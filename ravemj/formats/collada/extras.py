@@ -26,7 +26,7 @@ def own_techniques(element: Element | None) -> Iterator[Element]:
 
 @contextmanager
 def inside_extra(out: XmlText, kind: str = PROFILE, name: str | None = None) -> Generator[None]:
-    """Write an ``<extra>`` of a type around what the block writes."""
+    """Write an ``<extra>`` of a type around the content that the block writes."""
     with out.inside("extra", type=kind, name=name), out.inside("technique", profile=_profile(kind)):
         yield
 

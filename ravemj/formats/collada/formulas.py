@@ -1,4 +1,4 @@
-"""``<formula>``: how joints of a model follow others; MathML becomes the text of mimic equations."""
+"""``<formula>``: mimic joints; MathML is converted to mimic equations."""
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping
@@ -36,7 +36,7 @@ class _FormulaError(Exception):
 
 
 _NameOf = Callable[[str], str | None]
-"""Gives the text for what a path or a parameter stands for, or None."""
+"""Returns the expression for a path or a parameter, or None."""
 
 
 def read_formulas(library: Library, model: Element, joints: Mapping[Element, int], body: BodyBuilder) -> None:
@@ -57,7 +57,7 @@ class _FormulaReader:
     steps: Iterator[int] = field(default_factory=itertools.count)
 
     def read(self, formula: Element) -> None:
-        """Read a formula; a joint whose formula says nothing that can be computed stays where it is."""
+        """Read a formula; a joint with an unusable formula stays at its value."""
         path = "".join(words(child(formula, "target", "param")))
         joint = self._joint(path)
         if joint is None:
@@ -76,7 +76,7 @@ class _FormulaReader:
         joint.equations = Equations(position, first, second)
 
     def _partials(self, formula: Element, kind: str) -> str:
-        """Return the derivatives by each joint, as OpenRAVE writes them."""
+        """Return the partial derivatives by joint, in OpenRAVE's format."""
         text = ""
         for item in _own_equations(formula, kind):
             joint = self._joint(item.get("target") or "")
@@ -134,7 +134,7 @@ class _FormulaReader:
         raise _FormulaError(f"<{kind}> is not understood")
 
     def _choice(self, pieces: list[Element], name_of: _NameOf, depth: int) -> str:
-        """Return the text of a ``<piecewise>``: the first piece whose condition holds, else what is left."""
+        """Return the expression of a ``<piecewise>``: the first piece whose condition holds, else the rest."""
         if not pieces:
             raise _FormulaError("<piecewise> has no piece for every case")
         parts = [self._text(item, name_of, depth) for item in children(pieces[0])]
@@ -145,7 +145,7 @@ class _FormulaReader:
         return f"if({parts[1]},{parts[0]},{self._choice(pieces[1:], name_of, depth + 1)})"
 
     def _apply(self, elements: list[Element], name_of: _NameOf, depth: int) -> str:
-        """Return the text of an operator and what it is applied to."""
+        """Return the expression of an operator and its operands."""
         kind = local_name(elements[0]) if elements else "apply"
         texts = [self._text(item, name_of, depth) for item in elements[1:] if local_name(item) not in _QUALIFIERS]
         if not texts:
@@ -154,7 +154,8 @@ class _FormulaReader:
         if kind == "csymbol":
             text = self._call(elements[0], texts, depth)
         elif kind == "root" and degree is not None:
-            text = f"pow({texts[0]},(1.0/{self._content(degree, name_of, depth)}))"
+            order = self._content(degree, name_of, depth)
+            text = f"sqrt({texts[0]})" if order == "2" else f"pow({texts[0]},(1.0/{order}))"
         else:
             text = _operation(kind, texts)
         if len(text) > _LONGEST:

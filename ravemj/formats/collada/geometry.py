@@ -91,7 +91,7 @@ class GeometryReader:
                 return
 
     def _own(self, geometry: Element, T_link_frame: Pose) -> tuple[Mesh | None, bool]:
-        """Return what is drawn in place of a shape, and whether planners may change it, as our own extra says it."""
+        """Return the display mesh of a shape and its flag ``modifiable``, from our own extra."""
         technique = next(own_techniques(geometry), None)
         render = child(technique, "render")
         target = None if render is None else self._library.follow(render, "geometry")
@@ -149,9 +149,10 @@ class GeometryReader:
             if url:
                 self._library.warn("broken-reference", f"there is no material '{url}' with an effect", instance)
             return WHITE, BLACK, 0.0
-        opacity = material.transparency
-        transparency = 1.0 - opacity if opacity is not None and 0.0 < opacity <= 1.0 else 0.0  # 0 counts as 1
-        return material.diffuse or _DIFFUSE, material.ambient or _AMBIENT, transparency
+        opacity = material.alpha if material.transparency is None else material.transparency
+        transparency = 1.0 - opacity if 0.0 < opacity <= 1.0 else 0.0  # 0 counts as 1
+        missing = WHITE if material.is_phong else _DIFFUSE
+        return material.diffuse or missing, material.ambient or _AMBIENT, transparency
 
     def _primitive(self, info: Element) -> tuple[Shape, Pose] | None:
         """Return the shape that replaces the triangles, and its pose in the geometry's frame."""

@@ -13,7 +13,7 @@ from ravemj.model.scene import SHAPE_TYPES, Cylinder, Geometry, Mesh, Rgb, TriMe
 _TAGS = {one.shape: one.collada[-1] for one in SHAPE_TYPES if one.collada}  # the last of two is that along z
 _MESH_DECIMALS = 10  # a coordinate [m] that is all rounding becomes 0
 _LEAST_OPACITY = 1e-12
-"""What cannot be seen: readers take an opacity of 0 for a mistake."""
+"""Least written opacity: readers take an opacity of 0 for a mistake."""
 
 
 class GeometryWriter:
@@ -79,7 +79,7 @@ class GeometryWriter:
 
 
 def _write_info(out: XmlText, geometry: Geometry, T_link_geometry: Pose) -> None:
-    """Write the place of a shape, what it is if it is no mesh, and whether it is drawn."""
+    """Write the pose of a shape, its primitive type unless it is a mesh, and whether it is drawn."""
     write_pose(out, T_link_geometry)
     tag = "cylinderz" if isinstance(geometry.shape, Cylinder) else _TAGS[type(geometry.shape)]
     with out.inside(tag):
@@ -91,7 +91,7 @@ def _write_info(out: XmlText, geometry: Geometry, T_link_geometry: Pose) -> None
 
 
 def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
-    """Return a mesh in the frame of its link, as readers make it of the file: in single precision, corners shared."""
+    """Return a mesh in the frame of its link in single precision with merged vertices, like readers of the file."""
     vertices = mesh.vertices
     if T_link_geometry != Pose():
         vertices = mesh.moved(T_link_geometry.matrix()).vertices
@@ -100,7 +100,7 @@ def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
 
 
 def _write_mesh(out: XmlText, name: str, mesh: Mesh) -> None:
-    """Write triangles; nothing where there are none."""
+    """Write triangles; nothing for an empty mesh."""
     count = len(mesh.vertices)
     with out.inside("mesh"):
         if not len(mesh.triangles):

@@ -11,7 +11,6 @@ from ravemj.core.transforms import (
     Floats,
     Pose,
     Wxyz,
-    conjugate,
     multiply,
     rotate,
     wxyz_from_axis_angle,
@@ -35,7 +34,7 @@ _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.:/-]")
 
 
 def valid_name(name: str | None) -> str:
-    """Return a name with ``_`` in place of what names cannot have in OpenRAVE."""
+    """Replace characters that OpenRAVE does not allow in names by ``_``."""
     return _NOT_IN_NAMES.sub("_", name or "")
 
 
@@ -44,7 +43,7 @@ Infos = dict[Element, tuple[Element, Element | None]]
 
 
 class SceneContext(NamedTuple):
-    """What all bodies of a kinematics scene share."""
+    """Data shared by all bodies of a kinematics scene."""
 
     library: Library
     bindings: Bindings
@@ -53,13 +52,13 @@ class SceneContext(NamedTuple):
 
 
 class Names:
-    """The names in use, each with the number to append to the next one like it."""
+    """The names in use, each with its next numeric suffix."""
 
     def __init__(self, taken: Iterable[str]) -> None:
         self._next = dict.fromkeys(taken, 1)
 
     def give(self, name: str) -> str:
-        """Return a name, with a number behind it where it is taken, and take it."""
+        """Reserve and return a unique name: the given one, with a numeric suffix if it is in use."""
         unused = name
         while unused in self._next:
             unused = f"{name}_{self._next[name]}"
@@ -234,7 +233,7 @@ class ModelReader:
         return next((item.node for item in bound if item is not None and item.node is not None), None)
 
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
-        """Return what an attachment names, and the ``<joint>`` behind it."""
+        """Return the element that an attachment refers to, and its ``<joint>``."""
         path = attachment.get("joint") or ""
         found = self._library.resolve(path, self.model)
         joint = None if found is None else found.element
@@ -250,10 +249,10 @@ class ModelReader:
         self, joint: Element, axes: list[AxisReader], links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose
     ) -> JointBuilder:
         kind = self._kind(joint, axes)
-        name = valid_name(joint.get("name") or joint.get("id") or joint.get("sid"))
+        name = valid_name(joint.get("name"))
         turn = T_parent_frame.wxyz
         return JointBuilder(
-            name=name or f"joint{len(self._body.joints) + len(self._found)}",
+            name=name or f"dummy{len(self._body.joints) + len(self._found)}",
             kind=kind,
             links=links,
             T_first_second=T_parent_child,
@@ -275,8 +274,7 @@ class ModelReader:
 
 
 def _weld_turn(axis: AxisReader, T_parent_frame: Pose, T_parent_child: Pose) -> Wxyz:
-    """Return what OpenRAVE turns the axis of a joint by when its limits leave it no room; sliders are not turned."""
-    T_frame_child = T_parent_frame.inverse() @ T_parent_child
+    """Return the rotation of the child of a weld in its parent, turned by the middle of the written limits."""
     turn = wxyz_from_axis_angle(axis.direction, axis.wrap)
-    turned = multiply(multiply(turn, T_frame_child.wxyz), conjugate(T_parent_frame.wxyz))
-    return multiply(T_parent_frame.wxyz, turned)
+    T_frame_child = T_parent_frame.inverse() @ T_parent_child
+    return multiply(T_parent_frame.wxyz, multiply(turn, T_frame_child.wxyz))

@@ -44,7 +44,7 @@ class Found(NamedTuple):
 
     Attributes:
         element: The element.
-        through: The instances of other elements that the way there goes through.
+        through: The instances on the path of the reference.
     """
 
     element: Element
@@ -99,7 +99,7 @@ class Library:
         return self._of_root[element.getroottree().getroot()]
 
     def source(self, element: Element) -> Source:
-        """Return the place of an element, for messages."""
+        """Return the source position of an element, for messages."""
         return self.document_of(element).source(element)._replace(included_from=self._included_from)
 
     def warn(self, code: str, message: str, element: Element, hint: str = "") -> None:
@@ -207,7 +207,7 @@ class Library:
         return found
 
     def resolve(self, path: str, scope: Element) -> Found | None:
-        """Return what a path of names leads to.
+        """Resolve a path of names.
 
         The first name is an id, or a sid in the scope or in one around it; ``.`` is the scope itself. The others are
         sids, each below the one before; where that is an instance, in what it is an instance of.
@@ -262,13 +262,13 @@ class Library:
         return names
 
     def _target(self, element: Element) -> Element | None:
-        """Return what an instance is an instance of; None for other elements."""
+        """Return the element that an instance refers to; None for other elements."""
         if not element.get("url") or local_name(element) not in _MODELS:
             return None
         return self.follow(element)
 
     def parameter(self, name: str, *scopes: Element) -> Found | None:
-        """Return what a parameter stands for in the end: no parameter, or a parameter with a plain value.
+        """Resolve a parameter to an element that is not a parameter, or to a parameter with a plain value.
 
         Its name, which may be a path of names, is looked for in the scopes, in their order.
         """
@@ -309,7 +309,7 @@ class Library:
 
 
 def _reference(element: Element) -> str | None:
-    """Return the path that a parameter stands for, or None for what is no parameter or has a plain value."""
+    """Return the path that a parameter refers to; None for other elements and for parameters with a plain value."""
     if local_name(element) == "bind":
         param = child(element, "param")
         return None if param is None else param.get("ref") or "".join(words(param))
@@ -320,7 +320,7 @@ def _reference(element: Element) -> str | None:
 
 
 def label(element: Element) -> str:
-    """Return what an element is called in messages: its tag, and the nearest id, sid or name of it and around it."""
+    """Return the name of an element for messages: its tag, and the nearest id, sid or name of it or its ancestors."""
     tag = f"<{local_name(element)}>"
     for around in (element, *element.iterancestors(etree.Element)):
         for attribute in ("id", "sid", "name"):

@@ -18,6 +18,19 @@ _OPERATORS = {
 _FUNCTIONS = {name: tag for tag, name in reversed(CALLS.items())}
 
 
+_READ_AS_0 = {"sqrt", "atan2", "int", "SASA", "SASS", "cbrt", "hypot", "not"}
+
+
+def read_as_0(node: Node) -> set[str]:
+    """Return the functions of an equation that OpenRAVE's reader of COLLADA takes for 0, however they are written."""
+    if not isinstance(node, Call):
+        return set()
+    name = node.function
+    found = set[str]().union(*map(read_as_0, node.arguments))
+    is_power = name == "pow" and not isinstance(node.arguments[1], Number)
+    return found | {name} if is_power or name in _READ_AS_0 or name.startswith("polyroots") else found
+
+
 class TooDeepError(Exception):
     """An equation whose parentheses are nested too deep for readers."""
 
@@ -58,9 +71,11 @@ class _Math:
         tag = _OPERATORS.get(function, _FUNCTIONS.get(function))
         with self.out.inside("apply"):
             if tag is None:
-                self.out.element("csymbol", function, encoding="text")
+                self.out.element("csymbol", function, encoding="text/xml", type="function")
             else:
                 self.out.element(tag)
+            if tag == "root":
+                self.out.element_inside("degree", "cn", 2)
             for argument in _operands(function, arguments):
                 self.write(argument, depth)
 

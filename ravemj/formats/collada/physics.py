@@ -13,7 +13,7 @@ from ravemj.model.inertia import inertial_about
 from ravemj.model.scene import Inertial
 
 NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))
-"""What a link weighs that no rigid body belongs to."""
+"""Mass properties of a link without a rigid body."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +30,11 @@ class RigidBody:
 
     @property
     def static(self) -> bool:
-        """True for what does not move."""
+        """Whether the body is static."""
         return words(child(self.element, "technique_common", "dynamic"))[:1] == ["false"]
 
     def inertial(self, library: Library, T_world_link: Pose, T_world_root: Pose) -> Inertial:
-        """Return the mass properties in a link's frame, given where it and the body's first link are with joints at 0.
+        """Return the mass properties in a link's frame, given its pose and the first link's pose with joints at 0.
 
         Raises:
             SourceError: A number is not finite.
@@ -61,7 +61,7 @@ class Physics:
     """
 
     def __init__(self, library: Library, scene: Element | None, root: Node | None) -> None:
-        """Read what the ``<instance_physics_scene>`` elements of a ``<scene>`` name."""
+        """Read the physics scenes that a ``<scene>`` instantiates."""
         self._library = library
         self._root = root
         self._bodies: dict[Node, RigidBody] = {}

@@ -17,7 +17,7 @@ from ravemj.model.scene import Axis
 
 
 def interface_kind(*elements: Element) -> str | None:
-    """Return ``robot`` or ``kinbody``, as the first of some elements says it; None where none does."""
+    """Return ``robot`` or ``kinbody``, from the first element that specifies it; None without one."""
     for element in elements:
         for _, technique in extras(element, "interface_type"):
             for interface in children(technique, "interface"):
@@ -59,7 +59,7 @@ class ExtraReader:
                 self._read_collision(technique, scope)
 
     def _link(self, element: Element, scope: Element, attribute: str = "link") -> int | None:
-        """Return the index of the link that an attribute names; None, with a warning, where there is none."""
+        """Return the index of the link in an attribute; None, with a warning, if it does not exist."""
         path = element.get(attribute) or ""
         index = self._found(path, scope, self.links)
         if index is None:
@@ -69,7 +69,7 @@ class ExtraReader:
         return index
 
     def _joint(self, element: Element, scope: Element) -> int | None:
-        """Return the index of the joint that an element names; None, with a warning, where there is none."""
+        """Return the index of the joint of an element; None, with a warning, if it does not exist."""
         path = element.get("joint") or ""
         index = self._found(path, scope, self.joints)
         if index is None:
@@ -77,7 +77,7 @@ class ExtraReader:
         return index
 
     def _found(self, path: str, scope: Element, parts: Mapping[Element, int]) -> int | None:
-        """Return the index of the part that a path leads to, from a scope or else from a model."""
+        """Return the index of the part at a path, relative to a scope or else to a model."""
         for around in (scope, *self.models):
             found = self.library.resolve(path, around) if path else None
             if found is not None and found.element in parts:
@@ -118,7 +118,7 @@ class ExtraReader:
         self.body.sensors.append(SensorBuilder(read_sensor(self.library, extra, technique, link, pose)))
 
     def _read_actuator(self, technique: Element, system: Element) -> None:
-        """Give a joint the torque limit and the inertia of its motor, where the file has a motor."""
+        """Set the torque limit and the armature of a joint, if the file has a motor."""
         bound, instance = child(technique, "bind_actuator"), child(technique, "instance_actuator")
         if bound is None or instance is None:
             return

@@ -13,23 +13,25 @@ from ravemj.formats.collada.sensor import read_loose
 from ravemj.formats.collada.supplement import SupplementReader
 from ravemj.formats.collada.visual import Node, expand, rigid_part
 from ravemj.formats.limits import check_count
-from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
+from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name, words
 from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import AttachedSensor
 
 _MAX_DEPTH = 20
+_GRAVITY: dict[str, Vec3] = {"X_UP": (-9.797930195020351, 0.0, 0.0), "Y_UP": (0.0, -9.797930195020351, 0.0)}
+"""OpenRAVE's gravity [m/s^2] in files whose up axis is not z."""
 _MOST_SYSTEMS = 1000
 
 
 class Content(NamedTuple):
-    """What a document holds.
+    """The content of a document.
 
     Attributes:
         bodies: Bodies with kinematics, articulated systems first.
         others: Bodies that are only a node of the visual scene.
         gravity: Acceleration of free fall [m/s^2], or None.
         sensors: Sensors that no body carries.
-        description: What its ``<asset>`` says that it is about.
+        description: Description in its ``<asset>``.
     """
 
     bodies: list[BodyBuilder]
@@ -55,6 +57,8 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     visual = None if instance is None else library.follow(instance)
     root = None if visual is None else expand(library, visual)
     physics = Physics(library, scene, root)
+    up = " ".join(words(child(document.root, "asset", "up_axis")))
+    gravity = physics.gravity or _GRAVITY.get(up)
     geometry = GeometryReader(library)
     bodies: list[BodyBuilder] = []
     sensors: list[AttachedSensor] = []
@@ -72,13 +76,15 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     if wanted:
         if not bodies:
             raise library.error(f"there is no articulated system '{wanted}' in the scene", document.root)
-        return Content(bodies, [], physics.gravity, [])
+        return Content(bodies, [], gravity, [])
+    if len(bodies) == 1:
+        bodies[0].element = ""
     taken = {node for inner in shown for node in inner.around()}
     nodes = [] if root is None else [node for node in root.nodes if node not in taken]
     others = [body for node in nodes if (body := _node_body(library, geometry, node)) is not None]
     subject = child(document.root, "asset", "subject")
     description = "" if subject is None else subject.text or ""
-    return Content(bodies, others, physics.gravity, sensors, description)
+    return Content(bodies, others, gravity, sensors, description)
 
 
 class _System(NamedTuple):
@@ -88,14 +94,19 @@ class _System(NamedTuple):
     models: list[Element]
     infos: Infos
 
+    @property
+    def id(self) -> str:
+        """Id of the outermost part; empty if it has none."""
+        return (self.systems or self.models)[0].get("id") or ""
+
     def has(self, name: str) -> bool:
-        """Tell whether a name is that of a part, or that of an instance of one."""
+        """Return whether a name is that of a part or of its instance."""
         parts = (*self.systems, *self.models)
         return any(name in (part.get("id"), part.get("sid"), (part.get("url") or "").lstrip("#")) for part in parts)
 
 
 def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
-    """Return the body of an instance of a system or model; None where it is not wanted, or has no model."""
+    """Return the body of an instance of a system or model; None if it is not wanted, or has no model."""
     parts = _System([], [], {})
     is_system = local_name(instance) == "instance_articulated_system"
     if is_system:
@@ -107,7 +118,8 @@ def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | 
     is_robot = is_system and interface_kind(instance, *parts.systems) != "kinbody"
     here = scene.library.document_of(instance)
     others = (system for system in parts.systems if scene.library.document_of(system) is not here)
-    body = BodyBuilder(is_robot, scene.library.source(next(others, instance)))  # of the file that defines it
+    other = next(others, None)
+    body = BodyBuilder(is_robot, scene.library.source(instance if other is None else other))  # of the defining file
     readers: list[ModelReader] = []
     for item in parts.models:
         model = scene.library.follow(item)
@@ -116,6 +128,7 @@ def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | 
             readers[-1].read()
     if not readers:
         return None
+    body.element = parts.id if other is None else ""
     for reader in readers:
         reader.settle(readers)
     model = readers[0].model
@@ -143,7 +156,7 @@ def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | 
 def _take_apart(
     scene: SceneContext, instance: Element, parts: _System, motions: dict[Element, Element], depth: int
 ) -> None:
-    """Descend from an instance of a system to the models; what is met on the way goes into ``parts``."""
+    """Descend from an instance of a system to its models; collect the systems on the path in ``parts``."""
     system = scene.library.follow(instance)
     if system is None or depth > _MAX_DEPTH:
         return
@@ -173,7 +186,7 @@ def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
 
 
 def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBuilder | None:
-    """Return the body of one link that OpenRAVE makes of a node, or None where it shows nothing."""
+    """Return the single-link body that OpenRAVE creates for a node; None if it shows no geometry."""
     source = library.source(node.element)
     name = valid_name(node.name)
     T_world_link = rigid_part(node.world, source)

@@ -1,4 +1,4 @@
-"""What our own ``<extra>`` elements say of a body: order, names and parameters of its parts, and what it holds."""
+"""Reader of our own ``<extra>`` elements of a body: order, names and parameters of its parts, and grabbed bodies."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ _NUMBERS = {"values": "reference", "torques": "max_torque", **{name: name for na
 
 @dataclass(frozen=True, slots=True)
 class SupplementReader:
-    """Reads what articulated systems say of a body.
+    """Reads our own extras of a body's articulated systems.
 
     Attributes:
         library: The documents.
@@ -42,7 +42,7 @@ class SupplementReader:
     values: list[list[float]]
 
     def read(self, system: Element) -> None:
-        """Read all that a system says.
+        """Read the extras of a system.
 
         Raises:
             SourceError: A number in it is none.
@@ -64,7 +64,7 @@ class SupplementReader:
                     self.body.grabs.append(GrabBuilder(element.get("body") or "", link, pose, ignored))
 
     def _read_names(self, technique: Element) -> None:
-        """Read what only the writer of ravemj says: names that COLLADA's readers change, and the order of all parts."""
+        """Read the original names, which COLLADA's readers change, and the order of all parts, written by ravemj."""
         body = self.body
         body.name = _text(child(technique, "name")) or body.name
         body.description = _text(child(technique, "description")) or body.description
@@ -133,7 +133,7 @@ def _name_joints(body: BodyBuilder, names: Sequence[str], listed: Sequence[Eleme
 
 
 def _order_links(body: BodyBuilder, order: Sequence[int], names: Sequence[str]) -> None:
-    """Bring the links into an order, and name them."""
+    """Reorder and rename the links."""
     place_of = {index: place for place, index in enumerate(order)}
     renamed = {body.links[index].name: name for index, name in zip(order, names, strict=True)}
     for manipulator in body.manipulators:

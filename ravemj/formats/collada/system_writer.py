@@ -1,4 +1,4 @@
-"""The writer of articulated systems: what the axes are like, how they follow each other, and OpenRAVE's extras."""
+"""The writer of articulated systems: parameters of the axes, mimic relations, and OpenRAVE's extras."""
 
 import itertools
 from collections.abc import Callable, Iterator
@@ -58,13 +58,13 @@ class SystemWriter:
         self._write_scene()
 
     def _axes(self) -> Iterator[tuple[int, int, Axis]]:
-        """Yield all axes with the index of their joint and their place in it."""
+        """Yield all axes, each with the index of its joint and its own index in the joint."""
         for index, joint in enumerate(self._body.all_joints):
             for place, axis in enumerate(joint.axes):
                 yield index, place, axis
 
     def _write_parameters(self, out: XmlText, scope: str, tree: Tree, inner: str = "") -> None:
-        """Write what a model and its axes are called in a scope; there, they may have names in an inner scope."""
+        """Write the parameters of a model and its axes in a scope; ``inner`` is the scope of their references."""
         named = {f"{tree.model}_inst": f"{tree.model}_inst"}
         for index in tree.joints:
             for place in range(len(self._joints[index].axes)):
@@ -117,7 +117,7 @@ class SystemWriter:
                 self._bind_axes(tree, index, scope)
 
     def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
-        """Bind the axes of a joint to what they move and, if they are DOFs, to their values."""
+        """Bind the axes of a joint to their nodes and, if they are DOFs, to their values."""
         joint = self._joints[index]
         for place, axis in enumerate(joint.axes):
             name = f"joint{self._number}.{index}_axis{place}"
@@ -126,7 +126,7 @@ class SystemWriter:
             bind_axis(self._sections.bindings, target, f"{scope}_joint{index}_axis{place}", value)
 
     def _write_extras(self) -> None:
-        """Write what OpenRAVE's extras say about the body, and what they cannot say."""
+        """Write OpenRAVE's extras of the body, and our own for the rest."""
         out, body = self._sections.systems, self._body
         kind = ("robot", "GenericRobot") if body.is_robot else ("kinbody", "KinBody")
         with inside_extra(out, "interface_type"):
@@ -188,7 +188,7 @@ class SystemWriter:
             library.element("viscous_friction", axis.viscous_friction)
 
     def _write_supplement(self) -> None:
-        """Write what only ``supplement`` reads.
+        """Write the extras for ``supplement``.
 
         That is the order of the parts, their names, which COLLADA's readers change, the values of joints that are no
         DOFs, and torques that differ between the axes of a joint, which has one motor.
@@ -217,7 +217,7 @@ class SystemWriter:
         self._write_attached()
 
     def _write_attached(self) -> None:
-        """Write parameters, the groups of shapes that scripts can swap in, and what the body holds."""
+        """Write parameters, selectable geometry groups, and grabbed bodies."""
         out, body = self._sections.systems, self._body
         for index, link in enumerate(body.links):
             write_parameters(out, link.parameters, self._link_path(index))
@@ -238,19 +238,19 @@ class SystemWriter:
 
 
 def _in_file(joint: Joint, place: int, value: float) -> float:
-    """Return a value of an axis in degrees, where it slides in metres."""
+    """Return a value of an axis in degrees, for prismatic axes in metres."""
     return value if joint.slides(place) else settled.degrees(value)
 
 
 def bind_axis(out: XmlText, target: str, parameter: str, value: float) -> None:
-    """Bind the axis that a parameter stands for to what it moves and to a value."""
+    """Bind the axis of a parameter to its node and value."""
     with out.inside("bind_joint_axis", target=target):
         out.element_inside("axis", "param", parameter)
         out.element_inside("value", "float", value)
 
 
 def write_grabs(out: XmlText, body: KinBody, path_of: Callable[[int], str]) -> None:
-    """Write what a body holds, given the paths of its links."""
+    """Write the grabbed bodies of a body, given the paths of its links."""
     for grab in body.grabs:
         ignored = " ".join(map(path_of, grab.ignored)) or None
         with out.inside("grabbed", body=grab.body, link=path_of(grab.link), ignored=ignored):

@@ -6,11 +6,11 @@ from ravemj.model.scene import KinBody
 
 
 class Tree(NamedTuple):
-    """A link that no joint places, and those that hang on it.
+    """A root link and its descendants.
 
     Attributes:
         number: Its number in the document.
-        root: The link that no joint places.
+        root: The root link, which has no parent joint.
         links: The links, parents before children.
         joints: The joints, those that close loops included; they are counted as in ``KinBody.all_joints``.
         placing: For each link, the joints that carry links on it.

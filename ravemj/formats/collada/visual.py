@@ -95,7 +95,7 @@ def transform_of(library: Library, element: Element) -> Floats:
 
 
 def expand(library: Library, scene: Element) -> Node:
-    """Return the tree of a visual scene, in which every instance of a node is a copy of its own.
+    """Return the expanded tree of a visual scene: every instance of a node becomes a separate copy.
 
     Raises:
         SourceError: The nodes are nested too deep or repeated too often.

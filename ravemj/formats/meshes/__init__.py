@@ -1,9 +1,9 @@
 """Readers of mesh files, which return triangles and colours, and checks of what MuJoCo can load.
 
-``read_mesh`` reads STL, OBJ, COLLADA, Inventor and VRML itself, PLY, OFF and glTF through trimesh, and gives what
-OpenRAVE gives: the same triangles, parts and colours. Nothing here knows of links.
+``read_mesh`` reads STL, OBJ, COLLADA, Inventor and VRML itself, and PLY, OFF and glTF through trimesh, with the same
+triangles, parts and colours as OpenRAVE. Nothing here depends on links.
 
-The readers are imported when they are asked for: most models have no meshes.
+The readers are imported on first use: most models have no meshes.
 """
 
 import importlib

@@ -1,12 +1,12 @@
-"""A cache of parsed meshes on disk, by the content of their files.
+"""A cache of parsed meshes on disk, keyed by the content of their files.
 
-An entry (``.mesh``) is named after the hash of the file, the end of its name and the source of the readers, so that
-no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and counts only while
-they are the same.
+The name of an entry (``.mesh``) is a hash of the file, its suffix and the source code of the readers, so that a change
+of any of them invalidates it. It lists the files that the mesh refers to with their hashes, and is valid only while
+these are unchanged.
 
-Whatever goes wrong here is logged at debug level and never stops a mesh from being read.
+Errors of the cache are logged at debug level and never prevent a mesh from being read.
 
-``RAVEMJ_CACHE`` names the folder, or ``off`` for none; otherwise it is ``$XDG_CACHE_HOME/ravemj`` or
+``RAVEMJ_CACHE`` is the folder, or ``off`` for no cache; the default is ``$XDG_CACHE_HOME/ravemj`` or
 ``~/.cache/ravemj``. Meshes are in ``meshes`` below it.
 """
 
@@ -30,7 +30,7 @@ from ravemj.model.scene import mesh
 _log = logging.getLogger(__name__)
 
 MAX_BYTES = 1 << 30
-"""The cache is pruned to this size, those files first that were used least recently."""
+"""Size to which the cache is pruned, least recently used files first."""
 
 _PRUNE_EVERY = 64  # files written by this process between two checks of the size
 _RECENT = 24 * 3600  # s; a file that was used that recently is not marked again
@@ -42,14 +42,14 @@ _written = 0
 def cached_file(
     path: str, kind: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]], access: FileAccess
 ) -> tuple[Parts, dict[str, str]]:
-    """Return the parts that ``read`` makes of a file, and the digests of the files to which it refers.
+    """Return the parts of a mesh file parsed by ``read``, and the digests of the files to which it refers.
 
     Both come from the cache where possible.
 
     Args:
         path: The file.
-        kind: What else the result depends on, such as the end of the file's name.
-        read: Gets the file's content; returns the parts, and the other files that were read.
+        kind: Further key of the cache, such as the suffix.
+        read: Parser of the file's content; returns the parts, and the other files that it has read.
         access: The files that may be read; the parts of others are not taken from the cache.
 
     Raises:
@@ -67,7 +67,7 @@ def cached_file(
 
 
 def cached(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
-    """Return the parts that ``read`` makes of a content and a kind, from the cache where possible."""
+    """Return the parts that ``read`` parses from a content, from the cache if possible."""
     folder = cache_folder()
     if folder is None:
         return read()
@@ -98,10 +98,10 @@ def _by_content(
     read: Callable[[bytes], tuple[Parts, ReferencedFiles]],
     permits: Callable[[str], bool],
 ) -> tuple[Parts, ReferencedFiles]:
-    """Return the parts, and the files that they come from besides this one.
+    """Return the parts, and the further files that they come from.
 
-    Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files. All
-    of them have to be permitted.
+    If there are further files, the entry is valid for the folder ``home`` only, since their names are relative to it.
+    All of them must be permitted.
     """
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
@@ -118,7 +118,7 @@ def _by_content(
 
 
 def _name(readers: bytes, *parts: bytes) -> str:
-    """Return the name of a cache file: a hash of the readers and of what the content depends on."""
+    """Return the name of a cache file: a hash of the readers and of all inputs."""
     key = hashlib.sha256(readers)
     for part in parts:
         key.update(b"%d\0" % len(part))
@@ -138,7 +138,7 @@ def readers_digest() -> bytes:
 
 
 def reader_sources() -> list[str]:
-    """Return the paths of the modules beside this one, of that with class ``Mesh``, and of the policy on files."""
+    """Return the source files of the readers: the modules of this folder, ``Mesh``, and the file access policy."""
     folders = sorted(os.walk(os.path.dirname(__file__)))
     names = (os.path.join(folder, name) for folder, _, files in folders for name in sorted(files))
     return [*(name for name in names if name.endswith(".py")), mesh.__file__, file_access.__file__]
@@ -165,7 +165,7 @@ def _loaded(file: str) -> tuple[Parts, dict[str, str]] | None:
 
 
 def _store(file: Path, content: bytes) -> None:
-    """Write a cache file under a temporary name and rename it, so that no process ever reads half of it."""
+    """Write a cache file under a temporary name and rename it, so that no process ever reads an incomplete file."""
     global _written  # noqa: PLW0603 - a counter
     name = None
     try:
@@ -190,13 +190,13 @@ def prune(folder: Path, max_bytes: int = MAX_BYTES) -> None:
 
     Args:
         folder: The folder of the cache.
-        max_bytes: How much may stay.
+        max_bytes: Maximum total size.
     """
     sizes: list[tuple[float, int, str]] = []
     with os.scandir(folder) as entries:
         for entry in entries:
             with contextlib.suppress(OSError):  # another process was faster
-                if entry.name.endswith((".mesh", ".path", ".tmp")):  # earlier versions wrote .path
+                if entry.name.endswith((".mesh", ".path", ".tmp")):  # .path files are from earlier versions
                     status = entry.stat()
                     sizes.append((status.st_mtime, status.st_size, entry.path))
     total = sum(size for _, size, _ in sizes)

@@ -1,4 +1,4 @@
-"""Counts that PLY, OFF and glTF files declare, checked against their size before trimesh allocates that much."""
+"""Checks of the counts that PLY, OFF and glTF files declare against the file size, before trimesh allocates memory."""
 
 import json
 import re
@@ -27,7 +27,7 @@ def check_counts(data: bytes, kind: str, source: Source) -> None:
         source: The file.
 
     Raises:
-        SourceError: A count is larger than what the file can hold, or more than what is read.
+        SourceError: A count is larger than the file can contain, or exceeds a limit.
         ValueError, TypeError, LookupError, AttributeError: The file is malformed.
     """
     match kind:
@@ -109,7 +109,7 @@ class _Gltf:
         return count * item
 
     def _triangles(self, mesh: Entry) -> int:
-        """Return a bound of the number of triangles in a mesh, and of a third of its vertices."""
+        """Return an upper bound of the number of triangles in a mesh, and of a third of its vertices."""
         total = 0
         for primitive in cast("list[Entry]", mesh["primitives"]):
             used: list[int | None] = [primitive["attributes"].get("POSITION"), primitive.get("indices")]
@@ -118,7 +118,7 @@ class _Gltf:
         return total
 
     def _shown(self) -> list[Entry]:
-        """Return the nodes of the scene; check that they form trees, and how deep these are."""
+        """Return the nodes of the scene; check that they form trees of limited depth."""
         nodes = self._entries("nodes")
         scenes, number = self._entries("scenes"), cast("int", self._header.get("scene", 0))
         level: list[int] = scenes[number].get("nodes", []) if scenes else []

@@ -15,17 +15,17 @@ _SETTINGS = {"resolution": 500, "mcts_iterations": 40, "seed": 0}  # seconds a m
 
 
 def decompose(mesh: Mesh, threshold: float = 0.15, max_pieces: int = 8) -> tuple[Mesh, ...]:
-    """Cut a mesh into convex pieces, so that a mug can hold something.
+    """Decompose a mesh into convex pieces, so that for instance a mug stays hollow.
 
-    This takes seconds; the result is kept in the cache. Walls of a mesh that is not closed may get lost.
+    This takes seconds; the result is cached. Walls of a mesh that is not closed may be lost.
 
     Args:
-        mesh: What to cut.
-        threshold: How concave a piece may stay, from 0.01 (fine) to 1 (coarse).
-        max_pieces: How many pieces there are at most.
+        mesh: The mesh.
+        threshold: Maximum concavity of a piece, from 0.01 (fine) to 1 (coarse).
+        max_pieces: Maximum number of pieces.
 
     Returns:
-        The pieces; the mesh itself if it has no volume to cut.
+        The pieces; the mesh itself if it has no volume.
 
     Raises:
         RavemjError: CoACD is not installed or refuses the mesh.

@@ -2,8 +2,8 @@
 
 NumPy's own format would take several times as long to load, and pickles can run code.
 
-An entry is the parts of a mesh, with what takes time to find out about them. It begins with ``_MAGIC`` and the CRC-32
-of the rest.
+An entry contains the parts of a mesh and derived data that are slow to compute. It begins with ``_MAGIC`` and the
+CRC-32 of the rest.
 """
 
 import json
@@ -42,7 +42,7 @@ def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
 
 
 def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
-    """Return what was given to ``pack_entry``.
+    """Return the arguments of ``pack_entry`` that produced a content.
 
     Raises:
         ValueError: The content is damaged.

@@ -19,8 +19,8 @@ class ReferencedFiles:
     """The files that a mesh file and its references name.
 
     Attributes:
-        digests: SHA-256 of each as it lies on the disk, by path; empty for those that cannot be read.
-        refused: Why one of them must not be read; None if all of them may.
+        digests: SHA-256 of each file on the disk, by path; empty for unreadable files.
+        refused: The error if one of them must not be read, else None.
     """
 
     digests: dict[str, str] = field(default_factory=dict[str, str])
@@ -49,10 +49,10 @@ class FileContent:
     """The content of a file.
 
     Attributes:
-        path: Where it lies.
+        path: Its path.
         data: Its bytes, unpacked if it was compressed with gzip.
         references: The files that it names; shared by all of them.
-        parents: Absolute paths of the files that led here.
+        parents: Absolute paths of the chain of files that led to this one.
         access: The files that may be read; by default those in the folder of the mesh.
         ros: Whether it is read for a URDF; see ``read_mesh``.
     """
@@ -93,14 +93,14 @@ class FileContent:
         return None if data is None else replace(self, path=path, data=data, parents=parents)
 
     def _place(self, name: str) -> Source:
-        """Return where this file names another one: the first line with the name, if it is a text."""
+        """Return the first line of this file that names another one, if it is a text."""
         at = -1 if b"\0" in self.data else self.data.find(name.encode(errors="replace"))
         line = self.data.count(b"\n", 0, at) + 1 if at >= 0 else 0
         return Source(self.path, line, self.access.files.get(self.path))
 
 
 def digest_of(path: str) -> str:
-    """Return the SHA-256 of a file as it lies on the disk, or the empty string if it cannot be read."""
+    """Return the SHA-256 of a file on the disk, or an empty text if it cannot be read."""
     try:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except SourceError:

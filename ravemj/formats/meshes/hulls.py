@@ -1,4 +1,4 @@
-"""How MuJoCo can use a mesh: it collides as its convex hull, and a flat mesh has none."""
+"""Classification of meshes for MuJoCo: a mesh collides as its convex hull, and a flat mesh has none."""
 
 import math
 from typing import Literal
@@ -19,16 +19,16 @@ _MAX_REACH = 1e15  # m; MuJoCo computes areas in single precision
 _SAMPLE = 64  # triangles
 
 _forms: WeakKeyDictionary[Mesh, CollisionForm] = WeakKeyDictionary()
-"""The forms that are known, while their meshes are in use. A lookup hashes the mesh, whose digest all callers need."""
+"""Cache of forms, while their meshes are in use. A lookup hashes the mesh, whose digest all callers need anyway."""
 
 
 def collision_form(mesh: Mesh) -> CollisionForm:
-    """Return how MuJoCo can use a mesh.
+    """Classify how MuJoCo can use a mesh.
 
     Returns:
-        ``hull`` if the mesh has a convex hull with volume, and so can collide; ``visual`` if it is flat, so that it
-        can only be seen; ``none`` if it has no area either or is enormous, and MuJoCo would not load it. With
-        ``inertia="shell"`` MuJoCo loads the first two, with other settings not all of them.
+        ``hull`` if the mesh has a convex hull with volume, and so can collide; ``visual`` if it is flat, and so can
+        only be drawn; ``none`` if it has no area or is so large that MuJoCo would not load it. MuJoCo loads all
+        meshes of the first two kinds only with ``inertia="shell"``.
     """
     form = _forms.get(mesh)
     if form is None:
@@ -37,7 +37,7 @@ def collision_form(mesh: Mesh) -> CollisionForm:
 
 
 def store_form(mesh: Mesh, form: CollisionForm) -> None:
-    """Store what ``collision_form`` returns for a mesh."""
+    """Store the result of ``collision_form`` for a mesh."""
     _forms[mesh] = form
 
 
@@ -58,10 +58,10 @@ def _form(mesh: Mesh) -> CollisionForm:
 
 
 def _is_plainly_solid(mesh: Mesh) -> bool:
-    """Return True if a sample of the triangles shows that the mesh has a volume; False decides nothing.
+    """Return True if a sample of the triangles proves that the mesh has a volume; False is inconclusive.
 
-    In no direction is a mesh thinner than twice the standard deviation of a sample of its points, nor is it
-    longer anywhere than the diagonal of a box around it and the origin.
+    The thickness of a mesh in any direction is at least twice the standard deviation of a sample of its points; its
+    length is at most the diagonal of a box around it and the origin.
     """
     corners = mesh.vertices[mesh.triangles[:: len(mesh.triangles) // _SAMPLE + 1]]
     if not len(corners) or _area(corners) <= _MIN_AREA:

@@ -14,10 +14,10 @@ _SPACE = re.compile(r"\s")
 
 
 def parse_list(text: str, number: Callable[[str], float]) -> NDArray[Any]:
-    """Return what a function makes of each word of a text.
+    """Apply a conversion function to each word of a text.
 
     Raises:
-        ValueError: The function does not take a word.
+        ValueError: The function rejects a word.
         OverflowError: There are more than ``MOST_NUMBERS`` words, or an integer is too large.
     """
     parts: list[NDArray[Any]] = []

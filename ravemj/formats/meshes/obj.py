@@ -1,7 +1,11 @@
 """The reader of Wavefront OBJ with its materials, and the writer of OBJ for MuJoCo."""
 
+import hashlib
 import io
+import os
+import re
 from dataclasses import dataclass, field
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -15,7 +19,13 @@ from ravemj.model.scene import Mesh, Rgb
 _LONGEST_LINE = 1_000_000  # of OBJ
 
 GRAY = rgb((0.6, 0.6, 0.6))
-"""What OpenRAVE's importer gives where there is no material or no colour in it."""
+"""Colour of OpenRAVE's importer if there is no material or the material has no colour."""
+
+_TEXTS: WeakKeyDictionary[Mesh, str] = WeakKeyDictionary()
+"""Cache of the OBJ texts of meshes in use: models share meshes, and formatting takes as long as compiling."""
+
+
+_WRITTEN = re.compile(r"mesh-[0-9a-f]{16}\.obj")
 
 
 @dataclass(slots=True)
@@ -28,7 +38,7 @@ class _Material:
 
 
 class _Reading:
-    """What the lines of the file so far have said."""
+    """State of the parser."""
 
     def __init__(self, file: FileContent) -> None:
         self.file = file
@@ -98,13 +108,51 @@ def read_obj(file: FileContent) -> tuple[MeshPart, ...]:
 def write_obj(mesh: Mesh) -> str:
     """Return a mesh as OBJ text for MuJoCo.
 
-    OBJ, not STL, because it keeps vertices shared, may have as many faces as one likes and can be read by people;
-    nine digits keep every single-precision coordinate, and MuJoCo stores no finer ones.
+    OBJ and not STL, because it shares vertices, has no limit of faces and is readable; nine digits preserve every
+    single-precision coordinate, and MuJoCo stores no finer ones.
     """
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.vertices.tolist()]
-    lines += lines[-1:] * (4 - len(lines))  # MuJoCo wants four vertices, used or not
-    lines += [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + 1).tolist()]
-    return "\n".join(lines) + "\n"
+    text = _TEXTS.get(mesh)
+    if text is None:
+        vertices = mesh.vertices
+        if 0 < len(vertices) < 4:  # MuJoCo wants four vertices, used or not
+            vertices = np.concatenate((vertices, vertices[-1:].repeat(4 - len(vertices), 0)))
+        corners = mesh.triangles + 1
+        text = "v %.9g %.9g %.9g\n" * len(vertices) % tuple(vertices.ravel().tolist())
+        text += "f %d %d %d\n" * len(corners) % tuple(corners.ravel().tolist())
+        _TEXTS[mesh] = text
+    return text
+
+
+def written_name(mesh: Mesh) -> str:
+    """Return the name of a mesh in MJCF: a hash of its OBJ text, which writing and reading do not change."""
+    return _name_of(write_obj(mesh))
+
+
+def read_written(path: str) -> Mesh | None:
+    """Read a file of ``write_obj`` digit for digit; None if its name is not that of its content."""
+    if not _WRITTEN.fullmatch(os.path.basename(path)):
+        return None
+    with open(path, encoding="utf-8", errors="replace") as file:
+        text = file.read()
+    if _name_of(text) != os.path.basename(path).removesuffix(".obj"):
+        return None
+    return _parsed(text)
+
+
+def as_written(mesh: Mesh) -> Mesh:
+    """Return a mesh rounded like its file."""
+    return _parsed(write_obj(mesh))
+
+
+def _parsed(text: str) -> Mesh:
+    rows = [line.split() for line in text.splitlines()]
+    vertices = [row[1:] for row in rows if row[0] == "v"]
+    triangles = [row[1:] for row in rows if row[0] == "f"]
+    return Mesh(np.array(vertices, np.float64), np.array(triangles, np.int_) - 1)
+
+
+def _name_of(text: str) -> str:
+    return f"mesh-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
 
 
 def _point(numbers: list[float]) -> tuple[float, ...]:

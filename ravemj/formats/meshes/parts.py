@@ -17,10 +17,10 @@ READERS = {
     ".dae": ("collada", "read_collada"),
     **dict.fromkeys((".ply", ".off", ".glb", ".gltf"), ("trimesh_formats", "read_with_trimesh")),
 }
-"""The module and the name of the reader for each end of a file's name."""
+"""Module and function of the reader for each suffix."""
 
 MESH_SUFFIXES = tuple(READERS)
-"""Ends of the names of files that can be read, in lower case."""
+"""Suffixes of readable files, in lower case."""
 
 WHITE: Rgb = (1.0, 1.0, 1.0)
 BLACK: Rgb = (0.0, 0.0, 0.0)
@@ -46,8 +46,8 @@ class MeshPart:
 def weld(corners: ArrayLike) -> Mesh:
     """Return separate triangles as a mesh with shared vertices, in order of their first appearance.
 
-    Coordinates are rounded to single precision first: OpenRAVE's importers and MuJoCo know no finer ones, so
-    corners that OpenRAVE takes for the same are the same here too.
+    Coordinates are rounded to single precision first, like in OpenRAVE's importers and MuJoCo, so that the same corners
+    are merged as in OpenRAVE.
 
     Args:
         corners: Three points for each triangle, shape (n, 3, 3).

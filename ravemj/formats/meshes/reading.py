@@ -1,4 +1,4 @@
-"""The choice of a reader for a mesh file: by the end of its name, as in OpenRAVE."""
+"""Selection of the mesh reader by the file's suffix, as in OpenRAVE."""
 
 import importlib
 from collections.abc import Callable
@@ -18,7 +18,7 @@ _Reader = Callable[[FileContent], tuple[MeshPart, ...]]
 
 
 def reader_of(suffix: str) -> _Reader:
-    """Return the reader for an end of names, which is imported only now: most meshes come from the cache."""
+    """Return the reader of a suffix, imported on demand: most meshes come from the cache."""
     module, name = READERS[suffix]
     return getattr(importlib.import_module(f"ravemj.formats.meshes.{module}"), name)
 
@@ -32,7 +32,7 @@ def read_mesh(
     Inventor and VRML give one part for the whole file, the other formats one for each material.
 
     Args:
-        path: The file; the end of its name decides how it is read, in upper or lower case.
+        path: The file; its suffix selects the format, in upper or lower case.
         scale: Factors along x, y and z.
         access: The files that may be read, which takes findings; by default those of a mesh that its user opens, and
             findings are sent as warnings.

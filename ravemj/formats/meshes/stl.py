@@ -11,7 +11,7 @@ from ravemj.formats.meshes.parts import WHITE, MeshPart, check_size, corners_of,
 from ravemj.model.scene import Mesh
 
 AMBIENT = rgb((0.05, 0.05, 0.05))
-"""What OpenRAVE's importer gives to every STL file."""
+"""Ambient colour of STL files in OpenRAVE's importer."""
 
 _HEADER = 84
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

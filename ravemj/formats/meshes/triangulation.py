@@ -69,7 +69,7 @@ def triangles(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats
 
 
 def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
-    """Triangulate convex polygons as ear clipping does it, whose ears are the corners from the first one on."""
+    """Triangulate convex polygons as ear clipping does, which cuts the corners in order from the first one."""
     triangles = fans(starts, sizes)
     first = np.repeat(starts + sizes - 1, np.maximum(sizes - 2, 0))
     return np.stack([first, triangles[:, 1] - 1, triangles[:, 2] - 1], axis=1)
@@ -95,7 +95,7 @@ def _halves(points: Floats, starts: Ints) -> Ints:
 def clip_ears(polygon: Floats) -> Ints:
     """Triangulate one polygon by ear clipping; a corner that repeats the one before it is left out.
 
-    The search for the next ear goes on behind the last one, as in OpenRAVE's importer (conformance case ``gap-74``).
+    The search for the next ear continues behind the last one, as in OpenRAVE's importer (conformance case ``gap-74``).
 
     Args:
         polygon: Its corners in order, shape (n, 3).
@@ -138,7 +138,7 @@ def strips(sizes: Ints, index: Ints) -> Ints:
 
 
 def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
-    """Return for each polygon whether it turns the wrong way at some corner, and is small enough to be clipped."""
+    """Return a mask of the polygons that have a reflex corner and are small enough for ear clipping."""
     found = np.zeros(len(sizes), np.bool_)
     for size in np.unique(sizes[(sizes > 3) & (sizes <= _MAX_CLIPPED)]).tolist():
         same = np.flatnonzero(sizes == size)
@@ -164,7 +164,7 @@ def _ear(points: Floats) -> tuple[int, int]:
     """Find an ear: a convex corner without any other corner inside its triangle.
 
     Returns:
-        Its position, and how many corners had to be looked at; some position if there is none.
+        Its position, and the number of corners examined; an arbitrary position if there is none.
     """
     before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
     convex: list[int] = np.flatnonzero(_turn(before, points, after) > 0).tolist()

@@ -45,7 +45,7 @@ def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 class _References(Mapping[str, bytes]):
-    """Gives trimesh the files that glTF names: buffers, which are raw data, and no pictures, which nothing shows."""
+    """Gives trimesh the files that glTF names: buffers, which are raw data, but no pictures, which are not drawn."""
 
     def __init__(self, file: FileContent) -> None:
         self._file = file
@@ -70,7 +70,7 @@ class _References(Mapping[str, bytes]):
 
 
 def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | None]]:
-    """Return corners and, where there is a material, its red, green, blue and opacity."""
+    """Return corners and, if there is a material, its red, green, blue and opacity."""
     data = file.data
     if kind == "ply":  # trimesh takes headers for UTF-8, and comments of older programs are Latin-1
         header, end, rest = data.partition(b"end_header")

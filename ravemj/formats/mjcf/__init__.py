@@ -1,11 +1,12 @@
-"""A ``Scene`` becomes MJCF: text, meshes, and for every line the place in the user's file that it comes from.
+"""Translation of a ``Scene`` to MJCF: text, meshes, and for every line its source in the user's file.
 
-Pure text, written by hand: MuJoCo's own writer keeps six digits, turns inertias and moves meshes. Here numbers
-keep all their digits, every element has its own line, and names stay as they are.
+The text is generated directly, since MuJoCo's own writer keeps only six digits, rotates inertias and moves meshes. Here
+numbers keep all digits, every element has its own line, and names do not change.
 """
 
-from ravemj.formats.mjcf.document import ASSETS, BodyNames, Mjcf, Options, write
+from ravemj.formats.mjcf.document import ASSETS, BodyNames, Mjcf, write
 from ravemj.formats.mjcf.geoms import rgba
 from ravemj.formats.mjcf.inertia import legal_inertial
+from ravemj.formats.mjcf.options import Options
 
 __all__ = ["ASSETS", "BodyNames", "Mjcf", "Options", "legal_inertial", "rgba", "write"]

@@ -1,67 +1,45 @@
 """The whole MJCF document."""
 
-import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from ravemj.core.caching import cached_property
-from ravemj.core.transforms import ZERO, Floats, conjugate, rotate, rows_from_wxyz
-from ravemj.errors import Diagnostics, Source
+from ravemj.core.transforms import UNMOVED, ZERO, Vec3, conjugate, rotate
+from ravemj.errors import Diagnostics, Origin, Source
+from ravemj.formats.mjcf.actuators import joint_motor, warn_of_ball, write_actuator
 from ravemj.formats.mjcf.equality import EqualityWriter
 from ravemj.formats.mjcf.excludes import WeldGroups, excluded_pairs
-from ravemj.formats.mjcf.geoms import GeomWriter
+from ravemj.formats.mjcf.geoms import MjcfGeomWriter
 from ravemj.formats.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
-from ravemj.formats.mjcf.lines import Attribute, Lines, pose_attributes
-from ravemj.model.joints import moving_direction, relative_pose
-from ravemj.model.look import (
-    FILL,
-    HORIZON,
-    KEY,
-    LINES,
-    SKY,
-    STUDIO_PREFIX,
-    ZENITH,
-    Light,
-    first_rotation,
-)
-from ravemj.model.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
+from ravemj.formats.mjcf.lines import Attribute, XmlLines, pose_attributes
+from ravemj.formats.mjcf.look import write_lights, write_look
+from ravemj.formats.mjcf.merging import Merging
+from ravemj.formats.mjcf.options import Options
+from ravemj.formats.mjcf.records import PREFIX, StoredNames, body_text
+from ravemj.formats.mjcf.sensors import SensorWriter
+from ravemj.formats.mjcf.tidy import tidy
+from ravemj.model.joints import moving_direction
+from ravemj.model.scene import Axis, Joint, KinBody, Mesh, Scene, View
 from ravemj.model.shape_bodies import MASSLESS
 
 ASSETS = "assets"
 """Folder of the meshes, beside the MJCF file."""
 
-_SKY_SIZE, _GRID_SIZE = 32, 128
-"""Texels along a side of a face of the sky, and of a cell of the floor's grid."""
-
 MECHANISM_MEMORY = "1M"
-"""Working memory of a model without contacts; MuJoCo's default is several times the model's own size, for each body."""
+"""Working memory of a model without contacts; MuJoCo's default per body would be several times the model's own size."""
 
 _MANY_BODIES = 1000
 
-Actuators = Literal["position", "velocity", "torque"]
+_LEAST_ROOM = 1e-6
+"""Half the range [rad or m] of a joint whose limits leave no room, and which is no weld."""
 
+_LOCK_SOLREF, _LOCK_SOLIMP = (0.004, 1), (0.999, 0.9999, 1e-6)
+"""Limits of such a joint as stiff as MuJoCo allows, so that whoever stands on it does not sink."""
 
-class Options(NamedTuple):
-    """Options of a translation.
-
-    Attributes:
-        free_bases: Whether bodies without a static link can fall, as OpenRAVE's physics engines have it; else every
-            root is fixed to the world.
-        actuators: The kind of actuator for each DOF, or None.
-        decomposed: Whether meshes collide as several convex parts (with CoACD) in place of one hull.
-        excludes: Whether pairs of links that OpenRAVE never tests are excluded by name.
-        mechanism_only: Whether only links and joints are written, without shapes and without what acts when time runs,
-            and every root gets a free joint.
-    """
-
-    free_bases: bool = False
-    actuators: Actuators | None = None
-    decomposed: bool = False
-    excludes: bool = True
-    mechanism_only: bool = False
+TIMESTEP = 0.002
+"""MuJoCo's time step [s]."""
 
 
 class BodyNames(NamedTuple):
@@ -69,9 +47,9 @@ class BodyNames(NamedTuple):
 
     Attributes:
         links: Name of the MuJoCo body of each link.
-        joints: For each joint, active ones and then passive ones, the names of the MuJoCo joints that it became; none
-            for one that moves no link: a weld, a passive one that follows nothing, and one that closes a loop.
-        geoms: For each link, how many geoms each of its geometries became; they stand in this order.
+        joints: Names of the MuJoCo joints of each joint, active ones and then passive ones; none for joints that move
+            no link: welds, passive joints without a mimic equation, and joints that close loops.
+        geoms: For each link, the number of geoms of each geometry, in order.
     """
 
     links: tuple[str, ...]
@@ -86,9 +64,9 @@ class Mjcf:
     Attributes:
         text: The MJCF document.
         meshes: The meshes, by the name of their files in the folder ``assets``.
-        sources: For each line of the text, the place that it comes from, or None.
+        sources: For each line of the text its source in the user's file, or None.
         names: Names of the parts of each body of the scene, in the order of the bodies.
-        altered: Links, as (body, link) indices, whose inertia MuJoCo would refuse; the text has the nearest legal one.
+        altered: (body, link) indices of links whose inertia MuJoCo would refuse; the text has the nearest valid one.
     """
 
     text: str
@@ -105,7 +83,7 @@ class Mjcf:
         return {name: write_obj(mesh) for name, mesh in self.meshes.items()}
 
     def source_of_line(self, line: int) -> Source | None:
-        """Return where a line of the text comes from; lines count from 1."""
+        """Return the source of a line of the text; lines count from 1."""
         return self.sources[line - 1] if 0 < line <= len(self.sources) else None
 
 
@@ -114,42 +92,56 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
 
     Args:
         scene: What to translate.
-        diagnostics: Takes a warning for every value that MuJoCo would refuse and every name that clashes.
-        options: What to add; None: nothing.
+        diagnostics: Receives a warning for each value that MuJoCo would refuse and each name conflict.
+        options: Options of the translation; None for the defaults.
     """
     options = options or Options()
-    writer = _Writer(diagnostics, options)
+    writer = _MjcfWriter(diagnostics, options)
     if not options.mechanism_only:
-        _write_lights(writer.bodies, scene.view or View())
+        write_lights(writer.bodies, scene.view or View())
     for index, body in enumerate(scene.bodies):
         writer.write_body(index, body)
-    out = Lines()
+    out = XmlLines()
     out.open("mujoco")
     out.element("compiler", angle="radian", autolimits=True, fusestatic=False, meshdir=ASSETS)
-    if scene.gravity is not None:
-        out.element("option", gravity=scene.gravity)
+    _write_option(out, scene, options)
     if options.mechanism_only:
         out.element("size", memory=MECHANISM_MEMORY)
     else:
         memory = _memory(writer.bodies.text)
         if memory:
             out.element("size", memory=memory)
-        _write_look(out, scene.view or View(), writer.geometries.lines)
+        write_look(out, scene.view or View(), writer.geometries.lines)
     out.section("worldbody", writer.bodies)
     out.section("contact", writer.excludes)
     out.section("tendon", writer.equalities.tendons)
     out.section("equality", writer.equalities.equalities)
     out.section("actuator", writer.actuators)
+    out.section("sensor", writer.sensors.lines)
+    out.section("custom", writer.texts)
     out.close("mujoco")
-    text = "\n".join(out.text) + "\n"
+    lines = out.text if options.folder is None else map(tidy, out.text)
+    text = "\n".join(lines) + "\n"
     return Mjcf(text, writer.geometries.meshes, tuple(out.sources), tuple(writer.names), tuple(writer.altered))
 
 
-def _memory(lines: Sequence[str]) -> str:
-    """Return the working memory that MuJoCo needs to sort out the pairs of many bodies; empty if its default suffices.
+def _write_option(out: XmlLines, scene: Scene, options: Options) -> None:
+    """Write gravity, time step and integrator if they are not the defaults; MuJoCo's Euler treats servos explicitly."""
+    servos = options.actuators in {"position", "velocity"}
+    attributes: dict[str, Attribute | None] = {
+        "gravity": scene.gravity,
+        "timestep": options.timestep,
+        "integrator": "implicitfast" if servos else None,
+    }
+    if any(value is not None for value in attributes.values()):
+        out.element("option", **attributes)
 
-    That grows with the square of the DOFs alone (60 bytes, measured on MuJoCo 4.0), and the need with that of the
-    bodies (4.05 bytes).
+
+def _memory(lines: Sequence[str]) -> str:
+    """Return the working memory that MuJoCo's broad phase needs for many bodies; empty if the default suffices.
+
+    The default grows with the square of the DOFs (60 bytes, measured on MuJoCo 4.0), the need with that of the bodies
+    (4.05 bytes).
     """
     bodies = sum("<body " in line for line in lines)
     dofs = sum(("<joint " in line) + 6 * ("<freejoint" in line) for line in lines)
@@ -158,66 +150,17 @@ def _memory(lines: Sequence[str]) -> str:
     return f"{(5 * bodies**2 + 64 * dofs**2) // 2**20 + 32}M"
 
 
-def _write_look(out: Lines, view: View, meshes: Lines) -> None:
-    """Write lights, the classes of geoms, the background and the meshes."""
-    level = HORIZON if view.background is None else view.background
-    out.open("visual")
-    x, y, z = _first_rotation(view)[:, 2].tolist()  # along which MuJoCo's own viewers look at first
-    azimuth, elevation = math.degrees(math.atan2(y, x)), math.degrees(math.atan2(z, math.hypot(x, y)))
-    out.element("global", azimuth=round(azimuth, 6) % 360.0, elevation=round(elevation, 6))
-    out.element("headlight", active=1, **_light_attributes(FILL))
-    out.element("rgba", fog=(*level, 1.0), haze=(*level, 1.0))
-    out.close("visual")
-    out.open("default")
-    out.open("default", **{"class": "visual"})
-    out.element("geom", contype=0, conaffinity=0, group=2)
-    out.close("default")
-    out.open("default", **{"class": "collision"})
-    out.element("geom", group=3)
-    out.close("default")
-    out.close("default")
-    out.open("asset")
-    top, bottom = (ZENITH, level) if view.background is None else (level, level)
-    size: dict[str, Attribute] = {"width": _SKY_SIZE, "height": 6 * _SKY_SIZE}
-    out.element("texture", name="background", type="skybox", builtin="gradient", rgb1=top, rgb2=bottom, **size)
-    grid: dict[str, Attribute] = {"width": _GRID_SIZE, "height": _GRID_SIZE}
-    lines: dict[str, Attribute] = {"mark": "edge", "markrgb": (LINES, LINES, LINES), "rgb1": (1.0, 1.0, 1.0)}
-    out.element("texture", name="floor", type="2d", builtin="flat", **lines, **grid)
-    out.element("material", name="floor", texture="floor")
-    out.text += meshes.text
-    out.sources += meshes.sources
-    out.close("asset")
-
-
-def _light_attributes(light: Light) -> dict[str, Attribute]:
-    parts = {"ambient": light.ambient, "diffuse": light.diffuse, "specular": light.specular}
-    return {name: (part, part, part) for name, part in parts.items()}
-
-
-def _first_rotation(view: View) -> Floats:
-    """Return ``R_world_camera`` of the first camera."""
-    camera = view.T_world_camera
-    return first_rotation() if camera is None else np.array(rows_from_wxyz(camera.wxyz))
-
-
-def _write_lights(out: Lines, view: View) -> None:
-    """Write the lights of pictures, as they are for the first camera."""
-    R_world_camera = _first_rotation(view)
-    for name, light in (("key", KEY), ("sky", SKY)):
-        direction = tuple(light.direction_in_world(R_world_camera).round(6).tolist())
-        attributes: dict[str, Attribute] = {"castshadow": light.casts_shadows, **_light_attributes(light)}
-        out.element("light", name=f"{STUDIO_PREFIX}{name}", type="directional", dir=direction, **attributes)
-
-
 @dataclass(slots=True)
-class _Names:
-    """The names in use, so that each is given once."""
+class _UniqueNames:
+    """The names in use, for making names unique."""
 
     diagnostics: Diagnostics
-    taken: dict[str, set[str]] = field(default_factory=lambda: {"body": {"world"}, "joint": set[str]()})
+    taken: dict[str, set[str]] = field(
+        default_factory=lambda: {"body": {"world"}, "joint": set[str](), "site": set[str]()}
+    )
 
     def give(self, kind: str, body: KinBody, name: str) -> str:
-        """Return a name that no other part of this kind has: the part's own if that is free."""
+        """Return a unique name for a part of a kind: its own if that is free."""
         unique = name
         while unique in self.taken[kind]:
             unique = f"{body.name}/{unique}"
@@ -228,43 +171,72 @@ class _Names:
         return unique
 
 
-class _Writer:
-    """The sections of the document, filled body by body."""
+class _MjcfWriter:
+    """Writes the sections of the document, body by body."""
 
     def __init__(self, diagnostics: Diagnostics, options: Options) -> None:
         self.diagnostics = diagnostics
         self.options = options
-        self.bodies = Lines(2)
-        self.excludes = Lines(2)
-        self.actuators = Lines(2)
-        self.geometries = GeomWriter(diagnostics, decomposed=options.decomposed)
-        self.equalities = EqualityWriter(diagnostics, Lines(2), Lines(2))
+        self.bodies = XmlLines(2)
+        self.excludes = XmlLines(2)
+        self.actuators = XmlLines(2)
+        self.geometries = MjcfGeomWriter(
+            diagnostics, decomposed=options.decomposed, hull_vertices=options.hull_vertices or None
+        )
+        timestep = TIMESTEP if options.timestep is None else options.timestep
+        solref = (2 * timestep, 1.0) if options.actuators else None  # the largest stiffness that MuJoCo permits
+        self.equalities = EqualityWriter(diagnostics, XmlLines(2), XmlLines(2), solref)
         self.names: list[BodyNames] = []
         self.altered: list[tuple[int, int]] = []
-        self._given = _Names(diagnostics)
+        self.texts = XmlLines(2)
+        self._given = _UniqueNames(diagnostics)
+        self.sensors = SensorWriter(diagnostics, self._given.taken["site"])
 
     def write_body(self, index: int, body: KinBody) -> None:
-        """Write the tree of links of a body, root links first, and what belongs to it in other sections."""
+        """Write the kinematic tree of a body, root links first, and its elements in other sections."""
         joints = body.all_joints
-        names = BodyNames(
-            links=tuple(self._given.give("body", body, link.name or f"link{i}") for i, link in enumerate(body.links)),
-            joints=tuple(
-                self._joint_names(body, joint, i < len(body.joints), joint.name or f"joint{i}")
-                for i, joint in enumerate(joints)
-            ),
-            geoms=(),
+        joint_names = tuple(
+            self._joint_names(body, joint, i < len(body.joints), joint.name or f"joint{i}")
+            for i, joint in enumerate(joints)
         )
+        merging = Merging(body, joint_names, merges=self.options.merge_fixed)
+        links = [
+            self._given.give("site" if i in merging.carriers else "body", body, link.name or f"link{i}")
+            for i, link in enumerate(body.links)
+        ]
+        merging.names = links
+        names = BodyNames(tuple(links[merging.carrier(i)] for i in range(len(links))), joint_names, ())
         welds = WeldGroups()
-        self.names.append(names._replace(geoms=self._write_tree(index, body, names, joints, welds)))
+        names = names._replace(geoms=self._write_tree(index, body, names, merging, welds))
+        self.names.append(names)
         if self.options.mechanism_only:
             return
+        pairs: dict[tuple[str, str], None] = {}
         if self.options.excludes:
-            for first, second in excluded_pairs(body, welds):
-                self.excludes.element("exclude", body1=names.links[first], body2=names.links[second])
+            named = [(names.links[first], names.links[second]) for first, second in excluded_pairs(body, welds)]
+            pairs = dict.fromkeys((first, second) for first, second in named if first != second)
+            for first, second in pairs:
+                self.excludes.element("exclude", body1=first, body2=second)
+        if self.options.folder is not None and not self.options.merge_fixed:
+            counts = tuple(map(sum, names.geoms))
+            places = tuple(self._source_text(link.source) for link in body.links)
+            stored = StoredNames(names.links, names.joints, counts, tuple(pairs), self.options.decomposed, places)
+            self.texts.text_element(f"{PREFIX}{body.name}", body_text(body, stored, self.geometries.mesh_name))
+        self._report_loose(body, merging)
         self.equalities.write(joints, names.joints)
+        if self.options.sensors:
+            self.sensors.write_joints(joints, names.joints)
         if self.options.actuators is not None:
-            for joint, joint_names in zip(body.joints, names.joints, strict=False):
-                self._write_actuators(joint, joint_names, self.options.actuators)
+            self._write_actuators(index, body, names.joints)
+
+    def _report_loose(self, body: KinBody, merging: Merging) -> None:
+        """Warn of passive joints without a mimic equation, which move freely in OpenRAVE's physics."""
+        for joint in body.passive_joints:
+            if joint.mimic is None and joint.places_child and not joint.static and joint.child in merging.placing:
+                message = f"joint '{joint.name}' is passive and follows nothing; in MJCF and in physics it is a weld"
+                self.diagnostics.warn(
+                    "welded-joint", message, joint.source, "let it move: enable it, or give it a mimic"
+                )
 
     def _joint_names(self, body: KinBody, joint: Joint, active: bool, name: str) -> tuple[str, ...]:
         follows = joint.mimic is not None and joint.mimic.expression is not None and len(body.joints) > 0
@@ -274,68 +246,91 @@ class _Writer:
         one = len(joint.axes) == 1 or joint.kind == "spherical"
         return (first,) if one else (first, self._given.give("joint", body, f"{name}_1"))
 
+    def _is_free(self, body: KinBody) -> bool:
+        """Return whether the roots of a body can fall."""
+        if self.options.mechanism_only or (self.options.free_robots and body.is_robot):
+            return True
+        return self.options.free_bases and not any(link.static for link in body.links)
+
     def _write_tree(
-        self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...], welds: WeldGroups
+        self, index: int, body: KinBody, names: BodyNames, merging: Merging, welds: WeldGroups
     ) -> tuple[tuple[int, ...], ...]:
-        """Write the links; return for each how many geoms its geometries became."""
+        """Write the links; return for each the number of geoms of each geometry."""
         geoms: list[tuple[int, ...]] = [()] * len(body.links)
-        placing = {joint.child: number for number, joint in enumerate(joints) if joint.places_child}
-        children: dict[int, list[int]] = {}
-        for child, number in placing.items():
-            children.setdefault(joints[number].parent, []).append(child)
-        free = self.options.free_bases and not any(link.static for link in body.links)
-        free = free or self.options.mechanism_only
-        pending = [(link, False) for link in reversed(range(len(body.links))) if link not in placing]
+        free = self._is_free(body)
+        pending = [(link, False) for link in reversed(range(len(body.links))) if link not in merging.placing]
         while pending:
             link, is_done = pending.pop()
             if is_done:
                 self.bodies.close("body")
                 continue
-            number = placing.get(link)
-            joint = None if number is None else joints[number]
+            number = merging.placing.get(link)
+            joint = None if number is None else body.all_joints[number]
             joint_names = () if number is None else names.joints[number]
-            self._open_link(body, link, names.links[link], joint, bool(joint_names))
             is_free = joint is None and free
-            if is_free:
-                self.bodies.element("freejoint", body.links[link].source)
-            self._write_inertial(index, link, body.links[link])
+            self._open_link(index, body, link, merging, is_free=is_free)
             if joint is not None:
                 self._write_joint(joint, joint_names)
-            shapes = () if self.options.mechanism_only else body.links[link].geometries
-            written = [self.geometries.write(geometry, self.bodies) for geometry in shapes]
-            geoms[link] = tuple(count for count, _ in written)
+            geoms[link], solid = self._write_shapes(body, link, merging)
             parent = None if joint is None else joint.parent
-            solid = any(collides for _, collides in written)
             welds.add(link, parent, moves=is_free or bool(joint_names), solid=solid)
-            pending.append((link, True))
-            if link in children:
-                pending.extend((child, False) for child in sorted(children[link], reverse=True))
+            if link not in merging.carriers:
+                pending.append((link, True))
+            pending.extend((child, False) for child in sorted(merging.children.get(link, ()), reverse=True))
         return tuple(geoms)
 
-    def _open_link(self, body: KinBody, index: int, name: str, joint: Joint | None, moves: bool) -> None:
-        link = body.links[index]
-        if joint is None:
-            pose = link.T_world_link
-        elif moves:
-            pose = joint.T_parent_child
-        elif body.joints:
-            pose = relative_pose(joint, [axis.value for axis in joint.axes])
-        else:  # nothing was placed by joints
-            pose = body.links[joint.parent].T_world_link.inverse() @ link.T_world_link
-        self.bodies.comment(str(link.source), link.source)
-        self.bodies.open("body", link.source, name=name, **pose_attributes(pose))
+    def _write_shapes(self, body: KinBody, link: int, merging: Merging) -> tuple[tuple[int, ...], bool]:
+        """Write the geoms of a link; return the number of each geometry, and whether one of them collides."""
+        if self.options.mechanism_only:
+            return (), False
+        T_body_link = merging.pose(link)
+        shapes = body.links[link].geometries
+        if T_body_link is not UNMOVED:
+            shapes = [replace(shape, T_link_geometry=T_body_link @ shape.T_link_geometry) for shape in shapes]
+        ghost = body.is_robot and not self.options.self_collision
+        written = [self.geometries.write(shape, self.bodies, meets_robots=not ghost) for shape in shapes]
+        if self.options.folder is not None:
+            self.sensors.write_tools(body, link, T_body_link, self.bodies)
+        if self.options.sensors:
+            self.sensors.write_on_link(body, link, T_body_link, self.bodies)
+        return tuple(count for count, _ in written), any(collides for _, collides in written)
 
-    def _write_inertial(self, body_index: int, link_index: int, link: Link) -> None:
+    def _open_link(self, index: int, body: KinBody, link: int, merging: Merging, *, is_free: bool) -> None:
+        """Open the body of a link, or write the site of one that is merged into another."""
+        described, pose = body.links[link], merging.pose_in_parent(link)
+        self.bodies.comment(self._source_text(described.source), described.source)
+        attributes = {"name": merging.names[link], **pose_attributes(pose)}
+        if link in merging.carriers:
+            self.bodies.element("site", described.source, **attributes, group=4)
+            return
+        self.bodies.open("body", described.source, **attributes)
+        if is_free:
+            self.bodies.element("freejoint", described.source)
+        self._write_inertial(index, link, body, merging)
+
+    def _source_text(self, source: Source) -> str:
+        """Return the source of a link for a comment, relative to the folder of the model if that is known."""
+        folder = self.options.folder
+        if folder is None or isinstance(source, Origin) or not os.path.exists(source.file):
+            return str(source)
+        return str(source._replace(file=os.path.relpath(source.file, folder)))
+
+    def _write_inertial(self, body_index: int, link_index: int, body: KinBody, merging: Merging) -> None:
+        link = body.links[link_index]
         inertial = legal_inertial(link.inertial)
         if inertial is not link.inertial:
             self.altered.append((body_index, link_index))
             if replace(link.inertial, com=ZERO) != MASSLESS and not is_rounding(inertial, link.inertial):
-                message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"
+                number = merging.placing.get(link_index)
+                moved = "" if number is None else f", which hangs on joint '{body.all_joints[number].name}'"
+                message = (
+                    f"MuJoCo refuses the mass or inertia of '{link.name}'{moved}; the MJCF has the nearest legal one"
+                )
                 self.diagnostics.warn("raised-inertia", message, link.source)
-        self.bodies.element("inertial", link.source, **inertia_attributes(inertial))
+        self.bodies.element("inertial", link.source, **inertia_attributes(merging.inertial(link_index, inertial)))
 
     def _write_joint(self, joint: Joint, names: tuple[str, ...]) -> None:
-        position = joint.T_parent_child.inverse().apply(joint.anchor)
+        position = joint_position(joint)
         if joint.is_ball and names:
             self.bodies.element("joint", joint.source, name=names[0], type="ball", pos=position)
             return
@@ -346,32 +341,40 @@ class _Writer:
                 name=name,
                 type="slide" if joint.slides(index) else "hinge",
                 pos=position,
-                axis=rotate(conjugate(joint.T_parent_child.wxyz), moving_direction(joint, index)),
+                axis=joint_axis(joint, index),
                 **_range(axis),
                 ref=axis.reference or None,
-                armature=axis.armature if self.options.actuators and axis.armature else None,
+                **(joint_motor(axis) if self.options.actuators else {}),
                 actuatorfrcrange=(-axis.max_torque, axis.max_torque) if axis.max_torque else None,
             )
 
-    def _write_actuators(self, joint: Joint, names: tuple[str, ...], kind: Actuators) -> None:
-        if joint.is_ball and names:
-            message = f"joint '{joint.name}' is spherical, and gets no actuator"
-            self.diagnostics.warn("no-actuator", message, joint.source)
-            return
-        for name, axis in zip(names, joint.axes, strict=False):
-            torque = (-axis.max_torque, axis.max_torque) if axis.max_torque else None
-            limits = None if axis.circular else (axis.lower, axis.upper)
-            speed = (-axis.max_velocity, axis.max_velocity)
-            forms: dict[Actuators, tuple[str, dict[str, Attribute | None]]] = {
-                "torque": ("motor", {"ctrlrange": torque}),
-                "velocity": ("velocity", {"kv": 10.0, "ctrlrange": speed, "forcerange": torque}),
-                "position": ("position", {"kp": 100.0, "kv": 10.0, "ctrlrange": limits, "forcerange": torque}),
-            }
-            tag, attributes = forms[kind]
-            self.actuators.element(tag, joint.source, name=name, joint=name, **attributes)
+    def _write_actuators(self, index: int, body: KinBody, names: tuple[tuple[str, ...], ...]) -> None:
+        gains = self.options.gains[index] if index < len(self.options.gains) else None
+        dof = 0
+        for joint, joint_names in zip(body.joints, names, strict=False):
+            if joint.is_ball and joint_names:
+                warn_of_ball(joint, self.diagnostics)
+            else:
+                for axis, name in enumerate(joint_names):
+                    row = (0.0, 0.0, 0.0) if gains is None else gains.row(dof + axis)
+                    write_actuator(self.actuators, joint, name, axis, self.options.actuators or "torque", row)
+            dof += len(joint.axes)
+
+
+def joint_position(joint: Joint) -> Vec3:
+    """Return the anchor of a joint in the frame of its child, as MJCF has it."""
+    return joint.T_parent_child.inverse().apply(joint.anchor)
+
+
+def joint_axis(joint: Joint, index: int) -> Vec3:
+    """Return the direction of an axis in the frame of the joint's child."""
+    return rotate(conjugate(joint.T_parent_child.wxyz), moving_direction(joint, index))
 
 
 def _range(axis: Axis) -> dict[str, Attribute | None]:
-    if axis.circular or not axis.lower < axis.upper:
+    if axis.circular:
         return {"limited": False}
+    if not axis.lower < axis.upper:  # MuJoCo refuses a range without room
+        room = (axis.upper - _LEAST_ROOM, axis.upper + _LEAST_ROOM)
+        return {"range": room, "solreflimit": _LOCK_SOLREF, "solimplimit": _LOCK_SOLIMP}
     return {"range": (axis.lower, axis.upper)}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj.errors import Diagnostics
-from ravemj.formats.mjcf.lines import Lines
+from ravemj.formats.mjcf.lines import XmlLines
 from ravemj.model.mimic import leaders
 from ravemj.model.scene import Joint
 
@@ -24,16 +24,18 @@ _EXACT = 1e-9
 
 @dataclass(slots=True)
 class EqualityWriter:
-    """Writes the constraints of one body after the other.
+    """Writes the constraints of bodies, one body after the other.
 
     Attributes:
         equalities: The constraints.
-        tendons: The tendons that some of them need.
+        tendons: Their tendons.
+        solref: Time constant [s] and damping ratio of the constraints; None for MuJoCo's.
     """
 
     diagnostics: Diagnostics
-    equalities: Lines
-    tendons: Lines
+    equalities: XmlLines
+    tendons: XmlLines
+    solref: tuple[float, float] | None = None
 
     def write(self, joints: Sequence[Joint], names: Sequence[tuple[str, ...]]) -> None:
         """Write the constraints of a body.
@@ -79,10 +81,12 @@ class EqualityWriter:
             self._drop(joint, "follows a formula without finite values")
             return
         padded = tuple((coefficients + [0.0] * _TERMS)[:_TERMS])
-        self.equalities.element("joint", joint.source, joint1=name, joint2=leader_name, polycoef=padded)
+        self.equalities.element(
+            "joint", joint.source, joint1=name, joint2=leader_name, polycoef=padded, solref=self.solref
+        )
 
     def _coefficients(self, joint: Joint, leader: Joint, expression: "Expression") -> list[float]:
-        """Return the polynomial of a follower: its own, or one fitted over the leader's range."""
+        """Return the polynomial of a follower: its own, or a fit over the leader's range."""
         variable = expression.variables[0]
         exact = expression.polynomial(variable)
         if exact is not None:
@@ -126,13 +130,13 @@ class EqualityWriter:
             self.tendons.element("joint", joint.source, joint=names[index][0], coef=-factor)
         self.tendons.close("fixed")
         offset = (constant - rest, 0.0, 0.0, 0.0, 0.0)
-        self.equalities.element("tendon", joint.source, tendon1=tendon, polycoef=offset)
+        self.equalities.element("tendon", joint.source, tendon1=tendon, polycoef=offset, solref=self.solref)
 
     def _drop(self, joint: Joint, reason: str) -> None:
         self.diagnostics.warn("dropped-mimic", f"joint '{joint.name}' {reason}; it is free there", joint.source)
 
 
 def _without_welds(expression: "Expression", joints: Sequence[Joint], names: Sequence[tuple[str, ...]]) -> "Expression":
-    """Return the expression with constants in place of joints that do not move."""
+    """Return the expression with constants in place of fixed joints."""
     fixed = {f"joint{index}": joints[index].axes[0].value for index in leaders(expression) if not names[index]}
     return expression.with_values(fixed) if fixed else expression

@@ -1,8 +1,8 @@
-"""``<exclude>``: the pairs of links that MuJoCo would test against each other and OpenRAVE never does.
+"""``<exclude>``: the pairs of links that MuJoCo would test for collisions and OpenRAVE does not.
 
-By itself MuJoCo leaves out the links of one weld group, between which it has no joint, and those of a group and the one
-that it hangs on, unless that is the world's. Naming only the others keeps the text small: for a robot or a room of
-furniture it grows with the number of links. Where links that no joints connect can move, each pair of them is named.
+MuJoCo skips pairs within a weld group, whose links no joint separates, and pairs of a group and its parent group,
+except the world's. Naming only the others keeps the text small: its size is linear in the number of links, for a robot
+as for a room of furniture. Only movable links without a joint between them are named pair by pair.
 """
 
 from collections.abc import Iterator, Mapping
@@ -20,12 +20,12 @@ _Cells = dict[int, list[int]]
 
 @dataclass(slots=True)
 class WeldGroups:
-    """The links of a body as MuJoCo's collision detection sees them.
+    """The links of a body by MuJoCo's weld groups.
 
     Attributes:
-        group: For each link the link that leads its weld group, or a negative number for those fixed to the world.
-        carrier: For each moving group the one that it hangs on.
-        solid: Links with shapes that collide.
+        group: For each link the first link of its weld group; negative for links fixed to the world.
+        carrier: For each moving group its parent group.
+        solid: Links with collision geometry.
     """
 
     group: dict[int, int] = field(default_factory=lambda: {})
@@ -33,13 +33,13 @@ class WeldGroups:
     solid: list[int] = field(default_factory=lambda: [])
 
     def add(self, link: int, parent: int | None, *, moves: bool, solid: bool) -> None:
-        """Add a link behind its parent.
+        """Add a link after its parent.
 
         Args:
             link: Its index.
-            parent: That of the link that it hangs on, or None for the world.
-            moves: Whether a MuJoCo joint is between the two.
-            solid: Whether it has shapes that collide.
+            parent: Index of its parent link, or None for the world.
+            moves: Whether a MuJoCo joint connects the two.
+            solid: Whether it has collision geometry.
         """
         carrier = _WORLD if parent is None else self.group[parent]
         self.group[link] = link if moves else carrier
@@ -57,7 +57,7 @@ class WeldGroups:
         return self.carrier[first] != second and self.carrier[second] != first
 
     def tested_pairs(self, first: Mapping[int, list[int]], second: Mapping[int, list[int]]) -> Iterator[Pair]:
-        """Yield the pairs of one link each that MuJoCo tests, of links sorted by group."""
+        """Yield the pairs of a link of each collection that MuJoCo tests; links are sorted by group."""
         for one, other in product(first, second):
             if self.are_tested(one, other):
                 for link, partner in product(first[one], second[other]):
@@ -65,11 +65,11 @@ class WeldGroups:
 
 
 def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
-    """Return the pairs of links that MuJoCo has to be told not to test.
+    """Return the pairs of links to be excluded from MuJoCo's collision tests.
 
     Args:
         body: The body.
-        welds: Where its links are in MuJoCo's tree.
+        welds: The weld groups of its links.
 
     Returns:
         Pairs of link indices, the smaller one first, sorted.

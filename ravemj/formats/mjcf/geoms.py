@@ -3,30 +3,37 @@
 from ravemj.core.transforms import Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats.meshes import collision_form
-from ravemj.formats.mjcf.lines import Attribute, Lines, attribute_text, pose_attributes
+from ravemj.formats.mjcf.lines import Attribute, XmlLines, attribute_text, pose_attributes
 from ravemj.model.scene import Geometry, Mesh, Rgb, Solid, Surface
 
 SMALLEST_SIZE = 1e-10
-"""The least size [m] that is written; MuJoCo wants it positive."""
+"""Least written size [m], since MuJoCo requires positive sizes."""
 
 
-class GeomWriter:
-    """Writes geoms and collects the meshes that they need.
+class MjcfGeomWriter:
+    """Writes geoms and collects their meshes.
 
     Attributes:
         meshes: The meshes, by the name of their files.
         lines: The elements that declare them.
     """
 
-    def __init__(self, diagnostics: Diagnostics, *, decomposed: bool) -> None:
+    def __init__(self, diagnostics: Diagnostics, *, decomposed: bool = False, hull_vertices: int | None = None) -> None:
+        """Start without geoms; ``hull_vertices`` limits the number of vertices of a hull."""
         self.diagnostics = diagnostics
         self.meshes: dict[str, Mesh] = {}
-        self.lines = Lines(2)
+        self.lines = XmlLines(2)
         self._decomposed = decomposed
+        self._hull_vertices = hull_vertices
+        self._masks: dict[str, Attribute | None] = {}
         self._written = 0
 
-    def write(self, geometry: Geometry, out: Lines) -> tuple[int, bool]:
-        """Write the geoms of a geometry; return how many there are, and whether one of them collides."""
+    def write(self, geometry: Geometry, out: XmlLines, *, meets_robots: bool = True) -> tuple[int, bool]:
+        """Write the geoms of a geometry; return their number, and whether one of them collides.
+
+        Without ``meets_robots`` they collide only with geoms that have MuJoCo's default masks.
+        """
+        self._masks = {} if meets_robots else {"contype": 2, "conaffinity": 1}
         before = self._written
         seen = geometry.visible and geometry.display is None
         solids = geometry.shape.solids()
@@ -37,7 +44,7 @@ class GeomWriter:
             self._write_mesh_geom(geometry, surface.mesh, "visual", surface, out)
         return self._written - before, collides
 
-    def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
+    def _write_solid(self, geometry: Geometry, solid: Solid, out: XmlLines, *, seen: bool) -> None:
         kind, size, centre = solid
         legal = size
         if min(size) < SMALLEST_SIZE:
@@ -50,14 +57,15 @@ class GeomWriter:
             "geom",
             geometry.source,
             **{"class": None if seen else "collision"},
+            **self._masks,
             type=kind,
             size=legal,
             **pose_attributes(pose),
             rgba=rgba(geometry.diffuse, geometry.transparency),
         )
 
-    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> bool:
-        """Write a mesh that is seen and collides: once for both, where one geom can do both."""
+    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: XmlLines, *, seen: bool) -> bool:
+        """Write a mesh for display and collision, in one geom if possible."""
         hulls = self._hulls(geometry, mesh)
         both = seen and hulls == (mesh,)
         if seen:
@@ -68,7 +76,7 @@ class GeomWriter:
         return bool(hulls)
 
     def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
-        """Return the meshes whose convex hulls collide in place of a mesh."""
+        """Return the meshes whose convex hulls replace a mesh in collisions."""
         form = collision_form(mesh)
         if form == "visual":
             message = "the mesh is flat and has no convex hull; it is drawn and does not collide"
@@ -81,28 +89,34 @@ class GeomWriter:
         if not self._decomposed:
             return (mesh,)
         from ravemj.formats.meshes.decomposition import decompose  # noqa: PLC0415 - rarely wanted
+        from ravemj.formats.meshes.obj import as_written  # noqa: PLC0415 - most models have no meshes
 
-        return decompose(mesh)
+        written = as_written(mesh)  # so that the pieces are the same when the model is read again
+        pieces = decompose(written)
+        return (mesh,) if pieces == (written,) else pieces
 
     def _write_mesh_geom(
-        self, geometry: Geometry, mesh: Mesh, role: str | None, look: Geometry | Surface, out: Lines
+        self, geometry: Geometry, mesh: Mesh, role: str | None, look: Geometry | Surface, out: XmlLines
     ) -> None:
-        name = self._mesh_name(mesh)
+        name = self.mesh_name(mesh)
         if name is not None:
             self._written += 1
-            attributes: dict[str, Attribute | None] = {"class": role, "type": "mesh", "mesh": name}
+            masks = {} if role == "visual" else self._masks
+            attributes: dict[str, Attribute | None] = {"class": role, **masks, "type": "mesh", "mesh": name}
             attributes |= pose_attributes(geometry.T_link_geometry)
             out.element("geom", geometry.source, **attributes, rgba=rgba(look.diffuse, look.transparency))
 
-    def _mesh_name(self, mesh: Mesh) -> str | None:
-        """Return the name of a mesh, declared when it is met first; None for one that MuJoCo cannot load."""
-        name = f"mesh-{mesh.digest[:16]}"
+    def mesh_name(self, mesh: Mesh) -> str | None:
+        """Return the name of a mesh, declaring it on first use; None if MuJoCo cannot load it."""
+        from ravemj.formats.meshes.obj import written_name  # noqa: PLC0415 - most models have no meshes
+
+        if collision_form(mesh) == "none":
+            return None
+        name = written_name(mesh)
         file = f"{name}.obj"
         if file not in self.meshes:
-            if collision_form(mesh) == "none":
-                return None
             self.meshes[file] = mesh
-            self.lines.element("mesh", name=name, file=file, inertia="shell")
+            self.lines.element("mesh", name=name, file=file, inertia="shell", maxhullvert=self._hull_vertices)
         return name
 
 

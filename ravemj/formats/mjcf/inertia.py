@@ -9,15 +9,15 @@ from ravemj.formats.mjcf.lines import Attribute
 from ravemj.model.scene import Inertial
 
 SMALLEST = 1e-10
-"""The least mass [kg] and moment of inertia [kg m^2] that is written; MuJoCo wants them positive."""
+"""Least written mass [kg] and moment of inertia [kg m^2], since MuJoCo requires positive values."""
 
 
 _ROUNDING = 1e-11
-"""How far, relative to the largest, moments stay from the edge: MuJoCo computes them anew from the tensor."""
+"""Relative margin of the moments from the triangle inequality: MuJoCo recomputes them from the tensor."""
 
 
 def is_rounding(legal: Inertial, given: Inertial) -> bool:
-    """Return whether mass properties differ by no more than rounding."""
+    """Return whether two mass properties differ only by rounding."""
     inertia = np.array(given.inertia)
     if not np.isfinite(inertia).all():
         return False
@@ -46,8 +46,8 @@ def legal_inertial(inertial: Inertial) -> Inertial:
 def _nearest(small: float, middle: float, large: float) -> Vec3:
     """Return the nearest moments, in the least-squares sense, of which none is larger than the sum of the others.
 
-    They are the projection onto the plane where the largest is that sum; if that is no solution either, onto the edge
-    of the allowed cone, where the smallest is 0 and the others are equal.
+    They are the projection onto the plane on which the largest is that sum or, if that is infeasible, onto the edge
+    of the feasible cone, on which the smallest is 0 and the others are equal.
     """
     excess = (large - small - middle) / 3
     if excess <= 0:

@@ -1,4 +1,4 @@
-"""Lines of XML, each with the place in the user's file that it comes from."""
+"""Lines of XML, each with its source in the user's file."""
 
 import functools
 import re
@@ -15,12 +15,12 @@ _ESCAPES = str.maketrans(
 _ESCAPED = frozenset(map(chr, _ESCAPES))
 
 
-class Lines:
+class XmlLines:
     """An XML text under construction, one element a line.
 
     Attributes:
         text: The lines.
-        sources: For each line where it comes from, or None.
+        sources: For each line its source, or None.
     """
 
     def __init__(self, indent: int = 0) -> None:
@@ -31,6 +31,11 @@ class Lines:
     def element(self, tag: str, source: Source | None = None, /, **attributes: Attribute | None) -> None:
         """Write an element without children; attributes that are None are left out."""
         self._line(f"<{tag}{_attributes(attributes)}/>", source)
+
+    def text_element(self, name: str, data: str) -> None:
+        """Write a ``<text>`` of ``<custom>``, in apostrophes, since JSON is full of quotation marks."""
+        quoted = attribute_text(data.replace('"', "\0")).replace("\0", '"').replace("'", "&apos;")
+        self._line(f"<text name=\"{attribute_text(name)}\" data='{quoted}'/>", None)
 
     def open(self, tag: str, source: Source | None = None, /, **attributes: Attribute | None) -> None:
         """Write a start tag."""
@@ -46,8 +51,8 @@ class Lines:
         """Write a comment."""
         self._line(f"<!-- {comment_text(text)} -->", source)
 
-    def section(self, tag: str, content: "Lines") -> None:
-        """Write a section with lines that were made apart, unless there are none."""
+    def section(self, tag: str, content: "XmlLines") -> None:
+        """Write a section with given content, unless it is empty."""
         if content.text:
             self.open(tag)
             self.text += content.text
@@ -60,14 +65,14 @@ class Lines:
 
 
 def comment_text(text: str) -> str:
-    """Return a text as it may stand in a comment: in one line, without two dashes in a row."""
+    """Return a text that is valid in a comment: in one line, without two dashes in a row."""
     if not text.isprintable():
         text = "".join(character if character.isprintable() else "?" for character in text)
     return re.sub("-(?=-)", "- ", text) if "--" in text else text
 
 
 def pose_attributes(pose: Pose) -> dict[str, Attribute]:
-    """Return ``pos`` and ``quat`` of a pose; a part that does nothing is left out."""
+    """Return ``pos`` and ``quat`` of a pose; an identity part is left out."""
     attributes: dict[str, Attribute] = {}
     position, wxyz = pose
     if position != ZERO:

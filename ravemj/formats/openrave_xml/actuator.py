@@ -92,7 +92,7 @@ def read_motor(element: Element, context: Context) -> Motor:
 
 
 def motor_of(numbers: Mapping[str, float]) -> Motor:
-    """Return the motor behind its gear; what the numbers leave out is 0."""
+    """Return the motor behind its gear; missing numbers are 0."""
     gear_ratio = numbers.get("gear_ratio", 0.0)
     inertia = numbers.get("rotor_inertia", 0.0) * gear_ratio**2
     limits = (numbers.get(name, 0.0) for name in ("max_instantaneous_torque", "nominal_torque"))

@@ -20,7 +20,7 @@ from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
 _MOST_ABOVE = 4
-"""Folders above a file in which what it names is looked for: robots in repositories lie no deeper."""
+"""Number of parent folders of a file searched for its references; repositories are not nested deeper."""
 FLAGS = {"enable", "circular", "render", "modifiable", "selfcollision", "skipgeometry"}
 """Attributes that are true or false, of any element."""
 PARAMETER_ATTRIBUTES = {"name": "what scripts ask for", "type": "floats, integers or text"}
@@ -30,7 +30,9 @@ _LONGEST_NAME = 80
 
 def uncomputable(element: Element) -> SourceError:
     """Return the error for an element whose numbers overflow."""
-    return SourceError(f"a number in this <{element.spelled}> is too large to compute with", element.source)
+    return SourceError(
+        f"a number in this <{element.spelled}> is too large or too small to compute with", element.source
+    )
 
 
 class Context:
@@ -98,7 +100,7 @@ class Context:
         self.diagnostics.warn("ignored-tag", f"<{element.spelled}> is left out: {reason}", element.source)
 
     def check_attributes(self, element: Element, known: Mapping[str, str], ignored: Mapping[str, str]) -> None:
-        """Report the attributes of an element that nothing reads; the tables give meanings and reasons."""
+        """Report unknown and ignored attributes of an element; the tables give meanings of known ones and reasons."""
         element.checked = True
         for name, text in element.attributes.items():
             if name in FLAGS and not is_true(text) and not is_false(text):
@@ -217,7 +219,7 @@ class Context:
     def mesh(
         self, name: str, source: Source, *folders: str, scale: Vec3 = UNSCALED, ros: bool = False
     ) -> tuple[MeshPart, ...]:
-        """Return the triangles of a mesh file; none, with a warning, where it is missing or broken.
+        """Return the triangles of a mesh file; none, with a warning, if it is missing or broken.
 
         The parts are the same objects at every use with the same scale. ``ros`` is as for ``read_mesh``.
         """
@@ -308,7 +310,7 @@ _HOMES = {
 
 
 def _belongs(element: Element) -> str:
-    """Return a hint for an element that stands in the wrong place, or nothing."""
+    """Return a hint for a misplaced element, or an empty text."""
     home = _HOMES.get(element.tag)
     return "" if home is None else f"<{element.spelled}> belongs in <{home}>"
 

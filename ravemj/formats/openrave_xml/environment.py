@@ -107,7 +107,7 @@ def read(
 
 
 class _Document:
-    """The bodies, the sensors and the view of a file, as far as it is read."""
+    """The bodies, the sensors and the view read from a file so far."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -138,7 +138,8 @@ class _Document:
             _EnvironmentScope(self).read_interface(root)
         else:
             if root.tag == "mujoco":
-                raise _other_format("MJCF, MuJoCo's own format", root.source)
+                message = "MJCF is read from a file of its own, and not as a part of OpenRAVE's XML"
+                raise SourceError(message, root.source, "load it in addition")
             raise SourceError(
                 f"the root element is <{root.spelled}>, and OpenRAVE expects <Environment>, <Robot> or <KinBody>",
                 root.source,
@@ -160,7 +161,7 @@ class _Document:
                 self.read_environment(child)
 
     def read_body(self, element: Element) -> None:
-        """Read a body and give it its place among the others."""
+        """Read a body and append it to the bodies."""
         try:
             body, refusal = read_body(element, self.context)
         except ArithmeticError as error:
@@ -196,13 +197,6 @@ class _Document:
         if (kind, name) in self._names:
             raise SourceError(f"there already is a {kind} '{name}'", element.source, "give it another name")
         self._names.add((kind, name))
-
-
-def _other_format(name: str, source: Source) -> SourceError:
-    hint = f"MuJoCo opens it: mujoco.MjModel.from_xml_path, or python -m mujoco.viewer --mjcf={source.file}"
-    return SourceError(
-        f"this is {name}, which ravemj does not read: it reads OpenRAVE's XML, COLLADA and URDF", source, hint
-    )
 
 
 class _EnvironmentScope:
@@ -318,6 +312,9 @@ def check_name(name: str, element: Element) -> None:
         UnnamedError: the name is empty.
         SourceError: it has spaces or control characters.
     """
+    if not name and "file" in element.attributes:
+        message = f"<{element.spelled}> has no name, and its file '{element.attributes['file']}' gives none"
+        raise UnnamedError(message, element.source, 'check the path, or write name="…"')
     if not name:
         raise UnnamedError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
     if " " in name or not name.isprintable():  # other spaces than this one are not printable

@@ -43,10 +43,10 @@ _REDDISH = replace(_NO_PART, diffuse=(1.0, 0.5, 0.5), ambient=(0.1, 0.0, 0.0))
 
 
 class GeometryScope(NamedTuple):
-    """What a Geom inherits from the elements around it.
+    """Properties that a ``<Geom>`` inherits from its ancestors.
 
     Attributes:
-        models_folder: Where meshes are looked for first, or None.
+        models_folder: Folder to search for meshes first, or None.
         scale: Accumulated ``scalegeometry``; it acts on meshes alone, in the axes of the link.
     """
 
@@ -77,11 +77,11 @@ class _Geom(Placed):
         self.vectors["half_extents"] = scale(self.vectors["half_extents"], 0.5)
 
     def read_number(self, element: Element) -> None:
-        """Read a size that is called like its tag."""
+        """Read a size with the same name as its tag."""
         self.numbers[element.tag] = number(element, self.context.diagnostics, self.numbers.get(element.tag, 0.0))
 
     def read_vector(self, element: Element) -> None:
-        """Read a size in three directions that is called like its tag."""
+        """Read a three-dimensional size with the same name as its tag."""
         self.vectors[element.tag] = vector(element, self.context.diagnostics, self.vectors.get(element.tag, ZERO))
 
     def read_cross_section(self, element: Element) -> None:
@@ -106,7 +106,7 @@ class _Geom(Placed):
         self.render = self._first(self.render, element)
 
     def _first(self, before: MeshFile | None, element: Element) -> MeshFile:
-        """Return the file that was named before, if any, and else that of an element."""
+        """Return the previous file, if any, else that of an element."""
         self.context.check_attributes(element, {} if element.tag == "data" else MESH_ATTRIBUTES, {})
         if before is None or not before.name:
             return _mesh_file(element, self.context.diagnostics)
@@ -209,7 +209,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 
 
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
-    """Return what OpenRAVE makes of a file that is not there: nothing (gap-71), of an absolute path a mesh (gap-72)."""
+    """Return OpenRAVE's parts of a missing file: none (gap-71), for most absolute paths a reddish one (gap-72)."""
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()
     return (_REDDISH,)
@@ -245,7 +245,7 @@ def _geometry(
 
 
 def _surfaces(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> tuple[Surface, ...] | None:
-    """Return what a render file draws in place of the shape; None without one that can be drawn."""
+    """Return the display surfaces of a render file; None if it has none."""
     parts = _parts(geom, file, element, scope)
     if not parts:
         return None
@@ -267,14 +267,14 @@ def _parts(geom: _Geom, file: MeshFile | None, element: Element, scope: Geometry
 
 
 def _found(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> MeshFile | None:
-    """Return a mesh file with its path; None where it has no part."""
+    """Return a mesh file with its path; None if it has no parts."""
     if file is None or not _parts(geom, file, element, scope):
         return None
     return file._replace(name=geom.context.find(file.name, element.source, *_folders(element, scope)) or file.name)
 
 
 def _folders(element: Element, scope: GeometryScope) -> list[str]:
-    """Return where meshes are looked for first."""
+    """Return the folders to search for meshes first."""
     folder = scope.models_folder
     return [] if folder is None else [os.path.join(os.path.dirname(element.source.file), folder)]
 

@@ -1,7 +1,7 @@
-"""What a caller gives with a file: attributes like those of the element of a body.
+"""Attributes that a caller passes with a file, like those of a body's element.
 
-They act on top of what the file says: a name replaces its name, a prefix goes before its names, factors of lengths
-multiply. OpenRAVE looks at them where the root of the file is a body, and not below an ``<Environment>``.
+They are applied after those of the file: a name replaces its name, a prefix is put before its names, scale factors are
+multiplied. OpenRAVE considers them if the root of the file is a body, and not inside an ``<Environment>``.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -24,7 +24,7 @@ KNOWN = {"name", "prefix", "scalegeometry", "skipgeometry"}
 
 
 def check_given(given: Attributes, source: Source, context: Context, known: Collection[str] = KNOWN) -> None:
-    """Report what is left out of the attributes that a caller gave."""
+    """Report ignored attributes of a caller."""
     for name in given:
         if name in KNOWN and name not in known:
             message = f"the attribute '{name}' that was given for the file is left out: its root is not a body"
@@ -75,7 +75,7 @@ def given_scale(given: Attributes) -> Vec3:
 
 
 def give(given: Attributes, bodies: Sequence[BodyBuilder]) -> None:
-    """Name the first of some bodies, prefix and strip all of them, as a caller asked; the scale is in them already."""
+    """Apply name, prefix and removal of shapes that a caller passed to bodies; the scale is applied already."""
     for body in bodies:
         add_prefix(given.get("prefix", ""), body, Marks(), whole=True)
         if is_true(given.get("skipgeometry", "")):

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from ravemj.core.transforms import ZERO, Pose, Vec3, rotate, scale
+from ravemj.core.transforms import ZERO, Pose, Vec3, not_subnormal, rotate, scale
 from ravemj.errors import SourceError
 from ravemj.formats.openrave_xml.actuator import Motor, read_motor
 from ravemj.formats.openrave_xml.context import Context
@@ -80,14 +80,14 @@ class _JointReader:
             message = f"<{element.spelled}> has no effect on a joint of type {self.kind}"
             self.context.diagnostics.warn("ignored-tag", message, element.source)
             return
-        x, y, z = vector(element, self.context.diagnostics, self.directions.get(index, ZERO))
-        length = math.hypot(x, y, z)
+        axis = not_subnormal(vector(element, self.context.diagnostics, self.directions.get(index, ZERO)))
+        length = math.hypot(*axis)
         if length == 0.0:  # errors-27
             raise SourceError("the axis of a joint cannot be 0 0 0", element.source)
-        self.directions[index] = scale((x, y, z), 1 / length)
+        self.directions[index] = scale(axis, 1 / length)
 
     def read_limits(self, element: Element) -> None:
-        """Read a pair of numbers for each axis; ``limitsdeg`` is in degrees but for sliders."""
+        """Read a pair of limits for each axis; ``limitsdeg`` is in degrees, except for prismatic axes."""
         if self.stops:  # errors-31
             raise SourceError(f"<{element.spelled}> cannot be mixed with <lostop> and <histop>", element.source)
         values = number_list(element, self.context.diagnostics)
@@ -266,7 +266,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
 
 
 def _direction(reader: _JointReader, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
-    """Return an axis in the first link's frame; where it is not given, what OpenRAVE takes, whatever the order.
+    """Return an axis in the first link's frame; if it is not given, OpenRAVE's default for any order of links.
 
     That is z of the first link (errors-26); a slider without an axis does not move.
     """

@@ -11,7 +11,7 @@ from ravemj.formats.openrave_xml.joint import OTHER_NUMBERS
 from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.parameters import write_parameters
 from ravemj.formats.xml_text import XmlText
-from ravemj.model.joints import poses_at, rests
+from ravemj.model.joints import poses_at, rests, turns_about_z_of_child
 from ravemj.model.limits import clamp
 from ravemj.model.scene import Axis, Joint, JointKind, KinBody, Mimic
 
@@ -31,13 +31,13 @@ def listed_poses(body: KinBody) -> list[Pose]:
 
 
 def needs_values(body: KinBody) -> bool:
-    """Tell whether joints are elsewhere than their ``<initial>`` values and limits say."""
+    """Return whether a joint value differs from the ``<initial>`` one, clamped to the limits."""
     axes = (axis for joint in body.joints if not joint.static for axis in joint.axes)
     return any(axis.value != clamp(axis, axis.reference) for axis in axes)
 
 
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
-    """Return the value at the listed poses; a joint that neither has DOFs nor follows others stays where it is."""
+    """Return the value at the listed poses; a joint without DOFs and mimic equation keeps its value."""
     return axis.value if rests(body, index) else axis.reference
 
 
@@ -108,12 +108,12 @@ class JointWriter:
 
     def _check_weld(self, joint: Joint) -> None:
         """Warn of a weld with another axis than OpenRAVE gives those of XML files: the z axis of the child."""
-        if math.dist(joint.axes[0].direction, rotate(joint.T_parent_child.wxyz, _Z)) > _NEAR:
+        if not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in OpenRAVE XML it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _slider_frame(self, joint: Joint) -> int:
-        """Return the link whose origin is the anchor of a slider, its parent where neither is."""
+        """Return the link whose origin is the anchor of a slider; by default its parent."""
         parent, child = self._poses[joint.parent], self._poses[joint.child]
         anchor = parent.apply(joint.anchor)
         near = [math.dist(link.position, anchor) < _NEAR for link in (parent, child)]

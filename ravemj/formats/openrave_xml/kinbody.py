@@ -58,6 +58,7 @@ class _Scope(Placed):
         first_link = len(self.body.links)
         if "file" in element.attributes:
             self._include(element)
+        self._join_links(element)
         marks = Marks.of(self.body)
         tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
@@ -71,15 +72,13 @@ class _Scope(Placed):
         if element.tag == "robot":
             self.body.manipulators = youngest_first(self.body.manipulators, marks.manipulators)
             self.body.sensors = youngest_first(self.body.sensors, marks.sensors)
-        else:
-            self._join_links(element)
         if self.placement.moves:
             T_outer_scope = self.placement.pose
             for link in self.body.links[first_link:]:
                 link.pose = T_outer_scope @ link.pose
 
     def _include(self, element: Element) -> None:
-        """Read the file of an element as if it stood inside an element like it."""
+        """Read the file of an element like a nested element of the same kind."""
         name = element.attributes["file"]
         if is_mesh(name):
             path = self.context.find(name, element.source)
@@ -99,6 +98,7 @@ class _Scope(Placed):
             add_urdf(self.body, root, element, self.context, skip_geometry=self.skip_geometry)
             add_prefix(element.attributes.get("prefix", ""), self.body, marks, whole=True)
             return
+        self.body.source = root.source if self.depth == 0 else self.body.source
         attributes = {key: value for key, value in element.attributes.items() if key != "file"}
         wrapper = Element(element.tag, element.spelled, attributes, root.source, children=[root], complete=True)
         inner = _Scope(self.body, self.context, self.scale, self.depth + 1, skip_geometry=self.skip_geometry)
@@ -112,10 +112,12 @@ class _Scope(Placed):
             self.body.set_parts(before)
 
     def _join_links(self, element: Element) -> None:
-        """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides.
+        """Decide whether joined links are adjacent, by a whole number; the last KinBody to open decides.
 
-        See gap-17, gap-18 and gap-19.
+        An element that includes a file opens after the root of the file. See gap-17, gap-18 and gap-19.
         """
+        if element.tag == "robot":
+            return
         text = element.attributes.get("makejoinedlinksadjacent")
         values, rest = Numbers([1.0], "") if text is None else leading_numbers(text)
         self.body.joined_links_adjacent = bool(values and int(values[0]))

@@ -69,7 +69,7 @@ class _LinkScope(Placed):
         return pose if self.T_scope_offset is None else self.T_scope_offset @ pose
 
     def read_nested(self, element: Element) -> None:
-        """Read a ``<Body>`` in this one: the same link, all of whose shapes so far its transform moves."""
+        """Read a nested ``<Body>``: it extends the same link, and its transform moves all shapes of the link so far."""
         older = len(self.link.geometries)
         geometry_scope = _scaled(self.geometry_scope, element, self.context.diagnostics)
         inner = _LinkScope(
@@ -158,6 +158,7 @@ def read_link(
         )
         context.diagnostics.warn("openrave-bug", message, element.source, "repeat the <Mass>, or write it here only")
     link.inertial = inertial
+    _check_density(link, rule, element, context)
     if rule is not None and rule.by_total and rule.total and not link.inertial.mass:
         number = "NaN, as in OpenRAVE, and computed with as 0" if link.inertial.undefined else "0"
         message = f"link '{link.name}' has no shape with a volume: its mimicgeom mass is {number}, not {rule.total:g}"
@@ -179,3 +180,12 @@ def _scaled(scope: GeometryScope, element: Element, diagnostics: Diagnostics) ->
     if "scalegeometry" not in element.attributes:
         return scope
     return scope._replace(scale=hadamard(scope.scale, scale_attribute(element, diagnostics)))
+
+
+def _check_density(link: LinkBuilder, rule: MassRule | None, element: Element, context: Context) -> None:
+    """Warn of a density without effect, since no shape of the link has a volume."""
+    fills = rule is not None and rule.kind == "mimicgeom" and not rule.by_total and rule.density > 0
+    if fills and link.geometries and not link.inertial.mass:
+        message = f"link '{link.name}' weighs nothing: no shape of it has a volume that its density could fill"
+        hint = "close the mesh, or write the mass as type custom"
+        context.diagnostics.warn("no-volume", message, element.source, hint)

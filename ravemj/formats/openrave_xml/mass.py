@@ -113,7 +113,7 @@ MASS_TAGS: dict[str, Tag[_Mass]] = {
 
 
 def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: Context) -> MassRule:
-    """Read a ``<Mass>`` of a Body into the rule before it, or into a new one; what it leaves out keeps its value."""
+    """Read a ``<Mass>`` of a Body and update the previous rule, or a new one; omitted values do not change."""
     context.check_attributes(element, MASS_ATTRIBUTES, {})
     kind = element.attributes.get("type", "sphere").lower()
     if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
@@ -131,7 +131,7 @@ def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: C
 
 @dataclass(slots=True)
 class DefaultMass:
-    """What the ``<Mass>`` elements of a KinBody say about the Bodies that follow."""
+    """Default mass of following Bodies, from the ``<Mass>`` elements of a KinBody."""
 
     context: Context
     kind: str = ""  # before the first
@@ -140,7 +140,7 @@ class DefaultMass:
     half_extents: Vec3 = UNSCALED
 
     def rule(self) -> MassRule | None:
-        """Return what a Body starts from, or None before the first ``<Mass>``."""
+        """Return the initial mass rule of a Body, or None before the first ``<Mass>``."""
         by_total = self.is_total and self.kind != "mimicgeom"
         return MassRule(self.kind, self.number, self.number, by_total, self.half_extents) if self.kind else None
 

@@ -22,9 +22,9 @@ def add_collada(
 
     Args:
         body: The body.
-        uri: The file, and behind ``#`` the id of what is wanted of it.
-        source: Where the file is named.
-        context: Takes findings.
+        uri: The file, optionally with ``#`` and the id of the body.
+        source: Source of the reference.
+        context: Receives diagnostics.
         scale: Factors of lengths along x, y and z.
         skip_geometry: Whether the shapes are left out.
     """
@@ -49,6 +49,7 @@ def add_collada(
         context.diagnostics.error("broken-file", error.message, error.source)
         return
     body.name = found.name
+    body.source = body.source if body.links else Source(path, 0, source)
     for link, at_values in zip(found.links, placed.links, strict=True):
         link.pose = at_values.T_world_link
         if skip_geometry:
@@ -94,7 +95,7 @@ def uniform(scale: Vec3, source: Source, context: Context) -> float:
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:
-    """Add one body to another; links of one name become one, and the first such link says where the body goes."""
+    """Merge one body into another; links with equal names are merged, and the first such link fixes the pose."""
     places = [body.find_link(link.name) for link in other.links]
     T_body_other = Pose()
     if places[0] is not None:

@@ -1,4 +1,4 @@
-"""The parts of a body that were made since some moment: prefixes of their names, and their order."""
+"""Prefixing and ordering of the parts that were added to a body since some moment."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,7 +12,7 @@ Part = TypeVar("Part")
 
 
 class Marks(NamedTuple):
-    """The parts of a body at some moment: how many, or where they change their order, which."""
+    """A snapshot of a body's parts: their number or, if their order may change, the parts."""
 
     links: int = 0
     joints: int = 0
@@ -21,7 +21,7 @@ class Marks(NamedTuple):
 
     @classmethod
     def of(cls, body: BodyBuilder) -> "Marks":
-        """Return the marks of the present moment."""
+        """Take a snapshot of a body's present parts."""
         return cls(len(body.links), len(body.joints), tuple(body.manipulators), tuple(body.sensors))
 
 
@@ -66,9 +66,9 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
 
 
 def youngest_first(parts: list[Part], older: Sequence[Part]) -> list[Part]:
-    """Return the parts that are new, the last one first, and then the older ones (gap-44, gap-45).
+    """Return the new parts in reverse order, followed by the older ones (gap-44, gap-45).
 
-    Without older ones the order stays (gap-43), and so does that of parts of a COLLADA file (gap-75).
+    Without older ones the order is kept (gap-43), and so is that of parts of a COLLADA file (gap-75).
     """
     return [*reversed(_newer(parts, older)), *older] if older else parts
 

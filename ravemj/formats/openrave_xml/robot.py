@@ -12,7 +12,7 @@ from ravemj.model.scene import AttachedSensor
 
 
 def named_link(body: BodyBuilder, element: Element, owner: str, context: Context) -> str:
-    """Return the name of a link. One that is not there yet is an error, though it may be there in the end (gap-29)."""
+    """Return the name of a link. It must exist already, although the file may define it later (gap-29)."""
     name = word(element, context.diagnostics)
     if body.find_link(name) is None:
         message = f"there is no Body '{name}' for the <{element.spelled}> of {owner}"
@@ -43,6 +43,9 @@ class _ManipulatorScope(Placed):
     def read_closing(self, element: Element) -> None:
         self.built.closing_direction = number_list(element, self.context.diagnostics)
 
+    def read_ik_solver(self, element: Element) -> None:
+        self.built.ik_solver = " ".join(words(element.text))
+
     def read_direction(self, element: Element) -> None:
         self.built.direction = vector(element, self.context.diagnostics)
 
@@ -57,12 +60,12 @@ MANIPULATOR_TAGS: dict[str, Tag[_ManipulatorScope]] = {
     "closingdir": Tag(_ManipulatorScope.read_closing, "the same as closingdirection", once=True),
     "chuckingdirection": Tag(_ManipulatorScope.read_closing, "the same as closingdirection", once=True),
     "direction": Tag(_ManipulatorScope.read_direction, "where the tool points: x y z", once=True),
+    "iksolver": Tag(_ManipulatorScope.read_ik_solver, "its solver of inverse kinematics, and steps of free joints"),
     "palmdirection": Tag(_ManipulatorScope.read_direction, "the same as direction", once=True),
 }
 MANIPULATOR_ATTRIBUTES = {"name": "name of the manipulator"}
 MANIPULATOR_IGNORED = {
     "armjoints": "OpenRAVE finds the arm's joints by itself, between base and effector",
-    "iksolver": NO_EFFECT_HERE,
 }
 
 

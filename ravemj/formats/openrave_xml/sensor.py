@@ -1,4 +1,4 @@
-"""``<Sensor>``: the kind of a sensor and what is fixed about it."""
+"""``<Sensor>``: the type of a sensor and its fixed properties."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -23,14 +23,14 @@ from ravemj.model.scene import (
 
 
 class SensorElement(NamedTuple):
-    """What a ``<Sensor>`` says.
+    """A parsed ``<Sensor>``.
 
     Attributes:
         type: OpenRAVE's name of its kind, or None for a frame without a device.
-        device: What is fixed about it.
+        device: Its fixed properties.
         is_on: Whether it measures from the start.
         color: Colour in which viewers draw it.
-        pose: Where it says that it is; of one on a robot the ``<AttachedSensor>`` says it.
+        pose: Its own pose; for a sensor on a robot the pose of the ``<AttachedSensor>`` counts.
         name: Its name.
     """
 
@@ -92,13 +92,13 @@ _IN_FILE = dict.fromkeys(
 
 
 def device_tags(kind: SensorKind) -> Mapping[str, Tag[_Sensor]]:
-    """Return the table of what only a kind of sensor has."""
+    """Return the tags specific to a kind of sensor."""
     shared = sensor_tags(kind.device).items()
     return {name.lower(): Tag(partial(_Sensor.describe, tag=tag), tag.meaning) for name, tag in shared}
 
 
 def device_ignored(kind: SensorKind) -> Mapping[str, str]:
-    """Return what only a kind of sensor has and is left out, and why."""
+    """Return the ignored tags specific to a kind of sensor, with reasons."""
     return _CAMERA_IGNORED if isinstance(kind.device, Intrinsics) else {}
 
 
@@ -108,7 +108,7 @@ def read_device(element: Element, context: Context) -> SensorElement:
 
 
 def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
-    """Read a ``<Sensor>`` that no robot carries; None, with an error, where it is of no known kind."""
+    """Read a ``<Sensor>`` that no robot carries; None, with an error, if its type is unknown."""
     found = _read(element, context, PLACEMENT_TAGS, {})
     if found.device is None:
         if "type" not in element.attributes:

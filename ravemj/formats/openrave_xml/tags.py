@@ -1,4 +1,4 @@
-"""Tables of tags: what the reader does with each tag, and what the tag means.
+"""Tables of tags: the reader function and the meaning of each tag.
 
 The same tables drive the reader and make ``docs/coverage.md``. A tag that is in no table is unknown.
 """
@@ -18,7 +18,7 @@ class Tag(NamedTuple, Generic[Target_contra]):
     """A child element that the reader knows.
 
     Attributes:
-        read: Reads the element into the object that stands for its parent.
+        read: Function that reads the element into its parent's object.
         meaning: What the element means, or why it is left out, in a few words.
         left_out: Whether it has no effect on the model.
         once: Whether only the last one of an element counts, among all tags with this ``read``; or of this name.

@@ -11,10 +11,10 @@ from typing import NamedTuple, NoReturn
 from xml.parsers import expat
 
 from ravemj.errors import Source, SourceError
-from ravemj.formats.limits import Budget, check_bytes
+from ravemj.formats.limits import ParsingBudget, check_bytes
 
 DEEPEST = 200
-"""More elements inside one another are no model."""
+"""Maximum nesting depth of elements."""
 
 
 @dataclass(slots=True)
@@ -56,7 +56,7 @@ class Document(NamedTuple):
     unread: Source | None
 
 
-def parse_file(path: str, included_from: Source | None = None, budget: Budget | None = None) -> Document:
+def parse_file(path: str, included_from: Source | None = None, budget: ParsingBudget | None = None) -> Document:
     """Parse a file.
 
     Args:
@@ -80,12 +80,14 @@ def content_of(path: str, included_from: Source | None = None) -> bytes:
         raise SourceError(f"cannot read the file: {os_reason(error)}", Source(path, 0, included_from)) from None
 
 
-def parse(content: bytes, path: str, included_from: Source | None = None, budget: Budget | None = None) -> Document:
+def parse(
+    content: bytes, path: str, included_from: Source | None = None, budget: ParsingBudget | None = None
+) -> Document:
     """Parse the content of a file.
 
     Args:
         content: The bytes.
-        path: What to call it in messages.
+        path: Its name in messages.
         included_from: The element that includes it, for messages.
         budget: Counts what the model has read; None if this is all of it.
 
@@ -94,7 +96,7 @@ def parse(content: bytes, path: str, included_from: Source | None = None, budget
     """
     if not content.strip():
         raise SourceError("the file is empty", Source(path, 0, included_from))
-    (budget or Budget()).add_document(content, Source(path, 0, included_from))
+    (budget or ParsingBudget()).add_document(content, Source(path, 0, included_from))
     parser = _Parser(path, included_from)
     error = parser.parse(content)
     if parser.root is None:
@@ -116,7 +118,7 @@ _HINTS = {
     expat.errors.XML_ERROR_INCORRECT_ENCODING: "leave the encoding out of its first line",
     expat.errors.XML_ERROR_MISPLACED_XML_PI: "let the file begin with <?xml",
 }
-"""What to do about expat's syntax errors; about others, the element that is open says more."""
+"""Hints for expat's syntax errors; for others, the open element is more helpful."""
 
 
 class _Parser:
@@ -141,7 +143,7 @@ class _Parser:
         self._expat.EntityDeclHandler = self._declared
 
     def parse(self, content: bytes) -> SourceError | None:
-        """Parse the content; return what is wrong with it, if anything."""
+        """Parse the content; return the syntax error, if any."""
         self._content = content
         try:
             self._expat.Parse(content, True)

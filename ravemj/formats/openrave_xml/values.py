@@ -28,7 +28,7 @@ _WORD = re.compile(r"\S+", re.ASCII)
 """C++ takes only ASCII's digits for digits and only ASCII's spaces for spaces."""
 
 _OF_FEW_DIGITS = 0.01
-"""How far the numbers of a rotation matrix are from one where somebody wrote two digits."""
+"""Maximum deviation of an entry of a rotation matrix that was written with two digits."""
 
 
 class Numbers(NamedTuple):
@@ -57,7 +57,7 @@ def leading_numbers(text: str) -> Numbers:
 
 
 def _plain_numbers(text: str) -> list[float] | None:
-    """Return the numbers of a text that holds nothing else, or None."""
+    """Return the numbers of a text that contains only numbers, else None."""
     if "_" in text or not text.isascii():  # float() takes 1_0 and digits of other scripts
         return None
     try:
@@ -183,13 +183,13 @@ class Placement:
 
     @property
     def pose(self) -> Pose:
-        """The transform that the elements so far amount to."""
+        """The transform of the elements read so far."""
         wxyz = self._wxyz
         return Pose(self._position, wxyz if wxyz == UNIT_WXYZ else normalize(wxyz))
 
     @property
     def moves(self) -> bool:
-        """False where there was no transform element, or none with an effect."""
+        """Whether a transform element had an effect."""
         return self._position != ZERO or self._wxyz != UNIT_WXYZ
 
     def translate(self, element: Element, diagnostics: Diagnostics) -> None:

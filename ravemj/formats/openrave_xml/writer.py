@@ -120,7 +120,7 @@ class _Writer:
             self.out.element("adjacent", f"{names.links[first]} {names.links[second]}")
 
     def _write_state(self, body: KinBody, names: PartNames) -> None:
-        """Write joint values and what the body holds."""
+        """Write joint values and grabbed bodies."""
         if needs_values(body):
             self.out.element("jointvalues", [axis.value for axis in body.dof_axes])
         for grab in body.grabs:
@@ -140,7 +140,7 @@ class _Writer:
             write_parameters(self.out, link.parameters)
 
     def _write_groups(self, link: Link) -> None:
-        """Write the sets of shapes that scripts can swap in."""
+        """Write the selectable geometry groups."""
         for group, geometries in link.groups:
             if group == OWN_SHAPES or not geometries:
                 message = f"of link '{link.name}' the group of shapes '{group}', which others replace, is left out"
@@ -172,6 +172,8 @@ class _Writer:
             if manipulator.gripper_joints:
                 self.out.element("gripperjoints", " ".join(names.joints[joint] for joint in manipulator.gripper_joints))
                 self.out.element("closingdirection", manipulator.chucking_direction)
+            if manipulator.ik_solver:
+                self.out.element("iksolver", manipulator.ik_solver)
             self.out.element("direction", settled.direction(manipulator.direction))
             write_pose(self.out, settled.pose(manipulator.T_effector_tool))
 

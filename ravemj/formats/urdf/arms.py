@@ -13,30 +13,35 @@ _TOOLS = (
     "tool 0", "tcp", "end effector", "eef", "ee", "tool frame", "tool", "attachment", "flange", "palm", "gripper",
     "hand", "jaw",
 )  # fmt: skip
-"""Words by which links that carry a tool are known, the surest first."""
+"""Words in names of tool links, the most reliable first."""
 
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 _LEAST_DOFS, _MOST_ARMS = 3, 8
 
 
-def guess(tree: RobotTree, root: Element, context: Context) -> list[ManipulatorBuilder]:
+def guess(
+    tree: RobotTree,
+    root: Element,
+    context: Context,
+    reason: str = "no SRDF describes the arms",
+    hint: str = "--srdf FILE gives the robot's own",
+) -> list[ManipulatorBuilder]:
     """Return guessed manipulators: links with the name of a tool at the end of three or more DOFs.
 
-    If no such link has a name of that kind, the ends of the longest chains count. Joints beyond the tool are those of
-    the gripper.
+    If no link has the name of a tool, the ends of the longest chains are used. Joints beyond the tool belong to the
+    gripper. A note names the guessed manipulators, with ``reason`` and ``hint``.
     """
     named = [(rank, link) for link in tree.links if (rank := _rank(link)) is not None]
     arms = _arms([link for _, link in sorted(named, key=lambda pair: pair[0])], tree) or _arms(_longest(tree), tree)
     if arms:
         counts = [f"'{arm.name}' ({len(_dofs(arm.effector, tree))} joints)" for arm in arms]
         noun = "a guessed manipulator" if len(arms) == 1 else "guessed manipulators"
-        message = f"no SRDF describes the arms; {noun}: {', '.join(counts)}"
-        context.diagnostics.note(GUESSES, message, root.source, "--srdf FILE gives the robot's own")
+        context.diagnostics.note(GUESSES, f"{reason}; {noun}: {', '.join(counts)}", root.source, hint)
     return arms
 
 
 def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
-    """Return an arm for each last joint that moves a tool, in the order of the file."""
+    """Return one arm for each joint that is the last one before a tool, in the order of the file."""
     arms: dict[str, ManipulatorBuilder] = {}  # by the last joint
     dofs = {link: _dofs(link, tree) for link in tools}
     for link in tools:
@@ -44,30 +49,30 @@ def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
             continue
         last = dofs[link][-1]
         gripper = [joint.name for joint in tree.dofs_below(last.child)]
-        arms[last.name] = ManipulatorBuilder(link, tree.links[link], _base(tree, link), link, gripper_joints=gripper)
+        arms[last.name] = ManipulatorBuilder(link, tree.links[link], base_of(tree, link), link, gripper_joints=gripper)
     places = {link: place for place, link in enumerate(tree.links)}
     return sorted([*arms.values()][:_MOST_ARMS], key=lambda arm: places[arm.effector])
 
 
 def _rank(link: str) -> int | None:
-    """Return the place of a link's name in the list of tools; None if it is no name of a tool."""
+    """Return the index of the tool word in a link's name; None if it has none."""
     words = f" {' '.join(_WORDS.findall(link)).lower()} "
     return next((rank for rank, tool in enumerate(_TOOLS) if f" {tool} " in words), None)
 
 
 def _longest(tree: RobotTree) -> list[str]:
-    """Return the moving ends of all chains, those with the most DOFs first."""
+    """Return the last moving links of all chains, those with the most DOFs first."""
     ends = [link for link, joint in tree.above.items() if tree.is_dof(joint) and not any(tree.dofs_below(link))]
     return sorted(ends, key=lambda link: -len(_dofs(link, tree)))
 
 
 def _dofs(link: str, tree: RobotTree) -> list[UrdfJoint]:
     """Return the joints with a DOF between the base of an arm and its tool."""
-    return [joint for joint in tree.path(link, _base(tree, link)) or [] if tree.is_dof(joint)]
+    return [joint for joint in tree.path(link, base_of(tree, link)) or [] if tree.is_dof(joint)]
 
 
-def _base(tree: RobotTree, link: str) -> str:
-    """Return the nearest link above that carries several moving branches, three or more DOFs up; else the root."""
+def base_of(tree: RobotTree, link: str) -> str:
+    """Return the base of an arm: the nearest branching ancestor above at least three DOFs; else the root."""
     count = 0
     while link in tree.above:
         joint = tree.above[link]
@@ -80,6 +85,6 @@ def _base(tree: RobotTree, link: str) -> str:
 
 
 def _is_beyond(link: str, dofs: dict[str, list[UrdfJoint]], tree: RobotTree) -> bool:
-    """Return whether the joints of a gripper move a link: it hangs on another tool that an arm moves."""
+    """Return whether a link is moved by gripper joints: it hangs on another tool that an arm moves."""
     above = {joint.parent for joint in tree.path(link) or []} & dofs.keys()
     return any(len(dofs[other]) >= _LEAST_DOFS and dofs[other][-1] is not dofs[link][-1] for other in above)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from ravemj.core.transforms import Pose, Vec3, rotate, scale
+from ravemj.core.transforms import Pose, Vec3, not_subnormal, rotate, scale
 from ravemj.errors import SourceError
 from ravemj.formats.openrave_xml.context import Context, did_you_mean
 from ravemj.formats.openrave_xml.tree import Element
@@ -35,6 +35,7 @@ _WITHOUT_LIMIT = {"revolute": math.pi, "prismatic": 1.0}
 """Limits of joints without ``<limit>`` [rad, m]; the first is or_urdf's."""
 
 _SLOW = 1e-4  # how far the length of an axis may be from 1 without a warning
+_ROUNDING = 1e-13
 _DEFAULTS = Axis(_FIRST_AXIS)
 
 
@@ -60,7 +61,7 @@ class UrdfJoint:
 
 
 def read_frame(element: Element, links: Mapping[str, object], context: Context) -> UrdfJoint:
-    """Read what a joint says of links and frames.
+    """Read the links and frames of a joint.
 
     Raises:
         SourceError: it has no such links, or a type that ravemj cannot represent.
@@ -114,13 +115,15 @@ def _direction(joint: UrdfJoint, context: Context) -> Vec3:
     if element is None:
         return _FIRST_AXIS
     x, y, z = numbers_of(element, "xyz", 3)
-    length = math.hypot(x, y, z)
+    axis = not_subnormal((x, y, z))
+    length = math.hypot(*axis)
     if length == 0.0:
         raise SourceError(f"the axis of joint '{joint.name}' is 0 0 0", element.source, "write its direction")
-    if abs(length - 1) > _SLOW:
+    if abs(math.hypot(x, y, z) - 1) > _SLOW:
         message = f"the axis of joint '{joint.name}' has not the length 1; it is normalized"
         context.diagnostics.warn("axis-length", message, element.source)
-    return scale((x, y, z), 1 / length)
+    is_unit = abs(length - 1) < _ROUNDING  # then it stays as it is, and so does a file that is written again
+    return axis if is_unit else scale(axis, 1 / length)
 
 
 def _limits(joint: UrdfJoint, context: Context) -> dict[str, float]:

@@ -7,7 +7,7 @@ from ravemj.core.transforms import UNMOVED, Rows, Vec3, Wxyz, rows_from_wxyz
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.urdf.elements import attribute, check_children, children, number_of, numbers_of, only, origin_of
-from ravemj.formats.urdf.shapes import ShapeReader
+from ravemj.formats.urdf.shapes import UrdfShapeReader
 from ravemj.model.builder import LinkBuilder
 from ravemj.model.scene import Geometry, Inertial
 from ravemj.model.shape_bodies import MASSLESS
@@ -19,7 +19,7 @@ _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _KNOWN = ("inertial", "visual", "collision", "geometry_group")
 
 
-def read_link(element: Element, shapes: ShapeReader) -> LinkBuilder:
+def read_link(element: Element, shapes: UrdfShapeReader) -> LinkBuilder:
     """Read a ``<link>``. Its pose is that of the body."""
     context = shapes.context
     check_children(element, _KNOWN, context, ("sensor", "gazebo", "contact"))
@@ -32,7 +32,7 @@ def read_link(element: Element, shapes: ShapeReader) -> LinkBuilder:
     return link
 
 
-def read_groups(element: Element, shapes: ShapeReader) -> dict[str, list[Geometry]]:
+def read_groups(element: Element, shapes: UrdfShapeReader) -> dict[str, list[Geometry]]:
     """Return the shapes of the ``<geometry_group>`` elements of a link, or_urdf's extension, by group."""
     groups: dict[str, list[Geometry]] = {}
     for group in children(element, "geometry_group"):

@@ -24,13 +24,13 @@ _MANIFEST_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 _REMOTE = re.compile(r"[a-z][a-z0-9+.-]+://", re.IGNORECASE)
 
 
-class Found(NamedTuple):
+class ResolvedPath(NamedTuple):
     """Result of the search for a file.
 
     Attributes:
         path: The file, or None.
-        searched: The folders or paths that were looked at, for messages.
-        is_remote: Whether the URI is an address that ravemj does not read.
+        searched: The searched folders or paths, for messages.
+        is_remote: Whether the URI is a network address, which ravemj does not read.
     """
 
     path: str | None
@@ -42,7 +42,7 @@ class Packages:
     """The search for the files of one URDF.
 
     Attributes:
-        given: Folders by the names of packages, which the user gave.
+        given: Folders of packages by name, from the user.
     """
 
     def __init__(self, urdf: str, access: FileAccess, given: Mapping[str, str]) -> None:
@@ -51,7 +51,7 @@ class Packages:
         self._access = access
         self._roots: dict[str, tuple[str, ...]] = {}
 
-    def find(self, uri: str) -> Found:
+    def find(self, uri: str) -> ResolvedPath:
         """Look up the file of a URI."""
         scheme, separator, rest = uri.partition("://")
         if separator and scheme.lower() in SCHEMES:
@@ -63,15 +63,15 @@ class Packages:
             path = os.path.join(self._folder, path)
             return self._first([path, os.path.join(self._folder, os.path.basename(path))])
         if _REMOTE.match(uri):
-            return Found(None, is_remote=True)
+            return ResolvedPath(None, is_remote=True)
         return self._first([os.path.join(folder, uri) for folder in (self._folder, *data_folders())])
 
-    def _first(self, paths: list[str], searched: tuple[str, ...] = ()) -> Found:
-        """Return the first path that is a file that may be read."""
+    def _first(self, paths: list[str], searched: tuple[str, ...] = ()) -> ResolvedPath:
+        """Return the first path that is a permitted file."""
         for path in paths:
             if self._access.permits(path) and os.path.isfile(path):
-                return Found(os.path.normpath(path))
-        return Found(None, searched or tuple(paths))
+                return ResolvedPath(os.path.normpath(path))
+        return ResolvedPath(None, searched or tuple(paths))
 
     def roots(self, package: str) -> tuple[str, ...]:
         """Return the folders that may be a package, in the order in which they are searched."""

@@ -14,7 +14,7 @@ from ravemj.formats.urdf.elements import check_children, children, named
 from ravemj.formats.urdf.joint import UrdfJoint, follow, make_joint, read_frame
 from ravemj.formats.urdf.link import read_groups, read_link
 from ravemj.formats.urdf.packages import Packages, given_packages
-from ravemj.formats.urdf.shapes import ShapeReader
+from ravemj.formats.urdf.shapes import UrdfShapeReader
 from ravemj.formats.urdf.tree import RobotTree
 from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import KinBody
@@ -59,7 +59,7 @@ def read_robot(root: Element, context: Context, given: Mapping[str, str]) -> Bod
 
 
 def settle(body: BodyBuilder, context: Context) -> KinBody:
-    """Return the frozen body. Values that limits move are one finding: knees of all legs have them."""
+    """Return the frozen body; report initial values that limits change together, since legged robots have many."""
     found = Diagnostics()
     frozen = body.freeze(found)
     moved = [finding for finding in found if finding.code == "value-outside-limits"]
@@ -87,7 +87,7 @@ def _name(root: Element, context: Context) -> str:
 
 
 def _note_left_out(root: Element, context: Context) -> None:
-    """Note what ravemj has no use for, once for each kind of element."""
+    """Report unused elements, once for each tag."""
     inner = (part for child in root.children if child.spelled in {"link", "joint"} for part in child.children)
     found = [child for child in (*root.children, *inner) if child.spelled in _LEFT_OUT]
     for tag, count in Counter(child.spelled for child in found).items():
@@ -96,7 +96,7 @@ def _note_left_out(root: Element, context: Context) -> None:
 
 
 def _floating(frames: list[UrdfJoint], elements: Mapping[str, Element], context: Context) -> dict[str, UrdfJoint]:
-    """Return the floating joints by the link that they carry; they are left out: a body of OpenRAVE floats as it is.
+    """Return the floating joints by child link; they are left out, since bodies of OpenRAVE float by default.
 
     Raises:
         SourceError: a floating joint hangs on a link that has shapes, or that another joint carries.
@@ -132,7 +132,7 @@ def _add_parts(
     given: Mapping[str, str],
 ) -> None:
     """Add links and joints to a body: the root first, the others in the order of the file or of their names."""
-    shapes = ShapeReader(context, Packages(root.source.file, context.access, _packages(root, given)))
+    shapes = UrdfShapeReader(context, Packages(root.source.file, context.access, _packages(root, given)))
     for material in children(root, "material"):
         first = shapes.materials.get(material.attributes.get("name", ""))
         shapes.define(material)
@@ -159,7 +159,7 @@ def _add_parts(
     body.joints = [built[name] for name in (sorted(built) if by_name else built)]
 
 
-def _add_groups(links: Mapping[str, LinkBuilder], elements: Mapping[str, Element], shapes: ShapeReader) -> None:
+def _add_groups(links: Mapping[str, LinkBuilder], elements: Mapping[str, Element], shapes: UrdfShapeReader) -> None:
     """Add or_urdf's groups of shapes to all links; a link without shapes of a group has it empty."""
     groups = {name: read_groups(element, shapes) for name, element in elements.items()}
     for group in dict.fromkeys(group for found in groups.values() for group in found):
@@ -175,7 +175,7 @@ def _packages(root: Element, given: Mapping[str, str]) -> dict[str, str]:
 
 
 def _add_srdf(body: BodyBuilder, tree: RobotTree, root: Element, context: Context, given: Mapping[str, str]) -> None:
-    """Add what the SRDF says; without one, guessed manipulators."""
+    """Add the data of the SRDF; without one, guessed manipulators."""
     wanted, state, like = given.get("srdf", ""), given.get("state", ""), given.get("like", "")
     if like == OR_URDF and not wanted:
         wanted, body.is_robot = NO_SRDF, False

@@ -48,7 +48,7 @@ class Material(NamedTuple):
     source: Source
 
 
-class Form(NamedTuple):
+class UrdfShape(NamedTuple):
     """Shape that a ``<geometry>`` describes.
 
     Attributes:
@@ -63,13 +63,13 @@ class Form(NamedTuple):
 
 
 @dataclass
-class ShapeReader:
+class UrdfShapeReader:
     """Reads the shapes of one URDF.
 
     Attributes:
-        context: Takes findings, and keeps meshes.
+        context: Receives diagnostics, and caches meshes.
         packages: Finds mesh files.
-        materials: Materials by name, as far as they are defined.
+        materials: Materials defined so far, by name.
         textures: The first texture, or None.
     """
 
@@ -163,7 +163,7 @@ class ShapeReader:
             self.context.diagnostics.warn("unknown-material", message, material.source, hint)
         return own or self.materials.get(name)
 
-    def _form(self, element: Element) -> Form | None:
+    def _form(self, element: Element) -> UrdfShape | None:
         check_children(element, _KINDS, self.context)
         geometry = only(element, "geometry", self.context)
         if geometry is None:
@@ -178,7 +178,7 @@ class ShapeReader:
             self.context.diagnostics.error("missing-geometry", message, geometry.source, "the first one counts")
         return self._shape(shapes[0]) if shapes else None
 
-    def _shape(self, element: Element) -> Form | None:
+    def _shape(self, element: Element) -> UrdfShape | None:
         """Return the shape of an element in ``<geometry>``; None, with a finding, for a mesh that cannot be read."""
         if element.spelled == "mesh":
             return self._mesh(element)
@@ -198,9 +198,9 @@ class ShapeReader:
             shape = Cylinder(sizes[0], sizes[1])
         else:
             shape = Capsule(sizes[0], sizes[1])
-        return Form(shape, (MeshPart(shape.triangulated(), _GRAY, _GRAY),))
+        return UrdfShape(shape, (MeshPart(shape.triangulated(), _GRAY, _GRAY),))
 
-    def _mesh(self, element: Element) -> Form | None:
+    def _mesh(self, element: Element) -> UrdfShape | None:
         uri = attribute(element, "filename")
         factors = _scale(element)
         path = self._find(uri, element.source)
@@ -218,10 +218,10 @@ class ShapeReader:
         if mesh is None:
             mesh = parts[0].mesh if len(parts) == 1 else Mesh.merged(part.mesh for part in parts)
             self._meshes[path, factors] = mesh
-        return Form(TriMesh(mesh), parts, MeshFile(path, factors))
+        return UrdfShape(TriMesh(mesh), parts, MeshFile(path, factors))
 
     def _find(self, uri: str, source: Source) -> str | None:
-        """Return the path of a mesh file; None, with a finding, where it is missing or must not be read."""
+        """Return the path of a mesh file; None, with a finding, if it is missing or must not be read."""
         found, diagnostics = self.packages.find(uri), self.context.diagnostics
         if found.path is not None:
             return found.path
@@ -246,7 +246,7 @@ _SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "lengt
 
 
 def _scale(element: Element) -> Vec3:
-    """Return the factors of a mesh; one number stands for all three, which urdfdom refuses and files have."""
+    """Return the scale factors of a mesh; a single number, which urdfdom refuses, applies to all axes."""
     text = element.attributes.get("scale", "")
     if len(text.split()) == 1:
         factor = number_of(element, "scale", 1.0)

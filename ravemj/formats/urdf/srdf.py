@@ -25,7 +25,7 @@ _SPHERE_COLOR: Rgb = (0.7, 0.7, 0.7)
 
 
 def add_srdf(body: BodyBuilder, tree: RobotTree, document: Document, context: Context, state: str) -> None:
-    """Add to a body what an SRDF says of it.
+    """Add the data of an SRDF to a body.
 
     Args:
         body: The body, with its links and joints.
@@ -52,14 +52,14 @@ def add_srdf(body: BodyBuilder, tree: RobotTree, document: Document, context: Co
 
 
 @dataclass(slots=True)
-class Group:
+class SrdfGroup:
     """A group of an SRDF.
 
     Attributes:
         element: Its element.
         joints: Names of its joints.
         links: Names of its links.
-        tip: The end of its only chain; empty without one.
+        tip: End link of its only chain; empty if it has no chain.
     """
 
     element: Element
@@ -75,7 +75,7 @@ class _Srdf:
         self.tree = tree
         self.context = context
         self.elements = {attribute(one, "name"): one for one in children(root, "group")}
-        self.groups: dict[str, Group] = {}
+        self.groups: dict[str, SrdfGroup] = {}
         for name in self.elements:
             self._group(name, ())
 
@@ -100,7 +100,7 @@ class _Srdf:
     # Pairs of links
 
     def _add_pairs(self) -> None:
-        """Make links adjacent that are said to be allowed to touch."""
+        """Make the links adjacent whose collisions are disabled."""
         names = {link.name: index for index, link in enumerate(self.body.links)}
         pairs = self._pairs("disable_collisions", ("link1", "link2"))
         silent = [
@@ -131,12 +131,12 @@ class _Srdf:
 
     # Groups
 
-    def _group(self, name: str, opened: tuple[str, ...]) -> Group:
-        """Return a group with all joints and links of what it names; a link comes with the joint that carries it."""
+    def _group(self, name: str, opened: tuple[str, ...]) -> SrdfGroup:
+        """Return a group with the joints and links of all its elements; each link includes its parent joint."""
         if name in self.groups:
             return self.groups[name]
         element = self.elements[name]
-        group = Group(element)
+        group = SrdfGroup(element)
         if name in opened or len(opened) > _DEEPEST:
             raise SourceError(f"group '{name}' contains itself", element.source)
         for part in element.children:
@@ -145,7 +145,7 @@ class _Srdf:
         self.groups[name] = group
         return group
 
-    def add_group(self, group: Group, element: Element, opened: tuple[str, ...]) -> None:
+    def add_group(self, group: SrdfGroup, element: Element, opened: tuple[str, ...]) -> None:
         inner = attribute(element, "name")
         if inner not in self.elements:
             self._unknown("group", inner, element, self.elements)
@@ -154,14 +154,14 @@ class _Srdf:
         group.joints |= found.joints
         group.links |= found.links
 
-    def add_link(self, group: Group, element: Element, _: tuple[str, ...]) -> None:
+    def add_link(self, group: SrdfGroup, element: Element, _: tuple[str, ...]) -> None:
         link = self._link(element, "name")
         if link is not None:
             group.links[link] = None
         if link in self.tree.above:
             group.joints[self.tree.above[link].name] = None
 
-    def add_chain(self, group: Group, element: Element, _: tuple[str, ...]) -> None:
+    def add_chain(self, group: SrdfGroup, element: Element, _: tuple[str, ...]) -> None:
         base, tip = (self._link(element, name) for name in ("base_link", "tip_link"))
         if base is None or tip is None:
             return
@@ -174,7 +174,7 @@ class _Srdf:
         group.links |= dict.fromkeys([base, *(joint.child for joint in path)])
         group.joints |= dict.fromkeys(joint.name for joint in path)
 
-    def add_joint(self, group: Group, element: Element, _: tuple[str, ...]) -> None:
+    def add_joint(self, group: SrdfGroup, element: Element, _: tuple[str, ...]) -> None:
         name = attribute(element, "name")
         if name in self.tree.joints:
             group.joints[name] = None
@@ -212,8 +212,8 @@ class _Srdf:
     def _parent_group(self, element: Element, link: str, own: str) -> str | None:
         """Return the group of the arm of an end effector.
 
-        That is its ``parent_group``, without which or_urdf made no manipulator. Files of today have none: then it is
-        the end effector's group if that leads to its link, else the group with the longest chain that ends there.
+        It is the ``parent_group``, which or_urdf required. If it is missing, as in current files, it is the end
+        effector's group if that leads to its link, else the group with the longest chain that ends there.
         """
         given = element.attributes.get("parent_group", "")
         if given:
@@ -227,15 +227,15 @@ class _Srdf:
         ending = [name for name in others if self.groups[name].tip == link] or others
         return min(ending, key=lambda name: len(self.groups[name].joints), default=None)
 
-    def _leads_to(self, group: Group, link: str) -> bool:
-        """Return whether a group is a serial chain above a link, which may hang on its end by fixed joints."""
+    def _leads_to(self, group: SrdfGroup, link: str) -> bool:
+        """Return whether a group is a serial chain that ends at a link, up to fixed joints."""
         ends = self._serial_ends(group)
         path = None if ends is None else self.tree.path(link, ends[0])
         dofs = [joint.name for joint in path or [] if self.tree.is_dof(joint)]
         return bool(dofs) and set(dofs) <= group.joints.keys()
 
-    def _serial_ends(self, group: Group) -> tuple[str, str] | None:
-        """Return base and end of a group whose joints lie on one path; None if they do not, or none of them moves."""
+    def _serial_ends(self, group: SrdfGroup) -> tuple[str, str] | None:
+        """Return first and last link of a group whose joints lie on one path; None if they do not or are all fixed."""
         moving = [name for name in group.joints if self._is_dof(name)]
         if not moving:
             return None
@@ -247,14 +247,14 @@ class _Srdf:
         base = self._base(group, end)
         return None if base is None else (base, end)
 
-    def _base(self, group: Group, link: str) -> str | None:
-        """Return the link from which the joints of a group lead to another link, or None."""
+    def _base(self, group: SrdfGroup, link: str) -> str | None:
+        """Return the base link of the chain that a group's joints form up to a link, or None."""
         path = self.tree.path(link) or []
         first = next((joint for joint in path if joint.name in group.joints), None)
         return None if first is None else first.parent
 
     def _above(self, joint: str) -> list[UrdfJoint]:
-        """Return a joint and those that carry it."""
+        """Return a joint and its ancestors."""
         return self.tree.path(self.tree.joints[joint].child) or []
 
     def _is_dof(self, joint: str) -> bool:
@@ -263,7 +263,7 @@ class _Srdf:
     # Named configurations
 
     def _add_states(self, wanted: str) -> None:
-        """Keep the group states as named configurations, and start with the one that is wanted."""
+        """Store the group states as named configurations, and set the wanted one as the initial state."""
         states: dict[str, dict[str, float]] = {}
         for element in children(self.root, "group_state"):
             values = states.setdefault(attribute(element, "name"), {})

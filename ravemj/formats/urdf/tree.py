@@ -12,10 +12,10 @@ class RobotTree:
     Attributes:
         links: Names of the links with their places, in the order of the file.
         joints: The joints by name, in the order of the file; without floating ones.
-        above: The joint that carries a link, by the link's name.
-        below: The joints that a link carries, by the link's name.
+        above: Parent joint of a link, by the link's name.
+        below: Child joints of a link, by the link's name.
         floating: The floating joints, by the links that they carry.
-        roots: Names of the links that no other joint carries.
+        roots: Names of the links without a parent joint.
         followers: Names of the joints that follow others.
     """
 
@@ -48,7 +48,7 @@ class RobotTree:
                 raise SourceError(message, joint.element.source, "exchange parent and child of one of them")
 
     def descendants(self, link: str) -> list[str]:
-        """Return a link and all that hang on it, each behind the one that carries it."""
+        """Return a link and its descendants, parents before children."""
         found = [link]
         for name in found:
             found += [joint.child for joint in self.below[name]]
@@ -67,6 +67,6 @@ class RobotTree:
         return joint.type != "fixed" and joint.name not in self.followers
 
     def dofs_below(self, link: str) -> Iterator[UrdfJoint]:
-        """Yield the joints with a DOF of everything that hangs on a link."""
+        """Yield the joints with a DOF below a link."""
         for name in self.descendants(link):
             yield from filter(self.is_dof, self.below[name])

@@ -27,14 +27,14 @@ _HEAD = 20_000  # bytes in which the first element of xacro stands
 
 
 def is_xacro(path: str, content: bytes) -> bool:
-    """Return whether a file is to be expanded: by its name, or since it has elements of xacro."""
+    """Return whether a file is a xacro: by its suffix, or because it has elements of xacro."""
     if path.lower().endswith(SUFFIX):
         return True
     return b"<xacro:" in content and b"<robot" in content[:_HEAD] and b"<xacro:" in _COMMENT.sub(b"", content)
 
 
 def expand(path: str, given: Mapping[str, str], access: FileAccess) -> bytes:
-    """Return the URDF that a xacro file stands for; the files that it includes are noted.
+    """Expand a xacro file to URDF, and record the files that it includes.
 
     Args:
         path: The file.

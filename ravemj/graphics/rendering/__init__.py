@@ -50,11 +50,11 @@ _LOG = logging.getLogger("ravemj")
 
 
 class Renderer(Protocol):
-    """Draws one model in pictures of one size.
+    """Renders one model in pictures of one size.
 
     Attributes:
-        backend: What draws: ``egl``, ``osmesa``, ``glfw`` or ``ray``.
-        has_shadows: Whether lights that cast shadows do so.
+        backend: Its backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``.
+        has_shadows: Whether it renders shadows.
     """
 
     backend: str
@@ -68,52 +68,52 @@ class Renderer(Protocol):
         primitives: Primitives = NOTHING,
         style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
-        """Draw a picture.
+        """Render a picture.
 
         Args:
-            data: State of the model with the poses computed (``mj_kinematics`` or ``mj_forward``). Where the
-                model has lights, they are placed (``mj_camlight``).
-            camera: Where the picture is taken from.
+            data: State of the model with computed poses (``mj_kinematics`` or ``mj_forward``), and computed lights
+                if the model has some (``mj_camlight``).
+            camera: The camera.
             look: Background, floor and lights; a colour (red, green, blue in 0..1) is a background without floor, with
                 the lights of the model.
-            primitives: What is drawn beside the model's geoms.
-            style: How the geoms are drawn.
+            primitives: Drawings in addition to the model's geoms.
+            style: Drawing style of the geoms.
 
         Returns:
-            A new array (height, width, 3), top row first.
+            A new array, shape (height, width, 3), top row first.
 
         Raises:
-            ArgumentError: the data are of another model, or the background is no colour.
+            ArgumentError: the data belong to another model, or the background is not a colour.
             RenderingError: the renderer is closed.
         """
         ...
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
-        """Say which geom each pixel centre shows; drawings hide nothing.
+        """Render the geom ids at pixel centres; drawings are ignored.
 
         Arguments and errors as for ``render``.
 
         Returns:
-            A new array (height, width) of geom ids, -1 where nothing is. Transparent geoms count.
+            A new array of geom ids, shape (height, width), -1 for the background. Transparent geoms count.
         """
         ...
 
     def resize(self, width: int, height: int, samples: int) -> None:
-        """Draw pictures of another size from now on, or with other samples per pixel; that takes a millisecond."""
+        """Set the size and the samples per pixel of further pictures; this takes about a millisecond."""
 
     def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
-        """Measure how far away what each pixel centre shows is; drawings hide nothing.
+        """Render the depths at pixel centres; drawings are ignored.
 
         Arguments and errors as for ``render``.
 
         Returns:
-            A new array (height, width) of distances along the viewing direction [m], infinite where nothing is.
+            A new array of depths along the viewing direction [m], shape (height, width), infinite for the background.
             Transparent geoms count.
         """
         ...
 
     def close(self) -> None:
-        """Free what the renderer holds. Also done at the end of a ``with`` block."""
+        """Free the resources. Also done at the end of a ``with`` block."""
 
     def __enter__(self) -> Self:
         return self
@@ -134,7 +134,7 @@ def open_renderer(
     """Open a renderer with the first backend that works: EGL, OSMesa, GLFW, else ray casting.
 
     Args:
-        model: What is drawn; geoms may change their poses and colours later, but not their number.
+        model: The model; geoms may change poses and colours later, but not their number.
         width: Columns of the pictures.
         height: Rows of the pictures.
         shadows: Whether lights cast shadows; costly without a graphics card. None: if there is one. Rays ignore it.
@@ -142,8 +142,8 @@ def open_renderer(
         backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``; by default what ``MUJOCO_GL`` names, or any.
 
     Raises:
-        ArgumentError: a size that is not positive, or an argument that is not among those named here.
-        RenderingError: the backend that was asked for does not work here; the message says why.
+        ArgumentError: a size is not positive, or another argument has none of the listed values.
+        RenderingError: the requested backend does not work on this machine; the message says why.
     """
     from ravemj.graphics.rendering import contexts  # noqa: PLC0415 - slow to import
     from ravemj.graphics.rendering.gl import GlRenderer  # noqa: PLC0415

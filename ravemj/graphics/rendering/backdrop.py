@@ -1,6 +1,6 @@
 """Background of pictures: one colour or a gradient, and a floor with a grid that fades with distance.
 
-Neither is a body. The floor stands at the lowest point of what is drawn, so that it hides nothing.
+Neither is a body. The floor is at the lowest point of the drawn geoms, so that it hides nothing.
 """
 
 import math
@@ -27,7 +27,7 @@ from ravemj.model.look import (
 )
 
 _LIFTED = 1e-6
-"""Least height of the eye above a floor that is seen, in radii of the scene."""
+"""Minimum height of the camera above a visible floor [radii of the scene]."""
 
 
 class Floor(NamedTuple):
@@ -35,7 +35,7 @@ class Floor(NamedTuple):
 
     Attributes:
         height: z of the floor [m].
-        cell: Distance between its lines [m]; there is one through the origin.
+        cell: Spacing of the grid lines [m]; one goes through the origin.
         center: Centre of a sphere around the bodies, shape (3,) [m].
         radius: Its radius [m].
         colour: Colour near the bodies, shape (3,), 0 to 1.
@@ -50,20 +50,20 @@ class Floor(NamedTuple):
     horizon: Floats
 
     def fading(self, camera: Camera) -> tuple[float, float]:
-        """Return the depths [m] between which the floor becomes the horizon, as a camera sees it."""
+        """Return the depths [m] between which the floor fades into the horizon."""
         distance = float(np.linalg.norm(self.center - camera.position))
         return distance + FADE_START * self.radius, distance + FADE_END * self.radius
 
     def is_below(self, camera: Camera) -> bool:
-        """Return whether a camera sees the upper side."""
+        """Return whether a camera is above the floor."""
         return float(camera.position[2]) - self.height > _LIFTED * self.radius
 
 
 class FloorLevel:
-    """Finds the floor of a model.
+    """Determines height and size of a model's floor.
 
-    What moves does not move the floor, unless it comes below: size and height are those of the model with its joints as
-    they are in the file.
+    They are computed from the configuration in the file, so that the floor does not move with the bodies; only geoms
+    below it lower it.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -71,7 +71,7 @@ class FloorLevel:
         self._first = mujoco.MjData(model)
 
     def floor(self, data: mujoco.MjData, look: Look) -> Floor | None:
-        """Return the floor of a state, or None where the look has none."""
+        """Return the floor for a state; None if the look has no floor."""
         if not look.floor:
             return None
         model, first = self.model, self._first
@@ -85,9 +85,9 @@ class FloorLevel:
 
 
 def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
-    """Return the least z [m] of what is drawn, planes apart; infinite where nothing is.
+    """Return the least z of the drawn geoms [m], without planes; infinity if there are none.
 
-    The poses of the geoms are computed (``mj_kinematics`` or ``mj_forward``).
+    The poses of the geoms must be computed (``mj_kinematics`` or ``mj_forward``).
     """
     geoms = np.flatnonzero(drawn_geoms(model) & (model.geom_type != mujoco.mjtGeom.mjGEOM_PLANE))
     if not geoms.size:
@@ -99,14 +99,14 @@ def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
         if bounds[index] >= lowest:
             break
         geom, exact = int(geoms[index]), float(bounds[index])
-        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:  # whose box reaches farther
+        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:  # whose bounding boxes are lower
             exact = float(data.geom_xpos[geom, 2]) + float((_vertices(model, geom) @ up[index]).min())
         lowest = min(lowest, exact)
     return lowest
 
 
 def _reach_down(model: mujoco.MjModel, geoms: Ints, up: Floats) -> Floats:
-    """Return how far geoms reach below their origins, (N,) [m]; meshes by the boxes around them."""
+    """Return the extents of geoms below their origins [m], shape (N,); of meshes by their bounding boxes."""
     kind, size = model.geom_type[geoms], model.geom_size[geoms]
     boxes = model.geom_aabb[geoms]
     aside = np.sqrt(np.maximum(1 - up[:, 2] ** 2, 0))
@@ -135,7 +135,7 @@ def _vertices(model: mujoco.MjModel, geom: int) -> Floats:
 
 
 def sky_colours(look: Look, heights: Floats) -> Floats:
-    """Return the background in directions, (N, 3) in 0..1, by the z of their unit vectors (N,)."""
+    """Return the background colours of directions, shape (N, 3) in 0..1, by the z of their unit vectors, shape (N,)."""
     if look.background is not None:
         return np.broadcast_to(np.array(look.background), (*heights.shape, 3))
     end = np.where(heights[..., None] > 0, ZENITH, NADIR)
@@ -143,9 +143,9 @@ def sky_colours(look: Look, heights: Floats) -> Floats:
 
 
 def skybox(look: Look, width: int) -> NDArray[np.uint8]:
-    """Return the six faces of MuJoCo's skybox one below the other, shape (6 * width, width, 3): sides, up, down.
+    """Return the six faces of MuJoCo's skybox, stacked vertically, shape (6 * width, width, 3).
 
-    MuJoCo has them in the order right, left, up, down, front, back; the sides are alike.
+    MuJoCo's order is right, left, up, down, front, back; the sides are equal.
     """
     place = (2 * np.arange(width) + 1) / width - 1
     across, down = np.meshgrid(place, place)
@@ -156,13 +156,13 @@ def skybox(look: Look, width: int) -> NDArray[np.uint8]:
 
 
 class Backdrop(NamedTuple):
-    """Background and floor as the rays of one picture see them.
+    """Background and floor of one picture, for ray casting.
 
     Attributes:
         look: The look.
-        floor: The floor that the camera sees, or None.
+        floor: The visible floor, or None.
         camera: The camera.
-        pixel: Width of a pixel at a depth of 1.
+        pixel: Width of a pixel at depth 1.
     """
 
     look: Look
@@ -171,7 +171,7 @@ class Backdrop(NamedTuple):
     pixel: float
 
     def colours(self, rays: Floats) -> Floats:
-        """Return colours (N, 3) in 0..255, not rounded, of rays (N, 3) in the world, with depth 1."""
+        """Return the unrounded colours in 0..255 of rays in the world with depth 1, both of shape (N, 3)."""
         lengths = np.linalg.norm(rays, axis=1)
         colours = np.array(sky_colours(self.look, rays[:, 2] / lengths))
         if self.floor is not None:
@@ -186,7 +186,7 @@ class Backdrop(NamedTuple):
         faded = np.clip((depth - start) / (end - start), 0, 1)[:, None]
         places = (self.camera.position[:2] + depth[:, None] * rays[:, :2]) / floor.cell
         footprint = self.pixel * depth / floor.cell
-        slanted = footprint * lengths / -rays[:, 2]  # a pixel covers so much along the ray, and less across
+        slanted = footprint * lengths / -rays[:, 2]  # extent of a pixel along the ray; it is smaller across
         along = np.abs(rays[:, :2]) / np.maximum(np.linalg.norm(rays[:, :2], axis=1), 1e-12)[:, None]
         covered = _line_parts(places, footprint[:, None] + along * (slanted - footprint)[:, None])
         shade = 1 - (1 - LINES) * (1 - (1 - covered).prod(axis=1))
@@ -196,7 +196,7 @@ class Backdrop(NamedTuple):
 
 
 def _line_parts(places: Floats, footprints: Floats) -> Floats:
-    """Return which part of a pixel lines at the whole numbers cover, by where it is and how wide it is [cells]."""
+    """Return the fraction of each pixel covered by grid lines at whole numbers, by its position and width [cells]."""
     half, apart = 0.5 * LINE_WIDTH, np.abs(places - np.rint(places))
     width = np.maximum(footprints, 1e-9)
     part = np.clip(0.5 + (half - apart) / width, 0, 1) * np.minimum(1, LINE_WIDTH / width)

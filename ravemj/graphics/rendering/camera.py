@@ -1,4 +1,4 @@
-"""Where a picture is taken from, in OpenRAVE's convention, and the pinhole arithmetic that goes with it.
+"""Cameras in OpenRAVE's convention, and their pinhole projection.
 
 The camera frame has +z into the scene, +x to the right of the image and +y down the image, so the up
 direction of the picture is -y. OpenRAVE's ``SetCamera`` and ``GetCameraTransform``, its camera tags and its
@@ -24,13 +24,13 @@ DEFAULT_FOVY = math.radians(45)
 """Vertical field of view of OpenRAVE's viewers [rad]."""
 
 RIGIDITY_TOLERANCE = 5e-3
-"""Largest error of R^T R that is still taken for a rotation: three printed digits pass, a scaled matrix does not."""
+"""Tolerance of R^T R for a rotation: it admits matrices printed with three digits, but no scaled ones."""
 
 _SHAPES = "a 4x4 matrix, a 3x4 matrix or a pose [w, x, y, z, tx, ty, tz]"
 
 
 class Pinhole(NamedTuple):
-    """How a camera maps directions to pixels; continuous coordinates, (0, 0) is the top left corner of the image."""
+    """Pinhole parameters; pixel coordinates are continuous, with (0, 0) in the top left corner of the image."""
 
     fx: float  # focal length along the columns [pixels]
     fy: float  # focal length along the rows [pixels]
@@ -77,7 +77,7 @@ class Camera:
 
     @classmethod
     def from_matrix(cls, matrix: ArrayLike, fovy: float = DEFAULT_FOVY) -> "Camera":
-        """Make a camera from what people write down.
+        """Create a camera from a matrix or a pose.
 
         Args:
             matrix: T_world_camera as 4x4 or 3x4 (nested lists or array), or as OpenRAVE's pose
@@ -85,7 +85,7 @@ class Camera:
             fovy: Vertical field of view [rad].
 
         Raises:
-            ArgumentError: another shape, a number that is not finite, or no rigid transform.
+            ArgumentError: ``matrix`` has another shape, is not finite, or is not a rigid transform.
         """
         numbers = _numbers(matrix)
         if numbers.shape == (3, 4):
@@ -101,30 +101,30 @@ class Camera:
 
     @cached_property
     def rotation(self) -> Floats:
-        """R_world_camera (3, 3), nearest to the matrix as given: what every picture and projection uses."""
+        """``R_world_camera``, shape (3, 3): the rotation nearest to the given matrix, used by all projections."""
         u, _, vt = np.linalg.svd(self.T_world_camera[:3, :3])
         rotation: Floats = u @ vt
         rotation.flags.writeable = False
         return rotation
 
     def pinhole(self, width: int, height: int) -> Pinhole:
-        """Return focal lengths and principal point in an image of that many columns and rows."""
+        """Return focal lengths and principal point for an image of a size [pixels]."""
         focal = 0.5 * height / math.tan(0.5 * self.fovy)
         return self.calibration or Pinhole(focal, focal, 0.5 * width, 0.5 * height)
 
     def enlarged(self, factor: float) -> "Camera":
-        """Return the camera for pictures with so many times the rows and columns."""
+        """Return the camera for pictures whose width and height are multiplied by a factor."""
         if self.calibration is None:
             return self
         return replace(self, calibration=Pinhole(*(factor * part for part in self.calibration)))
 
     def project(self, points: ArrayLike, width: int, height: int) -> tuple[Floats, Floats]:
-        """Project points of the world (N, 3) [m] into an image of that many columns and rows.
+        """Project points in the world, shape (N, 3) [m], into an image of a size [pixels].
 
         Returns:
-            Pixel coordinates (N, 2), columns first, continuous: (0, 0) is the top left corner of the image and
-            pixel i covers [i, i + 1); NaN for points that are not in front of the camera. And the depth (N,)
-            along the viewing direction [m].
+            Continuous pixel coordinates, shape (N, 2), column and row: (0, 0) is the top left corner of the image and
+            pixel i covers [i, i + 1); NaN for points behind the camera. And depths along the viewing direction [m],
+            shape (N,).
         """
         fx, fy, cx, cy = self.pinhole(width, height)
         camera_points = (np.asarray(points, dtype=np.float64).reshape(-1, 3) - self.position) @ self.rotation
@@ -133,10 +133,10 @@ class Camera:
         return camera_points[:, :2] * [fx, fy] / in_front[:, None] + [cx, cy], depth
 
     def ray_parts(self, width: int, height: int) -> tuple[Floats, Floats]:
-        """Return directions through pixel centres, in the world: a part by column, one by row, which are added up.
+        """Return the rays through pixel centres in the world, as the sum of a term per column and one per row.
 
-        Their shapes are (1, width, 3) and (height, 1, 3). The sums are not unit vectors: each advances by 1 along the
-        viewing direction, so that ``position + depth * ray`` is the point at that depth.
+        The terms have shapes (1, width, 3) and (height, 1, 3). The rays are not unit vectors: their component along the
+        viewing direction is 1, so that ``position + depth * ray`` is the point at that depth.
         """
         fx, fy, cx, cy = self.pinhole(width, height)
         right, down, forward = self.rotation.T
@@ -146,28 +146,28 @@ class Camera:
 
 
 def view_from_above(center: ArrayLike, radius: float) -> Camera:
-    """Return the view with which OpenRAVE's window opens: straight down, world +y up; see ``three_quarter_view``."""
+    """Return the initial view of OpenRAVE's window, straight down; arguments as for ``three_quarter_view``."""
     return _looking_at(center, radius, rotation_along((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)))
 
 
 def three_quarter_view(center: ArrayLike, radius: float, aspect: float = 1.0) -> Camera:
-    """Return a pleasant view for stills: from the front left corner and above, world +z up.
+    """Return the default view of still pictures: from the front left corner and above, world +z up.
 
     Args:
-        center: Centre of the bounding sphere of what should be seen, world coordinates (3,) [m].
-        radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height, or into its width.
+        center: Centre of the bounding sphere to show, in the world [m], shape (3,).
+        radius: Its radius [m]; the sphere just fits into the picture's height (45 degrees) and width.
         aspect: Width of the picture divided by its height.
     """
     return _looking_at(center, radius / min(1.0, aspect), first_rotation())
 
 
 def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:
-    """Return a sphere around everything that the renderers draw, planes apart.
+    """Return a bounding sphere of the drawn geoms, without planes.
 
-    The poses of the geoms are computed (``mj_kinematics`` or ``mj_forward``).
+    The poses of the geoms must be computed (``mj_kinematics`` or ``mj_forward``).
 
     Returns:
-        Centre in the world (3,) [m] and radius [m]; the unit sphere at the origin where there is nothing to see.
+        Centre in the world [m], shape (3,), and radius [m]; the unit sphere at the origin if nothing is drawn.
     """
     shown = drawn_geoms(model) & (model.geom_type != mujoco.mjtGeom.mjGEOM_PLANE)
     if not shown.any():
@@ -181,7 +181,7 @@ def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats,
 
 
 def geom_corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> Floats:
-    """Return the corners of the boxes around geoms, in the world, (N, 8, 3) [m]."""
+    """Return the corners of the bounding boxes of geoms, in the world [m], shape (N, 8, 3)."""
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
     boxes = model.geom_aabb[geoms]
     corners = boxes[:, None, :3] + signs * boxes[:, None, 3:]
@@ -190,9 +190,9 @@ def geom_corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> Flo
 
 
 def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
-    """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
+    """Set the camera of a scene; ``mjv_updateScene`` preserves it for a camera of type ``mjCAMERA_USER``.
 
-    ``size`` is width and height of the picture [pixels], ``depths`` the nearest and farthest that are drawn [m].
+    ``size`` is width and height of the picture [pixels], ``depths`` the near and far clipping depths [m].
     """
     near, far = depths
     right_down_forward = camera.rotation

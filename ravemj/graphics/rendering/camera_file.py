@@ -1,4 +1,4 @@
-"""Cameras in files, as ``--camera view.json`` reads them."""
+"""Camera files, as read by ``--camera view.json``."""
 
 import json
 import os
@@ -21,7 +21,7 @@ def read_camera(path: str | Path) -> Camera:
     comment. 3x4 matrices and poses [w, x, y, z, tx, ty, tz] are read too.
 
     Raises:
-        SourceError: the file cannot be read, or holds no camera; the message says why.
+        SourceError: the file cannot be read, or does not contain a camera; the message says why.
     """
     source = Source(str(path))
     try:

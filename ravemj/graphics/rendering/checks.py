@@ -1,14 +1,14 @@
-"""What every renderer checks before it draws."""
+"""Argument checks of the renderers."""
 
 import mujoco
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError
 
 
 def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:
-    """Return a colour as three floats.
+    """Check a colour and return it as three floats.
 
     Raises:
         ArgumentError: it is not three numbers from 0 to 1.
@@ -22,16 +22,11 @@ def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:
     return (red, green, blue)
 
 
-def color_bytes(color: ArrayLike) -> NDArray[np.uint8]:
-    """Return a colour of three numbers 0..1 as the bytes of a pixel, (3,); errors as for ``checked_colour``."""
-    return np.rint(255 * np.array(checked_colour(color))).astype(np.uint8)
-
-
 def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Make sure that the state belongs to the model of the renderer; MuJoCo would read past its arrays.
+    """Check that a state belongs to the model of the renderer; otherwise MuJoCo would read past its arrays.
 
     Raises:
-        ArgumentError: it has other numbers of bodies or geoms.
+        ArgumentError: the numbers of bodies or geoms differ.
     """
     expected = f"{model.nbody} bodies and {model.ngeom} geoms"
     found = f"{data.xpos.shape[0]} bodies and {data.geom_xpos.shape[0]} geoms"

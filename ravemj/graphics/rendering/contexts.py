@@ -1,11 +1,11 @@
-"""OpenGL contexts for pictures without a window, made when the first picture is wanted.
+"""Offscreen OpenGL contexts, created when the first picture is rendered.
 
-Nothing of OpenGL is loaded when this module is imported, no environment variable has to be set, and it does
-not matter who imported mujoco first. A backend counts as working only after a renderer was really made with
-it, because libraries can be present without a driver.
+Importing this module loads no OpenGL library, requires no environment variable, and works whether or not mujoco was
+imported before. A backend counts as working only after a renderer was created with it, because libraries can be
+present without a driver.
 
 Order of the attempts: EGL (headless, the driver of the graphics card or Mesa), OSMesa (software), GLFW (an
-invisible window, where there is a display). Where all fail, pictures are cast with rays, without OpenGL.
+invisible window, if there is a display). If all fail, pictures are ray-cast without OpenGL.
 """
 
 import atexit
@@ -33,7 +33,7 @@ INSTALL = {
     "osmesa": "apt-get install libosmesa6",
     "glfw": "a desktop, or apt-get install xvfb libgl1 and run under xvfb-run",
 }
-"""What makes a backend work on Debian and Ubuntu."""
+"""Installation commands of the backends on Debian and Ubuntu."""
 
 _BY_ENVIRONMENT = {
     **{name: None for name in ("", "enable", "enabled", "on", "true", "1")},
@@ -42,7 +42,10 @@ _BY_ENVIRONMENT = {
     **{name: "glfw" for name in ("glx", "wgl", "cgl")},
 }
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader", "basic render")
-"""Parts of the names of OpenGL drivers that draw with the processor."""
+"""Substrings of the names of software OpenGL drivers."""
+
+_DEVICE = "MUJOCO_EGL_DEVICE_ID"
+"""Variable that chooses the GPU by its number."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -50,7 +53,7 @@ _Made = TypeVar("_Made")
 
 
 class _GLContext(Protocol):
-    """What mujoco.egl, mujoco.osmesa and mujoco.glfw have in common."""
+    """Common interface of the contexts of mujoco.egl, mujoco.osmesa and mujoco.glfw."""
 
     def __init__(self, max_width: int, max_height: int) -> None: ...
     def as_current(self) -> contextlib.AbstractContextManager[None]: ...
@@ -58,13 +61,13 @@ class _GLContext(Protocol):
 
 
 class OffscreenContext:
-    """An OpenGL context of this process that no window shows.
+    """An offscreen OpenGL context of this process.
 
     Attributes:
         backend: ``egl``, ``osmesa`` or ``glfw``.
 
     Raises:
-        Exception: whatever the platform's libraries raise where they are missing or do not work.
+        Exception: any error of the platform's libraries if they are missing or do not work.
     """
 
     def __init__(self, backend: str) -> None:
@@ -83,11 +86,11 @@ class OffscreenContext:
 
     @contextlib.contextmanager
     def current(self) -> Generator[None]:
-        """Make the context current in this thread, then give the thread back the one that it had.
+        """Make the context current in this thread; at the end of the block restore the previous one.
 
         Raises:
             RenderingError: the driver refuses, as EGL does in a thread where the context of an X11 window is
-                current; the window has to let go of it first.
+                current; it must be released first.
         """
         with contextlib.ExitStack() as stack:
             try:
@@ -98,22 +101,22 @@ class OffscreenContext:
             yield
 
     def close(self) -> None:
-        """Free the context; what was made in it must be freed before."""
+        """Free the context; its objects must be freed before."""
         self._context.free()
         _not_freed.discard(self._context)
 
 
 class Closeable(Protocol):
-    """Something that holds OpenGL resources."""
+    """An object with OpenGL resources."""
 
     def close(self) -> None:
-        """Free them; a second call does nothing."""
+        """Free the resources; a second call does nothing."""
 
 
 def close_at_exit(resource: Closeable) -> None:
-    """Close the resource when Python exits, if it still lives then.
+    """Close a resource at the exit of Python, if it still exists then.
 
-    To be called when a context exists: the platform's own exit handlers are registered by then, and handlers
+    Call it only when a context exists: then the platform's own exit handlers are registered already, and handlers
     run last in, first out.
     """
     if not _open:
@@ -122,7 +125,7 @@ def close_at_exit(resource: Closeable) -> None:
 
 
 def requested_backend() -> str | None:
-    """Return the backend that the user asks for with ``MUJOCO_GL``, None for a free choice.
+    """Return the backend that ``MUJOCO_GL`` requests; None if it is not set.
 
     Raises:
         RenderingError: the variable has a value that MuJoCo does not know.
@@ -134,7 +137,7 @@ def requested_backend() -> str | None:
 
 
 def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
-    """Make something in a new context of one of ``GL_BACKENDS``; ``make`` takes over the duty to close the context.
+    """Call ``make`` with a new context of one of ``GL_BACKENDS``; its result is responsible for closing the context.
 
     Raises:
         RenderingError: the backend does not work; the message says why and how to install it.
@@ -145,13 +148,20 @@ def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -
         raise
     except Exception as error:
         reason = one_line(error)
-        raise RenderingError(f"cannot draw with {backend}: {reason} (install: {INSTALL[backend]})") from None
+        raise RenderingError(f"cannot draw with {backend}: {reason} (try: {remedy(backend)})") from None
+
+
+def remedy(backend: str) -> str:
+    """Return what makes a backend work that does not."""
+    if backend == "egl" and _DEVICE in os.environ:
+        return f"unset {_DEVICE}, or set it to the number of a GPU"
+    return INSTALL[backend]
 
 
 def make_with_any_backend(make: Callable[[OffscreenContext], _Made]) -> _Made | None:
-    """Make something in a context of the first backend that works; None where none does.
+    """Call ``make`` with a new context of the first backend that works; return None if none does.
 
-    The one that worked is remembered, and tried first from then on. ``make`` takes over the duty to close the context.
+    The working backend is tried first from then on. The result of ``make`` is responsible for closing the context.
     """
     for backend in _order():
         try:
@@ -165,7 +175,7 @@ def make_with_any_backend(make: Callable[[OffscreenContext], _Made]) -> _Made | 
 
 
 def attempt(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
-    """Make something in a new context of one backend; :func:`make_with_backend` explains failures.
+    """Call ``make`` with a new context of one backend, like :func:`make_with_backend` but with the original errors.
 
     Raises:
         Exception: whatever the platform's libraries raise where they are missing or do not work.
@@ -180,19 +190,19 @@ def attempt(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
 
 
 def draws_with_hardware() -> bool:
-    """Return whether a graphics card draws in the current OpenGL context; False where that is not known."""
+    """Return whether a graphics card renders the current OpenGL context; False if unknown."""
     try:
         with variable_restored("PYOPENGL_PLATFORM"):
             gl = importlib.import_module("OpenGL.GL")
             name = bytes(gl.glGetString(gl.GL_RENDERER)).decode(errors="replace").lower()
-    except Exception as error:  # of PyOpenGL, which raises what it likes
+    except Exception as error:  # PyOpenGL raises exceptions of many kinds
         _LOG.info("OpenGL does not say what draws: %s", one_line(error))
         return False
     return not any(part in name for part in _SOFTWARE)
 
 
 def one_line(error: BaseException) -> str:
-    """Return an exception's reason as one line; its type where it has none."""
+    """Return the message of an exception as one line; its type if the message is empty."""
     return " ".join(str(error).split()) or type(error).__name__
 
 
@@ -202,14 +212,14 @@ def _order() -> tuple[str, ...]:
 
 
 def _close_all() -> None:
-    end()  # before that, no thread may draw
+    end()  # no thread may draw from here on
     for resource in list(_open):
         resource.close()
 
 
 @in_child
 def _disown_all() -> None:
-    """Let nothing free the contexts of the parent, not even the end of the child: their threads are not here."""
+    """Disown the contexts in a forked child: freeing them, even at exit, would need threads of the parent."""
     global _is_fork, _lock
     _is_fork, _lock = _is_fork or bool(_used), threading.RLock()
     for thing in (*_open, *_not_freed):
@@ -237,7 +247,7 @@ def _check_glfw() -> None:
 
 
 def _make_glfw(context_class: type[_GLContext]) -> _GLContext:
-    """Make an invisible window; GLFW reports trouble as Python warnings and goes on."""
+    """Create an invisible window; GLFW reports errors as Python warnings and continues."""
     glfw = importlib.import_module("glfw")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -251,7 +261,7 @@ def _make_glfw(context_class: type[_GLContext]) -> _GLContext:
 _CHECKS: dict[str, Callable[[], None]] = {"egl": check_egl, "osmesa": _check_osmesa, "glfw": _check_glfw}
 _open: "weakref.WeakSet[Closeable]" = weakref.WeakSet()
 _used: set[str] = set()
-_is_fork = False  # of a process that has drawn
-_not_freed: set[_GLContext] = set()  # keeps garbage collection from freeing a context before what was made in it
+_is_fork = False  # in a process that has rendered
+_not_freed: set[_GLContext] = set()  # else garbage collection could free a context before its objects
 _remembered: list[str] = []
 _lock = threading.RLock()

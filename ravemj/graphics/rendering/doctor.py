@@ -1,4 +1,4 @@
-"""Which backends work on this machine, and what to install for the others."""
+"""Diagnosis of the rendering backends of this machine, with installation hints."""
 
 import importlib
 import os
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import mujoco
 
-from ravemj.graphics.rendering.contexts import GL_BACKENDS, INSTALL, RAY, OffscreenContext, attempt
+from ravemj.graphics.rendering.contexts import GL_BACKENDS, RAY, OffscreenContext, attempt, remedy
 from ravemj.graphics.rendering.gl import GlRenderer
 from ravemj.graphics.rendering.gl_scene import Quality
 
@@ -26,29 +26,29 @@ except Exception as error:
 
 
 class BackendReport(NamedTuple):
-    """What one backend does on this machine."""
+    """Result of probing one backend."""
 
     name: str  # ``egl``, ``osmesa``, ``glfw`` or ``ray``
     works: bool
-    detail: str  # the driver that draws, or why it does not work, in one line
-    install: str  # what to install where it does not work; else empty
+    detail: str  # the driver, or the reason of the failure, in one line
+    install: str  # what to install after a failure; else empty
 
 
 def probe_backends() -> list[BackendReport]:
     """Try every backend, in the order in which they are chosen.
 
-    Each is tried in a process of its own, because a broken driver can end the process that loads it. So this
-    takes a second or two, and never fails.
+    Each is tried in its own process, because a broken driver can crash it. This takes a second or two, and never
+    fails.
     """
     reports = [probe(backend) for backend in GL_BACKENDS]
     return [*reports, BackendReport(RAY, True, "ray casting on the CPU, needs no OpenGL", "")]
 
 
 def driver_name(backend: str) -> str:
-    """Open a small renderer with a backend, in this process, and return the name of the driver behind it.
+    """Open a small renderer with a backend, in this process, and return the name of its driver.
 
     Raises:
-        Exception: whatever the backend raises where it does not work.
+        Exception: any error of the backend.
     """
 
     def ask(context: OffscreenContext) -> str:
@@ -62,7 +62,7 @@ def driver_name(backend: str) -> str:
 
 
 def probe(backend: str) -> BackendReport:
-    """Try one of ``GL_BACKENDS`` in a process of its own."""
+    """Try one of ``GL_BACKENDS`` in a new process."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path or os.curdir for path in sys.path)}
     environment.pop("MUJOCO_GL", None)
     try:
@@ -75,10 +75,10 @@ def probe(backend: str) -> BackendReport:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return BackendReport(backend, False, f"no answer within {_TIMEOUT:g} s", INSTALL[backend])
+        return BackendReport(backend, False, f"no answer within {_TIMEOUT:g} s", remedy(backend))
     if child.returncode == 0:
         return BackendReport(backend, True, child.stdout.strip(), "")
-    return BackendReport(backend, False, _reason(child), INSTALL[backend])
+    return BackendReport(backend, False, _reason(child), remedy(backend))
 
 
 def _reason(child: "subprocess.CompletedProcess[str]") -> str:

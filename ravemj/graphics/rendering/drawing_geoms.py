@@ -1,4 +1,4 @@
-"""Drawings for MuJoCo's classic renderer: each figure becomes an ``mjvGeom``, many thousands of them at a time."""
+"""Conversion of drawings to ``mjvGeom`` structures of MuJoCo's classic renderer, vectorized over many thousands."""
 
 import mujoco
 import numpy as np
@@ -18,10 +18,10 @@ _Floats32 = NDArray[np.float32]
 def add_drawing_geoms(
     scene: mujoco.MjvScene, primitives: Primitives, camera: Camera, width: int, height: int
 ) -> list[_Floats32]:
-    """Append drawings in the world to a scene that has been updated; what does not fit is left out.
+    """Append drawings in the world to an updated scene; those beyond its capacity are left out.
 
     Returns:
-        The widths of what is as wide as said on the screen, each (N, 2), which may be written to [pixels].
+        Writable arrays of the widths of points and lines [pixels], each of shape (N, 2).
     """
     widths: list[_Floats32] = []
     points, spheres, lines, triangles = primitives.batches
@@ -40,7 +40,7 @@ def add_drawing_geoms(
 
 
 def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) -> PrimitiveBatch:
-    """Return points as lines that are as long as they are wide, level on the screen."""
+    """Return points as horizontal lines on the screen, as long as they are wide."""
     centers, sizes = points.corners[:, 0], np.maximum(points.sizes, 1)
     depth = (centers - camera.position) @ camera.rotation[:, 2]
     half = (0.5 * sizes * depth / camera.pinhole(width, height).fx)[:, None] * camera.rotation[:, 0]
@@ -48,7 +48,7 @@ def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) ->
 
 
 def _append(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, count: int) -> tuple[mujoco.MjvGeom, ...]:
-    """Take over free slots of the scene, as geoms of a kind that are no parts of the model and cast no shadows."""
+    """Allocate geoms of a type in the scene, which belong to no model and cast no shadows."""
     first = scene.ngeom
     slots = scene.geoms[first : first + count]
     for number, slot in enumerate(slots, first):
@@ -63,7 +63,7 @@ def _append(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, count: int) -> tuple[m
 def _write(slots: tuple[mujoco.MjvGeom, ...], kind: mujoco.mjtGeom, batch: PrimitiveBatch, eye: Floats) -> None:
     size, position, frame, rgba = (_column(slots, name) for name in ("size", "pos", "mat", "rgba"))
     rgba[:] = np.clip(batch.rgba, 0, 1)
-    rgba[:, 3] = 1 - np.sqrt(1 - rgba[:, 3])  # MuJoCo draws what is transparent twice, for its back and its front
+    rgba[:, 3] = 1 - np.sqrt(1 - rgba[:, 3])  # MuJoCo draws transparent geoms twice, back faces and front faces
     position[:] = batch.corners[:, 0]
     if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
         size[:] = batch.sizes[:, None]
@@ -76,7 +76,7 @@ def _write(slots: tuple[mujoco.MjvGeom, ...], kind: mujoco.mjtGeom, batch: Primi
 
 
 def _column(slots: tuple[mujoco.MjvGeom, ...], name: str) -> _Floats32:
-    """Return one field of neighbouring geoms as one array that writes through: MuJoCo has them in one block."""
+    """Return a writable view of one field of consecutive geoms, which MuJoCo allocates in one block."""
     first: _Floats32 = getattr(slots[0], name)
     second: _Floats32 = getattr(slots[min(1, len(slots) - 1)], name)
     stride = second.ctypes.data - first.ctypes.data
@@ -84,9 +84,9 @@ def _column(slots: tuple[mujoco.MjvGeom, ...], name: str) -> _Floats32:
 
 
 def _frames_of_triangles(corners: Floats, eye: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return lengths (N,) and (N,) of two sides, and matrices (N, 3, 3) whose columns are those and a normal.
+    """Return lengths of two sides, shape (N,) each, and matrices, shape (N, 3, 3), of their directions and the normal.
 
-    The light falls on the front, so the side that the eye sees becomes the front.
+    Only the front side is lit, so the normal is towards the camera.
     """
     one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     away = np.einsum("ij,ij->i", np.cross(one, other), corners[:, 0] - eye) > 0
@@ -98,6 +98,6 @@ def _frames_of_triangles(corners: Floats, eye: Floats) -> tuple[Floats, Floats, 
 
 
 def _length_and_direction(vectors: Floats) -> tuple[Floats, Floats]:
-    """Return the lengths (N,) of vectors (N, 3) and the unit vectors; a vector of no length stays as it is."""
+    """Return the lengths, shape (N,), and the unit vectors of vectors, shape (N, 3); zero vectors stay zero."""
     lengths = np.linalg.norm(vectors, axis=1)
     return lengths, vectors / np.where(lengths > 0, lengths, 1)[:, None]

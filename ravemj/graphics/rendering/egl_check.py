@@ -1,8 +1,8 @@
-"""A check whether EGL works here. It leaves no trace: a libEGL that fails is unloaded.
+"""Check that EGL works on this machine, without side effects: a libEGL that fails is unloaded.
 
-MuJoCo takes its OpenGL functions from the first platform library that it finds in the process. A libEGL that
-was loaded and does not work would therefore keep OSMesa from working too, and PyOpenGL, which mujoco.egl uses,
-settles for one platform when it is imported. So EGL is tried with ctypes first.
+MuJoCo loads its OpenGL functions from the first platform library of the process. A loaded libEGL that does not work
+would therefore prevent OSMesa from working, and PyOpenGL, which mujoco.egl uses, selects its platform on import. So
+EGL is tried with ctypes first.
 """
 
 import _ctypes
@@ -16,7 +16,7 @@ _MAX_DEVICES = 32
 
 
 def check_egl() -> None:
-    """Raise RuntimeError with the reason where EGL cannot draw without a display; else do nothing."""
+    """Raise RuntimeError with the reason if EGL cannot render without a display."""
     library = _load(("libEGL.so.1",))
     try:
         _load(("libOpenGL.so.0", "libGL.so.1"))
@@ -66,7 +66,7 @@ def _address(library: ctypes.CDLL, name: bytes) -> int:
 
 @contextlib.contextmanager
 def variable_restored(name: str, meanwhile: str | None = None) -> Generator[None]:
-    """Give an environment variable that is not set a value meanwhile, and remove it afterwards, whoever set it."""
+    """Set an unset environment variable during the block, and remove it at the end, whoever has changed it."""
     if name in os.environ:
         yield
         return

@@ -1,7 +1,7 @@
-"""Which pixels drawings cover, without OpenGL: what the ray caster lays over its picture.
+"""Rasterization of drawings without OpenGL, for the ray caster.
 
-Each figure is tested against the pixels of a rectangle around it, all figures of a kind at once, so the cost grows
-with the pixels that are covered and not with figures times pixels.
+Each primitive is tested against the pixels of its bounding rectangle, all primitives of a kind at once, so the cost
+is proportional to the number of covered pixels.
 """
 
 from collections.abc import Iterator
@@ -17,43 +17,43 @@ from ravemj.graphics.rendering.lights import Lights
 from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _AT_ONCE = 1 << 20
-"""Pairs of figure and pixel that are tested at once."""
+"""Maximum number of (primitive, pixel) pairs tested at once."""
 
 _PIECE = 16.0
-"""Length of the pieces that lines are cut into [pixels], so that their rectangles stay small."""
+"""Length of the segments into which lines are cut [pixels], so that bounding rectangles stay small."""
 
 _NEAREST = 1e-6
-"""Lines are cut off at this depth [m]."""
+"""Near clipping depth of lines [m]."""
 
 _SLACK = 1e-9
-"""How far outside a triangle a ray still hits, so that there are no gaps between neighbours."""
+"""Tolerance of barycentric coordinates, so that there are no gaps between adjacent triangles."""
 
 
 class Fragments(NamedTuple):
-    """What drawings contribute to rays, in any order."""
+    """Contributions of drawings to the colours of rays, in any order."""
 
     ray: Ints  # index of the ray, (N,)
     depth: Floats  # along the viewing direction, (N,) [m]
     color: Floats  # colour and opacity, (N, 4): 0..255 and 0..1
 
     def select(self, chosen: NDArray[np.bool_]) -> "Fragments":
-        """Return some of the fragments, by a mask (N,)."""
+        """Return the fragments of a mask, shape (N,)."""
         return Fragments(self.ray[chosen], self.depth[chosen], self.color[chosen])
 
     def between(self, start: int, stop: int) -> "Fragments":
-        """Return the fragments of the rays from ``start`` to ``stop - 1``, numbered from 0."""
+        """Return the fragments of the rays ``start`` to ``stop - 1``, renumbered from 0."""
         some = self.select((self.ray >= start) & (self.ray < stop))
         return some._replace(ray=some.ray - start)
 
     def of_rays(self, rays: Ints, count: int) -> "Fragments":
-        """Return the fragments of some of ``count`` rays, numbered by their places among those."""
+        """Return the fragments of a subset of ``count`` rays, renumbered by the order of the subset."""
         place = np.full(count, -1)
         place[rays] = np.arange(len(rays))
         some = self.select(place[self.ray] >= 0)
         return some._replace(ray=place[some.ray])
 
     def over(self, colors: Floats) -> None:
-        """Lay the fragments over the colours of the rays (M, 3) in 0..255, from back to front."""
+        """Blend the fragments over the colours of the rays, shape (M, 3) in 0..255, from back to front."""
         nearest_wall = np.full(len(colors), np.inf)
         opaque = self.color[:, 3] >= 1
         np.minimum.at(nearest_wall, self.ray[opaque], self.depth[opaque])
@@ -73,22 +73,26 @@ NO_FRAGMENTS = Fragments(np.empty(0, dtype=np.int_), np.empty(0), np.empty((0, 4
 
 @dataclass
 class Raster:
-    """Finds the fragments of drawings in one picture."""
+    """Rasterizer of the drawings of one picture."""
 
     camera: Camera
     size: tuple[int, int]  # columns and rows
-    lights: Lights  # what falls on triangles and spheres
-    offset: tuple[float, float] = (0.0, 0.0)  # of rays from the centres of the pixels, right and down [pixels]
+    lights: Lights  # lights on triangles and spheres
+    offset: tuple[float, float] = (0.0, 0.0)  # offset of rays from the pixel centres, right and down [pixels]
     ray_of_pixel: Ints | None = None  # index of the ray of each pixel, (H * W,), -1: none; None: its own number
 
     def fragments(self, primitives: Primitives) -> Fragments:
-        """Return what drawings, given in the world, cover."""
+        """Return the fragments of drawings given in the world."""
         T_camera_world = np.eye(4)
         T_camera_world[:3, :3] = self.camera.rotation.T
         T_camera_world[:3, 3] = -self.camera.rotation.T @ self.camera.position
         points, spheres, lines, triangles = primitives.placed(T_camera_world).batches
-        found = [*self._points(points), *self._spheres(spheres), *self._lines(lines), *self._triangles(triangles)]
-        return Fragments(*(np.concatenate(arrays) for arrays in zip(*found, strict=True))) if found else NO_FRAGMENTS
+        fragments = [*self._points(points), *self._spheres(spheres), *self._lines(lines), *self._triangles(triangles)]
+        return (
+            Fragments(*(np.concatenate(arrays) for arrays in zip(*fragments, strict=True)))
+            if fragments
+            else NO_FRAGMENTS
+        )
 
     def _points(self, batch: PrimitiveBatch) -> Iterator[Fragments]:
         batch = _select(batch, batch.corners[:, 0, 2] > _NEAREST)
@@ -117,7 +121,7 @@ class Raster:
             yield _flat(ray[hit], depth, batch.rgba[owner])
 
     def _pieces(self, start: Floats, along: Floats, half: Floats) -> tuple[Ints, Floats, Floats]:
-        """Cut the visible parts of lines on the screen: the line of each piece, and where it begins and ends, 0..1."""
+        """Cut visible lines on the screen into segments; return the line index, start and end (0..1) of each."""
         with np.errstate(divide="ignore", invalid="ignore"):
             crossings = np.stack([-half[:, None] - start, self.size + half[:, None] - start]) / along
         first = np.nanmax(np.minimum(*crossings), axis=1, initial=0)
@@ -144,7 +148,7 @@ class Raster:
             yield self._lit(ray[hit], depth, direction[hit], normals, batch.rgba[sphere])
 
     def _around_spheres(self, center: Floats, radius: Floats) -> tuple[Floats, Floats]:
-        """Return the rectangles on the screen; where the plane of the eye cuts a sphere, the whole of it."""
+        """Return the bounding rectangles on the screen; for a sphere that the camera plane cuts, the whole screen."""
         x_or_y, depth, r = center[:, :2], center[:, 2:], radius[:, None]
         in_front = (depth > r)[:, 0]
         low, high = _whole_screen(len(radius))
@@ -173,7 +177,7 @@ class Raster:
             yield self._lit(ray[hit], depth[hit], direction[hit], normals[owner[hit]], batch.rgba[owner[hit]])
 
     def _around_triangles(self, corners: Floats) -> tuple[Floats, Floats]:
-        """Return the rectangles on the screen; where the plane of the eye cuts a triangle, the whole of it."""
+        """Return the bounding rectangles on the screen; for a triangle that the camera plane cuts, the whole screen."""
         in_front = (corners[:, :, 2] > _NEAREST).all(axis=1)
         low, high = _whole_screen(len(corners))
         on_screen = self._project(corners[in_front])
@@ -185,12 +189,12 @@ class Raster:
         return self.camera.pinhole(*self.size)
 
     def _project(self, points: Floats) -> Floats:
-        """Return where points (..., 3) before the camera, in its frame, are on the screen, (..., 2) [pixels]."""
+        """Project points in the camera frame, shape (..., 3), to the screen, shape (..., 2) [pixels]."""
         focal, principal = np.array(self._pinhole).reshape(2, 2)
         return points[..., :2] / points[..., 2:] * focal + principal
 
     def _directions(self, at: Floats) -> Floats:
-        """Return the rays through places on the screen (N, 2), in the frame of the camera, (N, 3) with depth 1."""
+        """Return the rays through points of the screen, shape (N, 2), in the camera frame, shape (N, 3), depth 1."""
         focal, principal = np.array(self._pinhole).reshape(2, 2)
         return np.column_stack([(at - principal) / focal, np.ones(len(at))])
 
@@ -201,9 +205,9 @@ class Raster:
         return _flat(ray, depth, np.column_stack([np.minimum(rgba[:, :3] * light, 1), rgba[:, 3]]))
 
     def _pairs(self, low: Floats, high: Floats) -> Iterator[tuple[Ints, Ints, Floats]]:
-        """Yield the rays through rectangles (N, 2) and (N, 2) on the screen, many at once.
+        """Yield, in batches, the rays through rectangles given by two corners, shape (N, 2) each.
 
-        Each time: index of the rectangle, index of the ray, and where the ray goes through the screen (M, 2) [pixels].
+        A batch has rectangle indices, ray indices, and the rays' points on the screen, shape (M, 2) [pixels].
         """
         center = 0.5 + np.array(self.offset)
         first = np.ceil(np.clip(low - center, 0, self.size)).astype(int)
@@ -225,7 +229,7 @@ class Raster:
 
 
 def _whole_screen(count: int) -> tuple[Floats, Floats]:
-    """Return the least and the largest coordinates of rectangles without bounds, each (count, 2)."""
+    """Return the corners of unbounded rectangles, shape (count, 2) each."""
     return np.full((count, 2), -np.inf), np.full((count, 2), np.inf)
 
 
@@ -238,14 +242,14 @@ def _flat(ray: Ints, depth: Floats, rgba: Floats) -> Fragments:
 
 
 def _numbered(counts: Ints) -> tuple[Ints, Ints]:
-    """Return each index i ``counts[i]`` times, and numbers from 0 to ``counts[i] - 1`` beside it."""
+    """Return each index i ``counts[i]`` times, and running numbers from 0 to ``counts[i] - 1``."""
     index = np.repeat(np.arange(len(counts)), counts)
     first = np.cumsum(counts) - counts
     return index, np.arange(len(index)) - first[index]
 
 
 def _cut_off(ends: Floats) -> Floats:
-    """Return lines (N, 2, 3) without what is nearer than the camera sees."""
+    """Clip lines, shape (N, 2, 3), at the near depth."""
     depth = ends[:, :, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
         part = (_NEAREST - depth[:, 0]) / (depth[:, 1] - depth[:, 0])

@@ -1,4 +1,4 @@
-"""Pictures by OpenGL, without a window."""
+"""Offscreen rendering with OpenGL."""
 
 import mujoco
 import numpy as np
@@ -17,13 +17,13 @@ from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import WHITE
 
 _DEPTH_ZERO_FAR = 1
-"""MuJoCo's ``mjDEPTH_ZEROFAR``: depths are handed out as they are drawn, which loses no digits."""
+"""MuJoCo's ``mjDEPTH_ZEROFAR``: depth values are returned as rendered, without loss of precision."""
 
 
 class GlRenderer(Renderer):
-    """Draws one model with MuJoCo's classic OpenGL renderer.
+    """Renders one model with MuJoCo's classic OpenGL renderer.
 
-    A picture may be drawn from any thread, one at a time: the context is current only while one is drawn.
+    Any thread may render, one at a time: the context is current only while rendering.
     """
 
     def __init__(self, model: mujoco.MjModel, quality: Quality, context: OffscreenContext) -> None:
@@ -37,7 +37,7 @@ class GlRenderer(Renderer):
             stage = GlScene(model, quality)
             offscreen = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
             mujoco.mjr_setBuffer(offscreen, stage.context)
-            if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, and there is none
+            if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, which does not exist
                 stage.close()
                 raise RenderingError("the OpenGL driver has no offscreen framebuffers")
             self._gl_scene = stage
@@ -53,7 +53,7 @@ class GlRenderer(Renderer):
         style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
-        chosen = Look.of(look)
+        chosen = Look.coerced(look)
         stage = self._filled_stage(data, camera, primitives, style, chosen)
         if stage.is_empty:
             return self._backdrop(chosen, camera)
@@ -66,7 +66,7 @@ class GlRenderer(Renderer):
         return picture
 
     def _backdrop(self, look: Look, camera: Camera) -> NDArray[np.uint8]:
-        """Return a picture of the background alone."""
+        """Render the background alone."""
         columns, rows = camera.ray_parts(*self._size)
         rays = columns + rows
         return np.rint(255 * sky_colours(look, rays[..., 2] / np.linalg.norm(rays, axis=2))).astype(np.uint8)
@@ -101,18 +101,18 @@ class GlRenderer(Renderer):
         return np.where(shown, depths, np.inf).astype(np.float32)
 
     def close(self) -> None:
-        """Free the context and what is in it; a second call does nothing."""
+        """Free the context and its objects; a second call does nothing."""
         stage, self._gl_scene = self._gl_scene, None
         if stage is None:
             return
-        if is_left_to_end():  # the main thread may just close the display
+        if is_left_to_end():  # the main thread may be closing the display
             _never_freed.append(stage)
             return
         try:
             with self._context.current():
                 stage.close()
         except RenderingError:
-            _never_freed.append(stage)  # freeing it here would free what the window in this thread holds
+            _never_freed.append(stage)  # freeing it here would free objects of this thread's window
         self._context.close()
 
     def __del__(self) -> None:
@@ -133,7 +133,7 @@ class GlRenderer(Renderer):
         return self._gl_scene
 
     def _read(self, stage: GlScene, depth: NDArray[np.float32] | None = None) -> NDArray[np.uint8]:
-        """Return what was drawn; a buffer for depths is filled too, the last row first."""
+        """Return the rendered picture; a depth buffer, if given, is filled too, bottom row first."""
         width, height = self._size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
         stage.context.readDepthMap = _DEPTH_ZERO_FAR

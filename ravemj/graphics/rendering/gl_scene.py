@@ -1,7 +1,7 @@
-"""MuJoCo's classic drawing, wherever it goes: into an offscreen buffer or into a window.
+"""MuJoCo's classic renderer, for offscreen buffers and windows.
 
-A ``GlScene`` belongs to one model and one OpenGL context. Its methods need that context to be current in the
-calling thread; making it current is the caller's business, which is why a window can use the same code.
+A ``GlScene`` belongs to one model and one OpenGL context. The caller makes that context current in its thread before
+calling any method, so that windows can use the same code.
 """
 
 import copy
@@ -27,42 +27,42 @@ from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import FLOOR_REACH
 
 SHADOW_SIZE = 1024
-"""Texels along one side of a shadow map: more cost much more on a CPU, and the main light has several maps."""
+"""Texels along one side of a shadow map. Larger ones are slow on a CPU, and the main light has several maps."""
 
 _SHADOW_REACH = 1.05
 """Half the side of the shadow map, in radii of the scene.
 
-MuJoCo's offset between a surface and its own shadow grows with it: with 1 there are specks of shadow on surfaces that
-are far from the light.
+MuJoCo's offset between a surface and its own shadow grows with it: with 1 there are shadow artefacts on surfaces far
+from the light.
 """
 
 _SHADOW_DISTANCE = 1.1
-"""Distance of lights from what their shadow maps show [radii of the scene]: the floor is no nearer to them."""
+"""Distance of lights from the centre of their shadow maps [radii of the scene]; the floor is farther away."""
 
 _SLICES, _STACKS = 48, 24
-"""Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""
+"""Facets around and along round shapes; with MuJoCo's 28 and 16, edges are visible in close-ups."""
 
 _SAMPLES = 4
-"""Samples per pixel that contexts begin with: one that begins without gets no buffer to resolve samples into, ever."""
+"""Initial samples per pixel of a context: MuJoCo creates the buffer that resolves samples only at the start."""
 
 _SPARE_GEOMS = 1000
 _MAX_FIGURES = 300_000
-"""Most figures of drawings in one picture: MuJoCo needs a second to make room for so many."""
+"""Maximum number of drawn primitives in one picture: MuJoCo needs a second to allocate so many."""
 
 _SMALLEST = 1e-3
-"""Radius of what has none, such as a single point [m]."""
+"""Least radius of a drawing's bounding sphere [m], for instance of a single point."""
 
 _WIDEST = 1e-6
-"""Nearest depth, as a part of the farthest one: with less, MuJoCo loses the background."""
+"""Least ratio of the near to the far depth; below it MuJoCo loses the background."""
 
 FLOOR_MATERIAL = "floor"
-"""The material of MJCF files that has the grid of the floor."""
+"""Name of the material with the floor's grid in MJCF files."""
 
 _FLOOR_BELOW = 1e-4
-"""Gap between the bodies and the floor below them [radii of the scene]; a floor of the model hides ours."""
+"""Gap between the bodies and the drawn floor [radii of the scene]; a floor of the model hides it."""
 
 _painting = threading.Lock()
-"""Held while the texture of a model has a background's colour."""
+"""Held while the texture of a model contains a background colour."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -78,16 +78,16 @@ _PLAIN = Look()
 
 @dataclass(frozen=True)
 class Quality:
-    """What an OpenGL context is made for; it cannot be changed afterwards."""
+    """Fixed properties of an OpenGL context."""
 
     width: int  # columns of the offscreen buffer
     height: int  # rows of the offscreen buffer
-    shadows: bool | None = False  # whether lights that cast shadows do so; None: if there is a graphics card
+    shadows: bool | None = False  # whether to render shadows; None: only with a graphics card
     samples: int = 4  # per pixel against jagged edges, 0 or 4
 
 
 class GlScene:
-    """Draws one model with OpenGL: ``fill`` fills MuJoCo's ``scene``, the list of what is drawn."""
+    """Renders one model with OpenGL from MuJoCo's ``MjvScene``, the list of drawn geoms; ``fill`` updates it."""
 
     def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
         self._model = model
@@ -111,7 +111,7 @@ class GlScene:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to draw; MuJoCo would leave the buffer as it is."""
+        """Whether nothing is drawn; MuJoCo would then leave the buffer unchanged."""
         return self.scene.ngeom == 0
 
     def _make_scene(self, room: int) -> None:
@@ -129,14 +129,14 @@ class GlScene:
     ) -> None:
         """Copy geom poses, drawings, camera and look into the GL scene.
 
-        With points or lines there are no shadows: MuJoCo would draw these once more for each light that casts some, and
-        add the colours up. ``size`` is columns and rows of the viewport.
+        With points or lines there are no shadows: MuJoCo would draw these again for each light with shadows and add
+        the colours. ``size`` is columns and rows of the viewport.
         """
         self._make_room(len(primitives))
         has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
         self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self.has_shadows and not has_lines
         self._look, self._floor = look, None if style.wireframe else self._level.floor(data, look)
-        self._contents = Contents.of(self._model, data, primitives, self._floor)
+        self._contents = DrawnExtent.from_model(self._model, data, primitives, self._floor)
         aim(self.scene, camera, size, self._contents.depths(camera))
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
@@ -152,7 +152,7 @@ class GlScene:
         self.aim(camera, size)
 
     def aim(self, camera: Camera, size: tuple[int, int]) -> None:
-        """Look at what was filled in from elsewhere."""
+        """Change only the camera of the filled scene."""
         near, far = self._contents.depths(camera)
         aim(self.scene, camera, size, (near, far))
         self._columns = size[0]
@@ -164,7 +164,7 @@ class GlScene:
             self._add_floor(self._floor, camera)
 
     def _add_floor(self, floor: Floor, camera: Camera) -> None:
-        """Append the floor, in colours that become its own under the lights, and let it fade away."""
+        """Append the floor, in colours that are corrected for the lighting, with fog towards the horizon."""
         start, end = floor.fading(camera)
         half = floor.cell * np.ceil(FLOOR_REACH * end / floor.cell)
         middle = floor.cell * np.rint(camera.position[:2] / floor.cell)
@@ -173,7 +173,7 @@ class GlScene:
             (light.ambient + light.diffuse * max(-float(light.dir[2]), 0.0) for light in self._drawn_lights()),
             start=np.full(3, 1e-3),
         )
-        glow = max(float(np.max(floor.colour - light)), 0.0)  # it is as bright as it should be in any light
+        glow = max(float(np.max(floor.colour - light)), 0.0)  # its brightness in any light
         rgba = np.array([*floor.colour / (light + glow), 1], dtype=np.float32)
         slot = self.scene.geoms[self.scene.ngeom]
         size = np.array([half, half, 1.0])
@@ -191,13 +191,13 @@ class GlScene:
         return self.scene.lights[: self.scene.nlight]
 
     def set_buffer(self, width: int, height: int, samples: int) -> None:
-        """Give the offscreen buffer another size or other samples per pixel, 0 or 4."""
+        """Set the size and the samples per pixel (0 or 4) of the offscreen buffer."""
         context = self.context
         if (context.offWidth, context.offHeight, context.offSamples) == (width, height, samples):
             return
         if context.offSamples != samples:
             context.offSamples = samples
-            mujoco.mjr_resizeOffscreen(1, 1, context)  # nothing happens where the size stays
+            mujoco.mjr_resizeOffscreen(1, 1, context)  # no effect if the size does not change
         mujoco.mjr_resizeOffscreen(width, height, context)
 
     def _make_room(self, figures: int) -> None:
@@ -208,10 +208,10 @@ class GlScene:
             self._make_scene(min(2 * figures, _MAX_FIGURES))
 
     def draw(self, viewport: mujoco.MjrRect) -> None:
-        """Draw into a rectangle of the current framebuffer, in pixels from its lower left corner.
+        """Render into a rectangle of the current framebuffer, in pixels from its lower left corner.
 
-        Where it has fewer columns than the size that was filled in for, points and lines are narrower. The background
-        is black where the model has no skybox texture.
+        If it has fewer columns than the size given to ``fill``, points and lines become narrower. The background is
+        black if the model has no skybox texture.
         """
         self._paint_background()
         self.scene.flags[mujoco.mjtRndFlag.mjRND_FOG] = self.scene.ngeom > self._filled
@@ -220,7 +220,7 @@ class GlScene:
         mujoco.mjr_render(viewport, self.scene, self.context)
 
     def draw_ids(self, viewport: mujoco.MjrRect) -> None:
-        """Draw geom numbers instead of colours; :meth:`geom_ids` reads them back."""
+        """Render geom ids instead of colours; :meth:`geom_ids` decodes them."""
         flags, count = self.scene.flags.copy(), self.scene.ngeom
         self.scene.ngeom = self._filled
         self.scene.flags[mujoco.mjtRndFlag.mjRND_FOG] = False
@@ -231,7 +231,7 @@ class GlScene:
         self.scene.ngeom = count
 
     def geom_ids(self, pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
-        """Return the geom that each pixel drawn by :meth:`draw_ids` shows: (..., 3) to (...), -1 for none."""
+        """Decode the pixels rendered by :meth:`draw_ids`, shape (..., 3), to geom ids, shape (...), -1 for none."""
         codes = pixels.astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], dtype=np.int32)
         geom_of_code = np.full(self.scene.ngeom + 1, -1, dtype=np.int32)
         for drawn in self.scene.geoms[: self.scene.ngeom]:
@@ -240,13 +240,13 @@ class GlScene:
         return geom_of_code[codes]
 
     def close(self) -> None:
-        """Free the resources on the graphics card."""
+        """Free the OpenGL resources."""
         self.context.free()
 
     def _cover_with_shadows(self, near: float) -> None:
-        """Move directional lights back until their shadow map covers the scene.
+        """Move directional lights back so that their shadow maps cover the scene.
 
-        Where they stand makes no difference to their light. MuJoCo looks from them with the camera's depths.
+        Their positions have no effect on the illumination. MuJoCo renders shadow maps with the camera's depth range.
         """
         center, radius = self._contents.spheres[0]
         self.context.shadowClip = _SHADOW_REACH * radius
@@ -255,7 +255,7 @@ class GlScene:
                 light.pos = center - (near + _SHADOW_DISTANCE * radius) * light.dir
 
     def _paint_background(self) -> None:
-        """Upload a new skybox where the background changed; the model keeps its own texture."""
+        """Upload a new skybox if the background changed; the model keeps its own texture."""
         background = self._look.background
         if self._skybox is None or self._painted == (background,):
             return
@@ -272,7 +272,7 @@ class GlScene:
 
 
 def drawing_option() -> mujoco.MjvOption:
-    """Return what is drawn: the geoms of groups 0 to 2, and no sites, tendons or other aids."""
+    """Return the visualization options: geoms of groups 0 to 2, without sites, tendons and other aids."""
     option = mujoco.MjvOption()
     option.geomgroup[:] = DRAWN_GROUPS
     option.sitegroup[:] = 0
@@ -282,22 +282,22 @@ def drawing_option() -> mujoco.MjvOption:
 
 
 @dataclass(frozen=True, eq=False)
-class Contents:
-    """How far what is drawn reaches."""
+class DrawnExtent:
+    """Bounding volume of the drawn objects, for the clipping depths."""
 
     spheres: tuple[tuple[Floats, float], ...]  # centres and radii around geoms, and around drawings if there are some
-    planes: float  # for models with planes, how far these are drawn [m]; else 0
-    floor: Floor | None  # what the bodies stand on
+    planes: float  # drawn extent of planes [m]; 0 without planes
+    floor: Floor | None  # the floor below the bodies
 
     @classmethod
-    def of(
+    def from_model(
         cls,
         model: mujoco.MjModel,
         data: mujoco.MjData,
         primitives: Primitives = NOTHING,
         floor: Floor | None = None,
-    ) -> "Contents":
-        """Return how far a model, drawings and the floor reach."""
+    ) -> "DrawnExtent":
+        """Return the extent of a model, drawings and the floor."""
         spheres = [bounding_sphere(model, data)]
         if len(primitives):
             center, radius = primitives.bounding_sphere()
@@ -306,10 +306,10 @@ class Contents:
         return cls(tuple(spheres), 5 * model.vis.map.zfar * model.stat.extent if has_planes else 0.0, floor)
 
     def depths(self, camera: Camera) -> tuple[float, float]:
-        """Return depths [m] between which everything lies that a camera can see, wherever it stands.
+        """Return the near and far clipping depths [m] for a camera at any position.
 
-        MuJoCo paints the background on the walls of a cube that fits into the farthest depth, so that has to be
-        well behind the scene. Its depth buffer holds floats, 1 for near, so wide ranges cost no precision.
+        MuJoCo draws the background on a cube inside the far depth, which must therefore be well behind the scene. Its
+        depth buffer holds floats with 1 for near, so wide ranges lose no precision.
         """
         (center, radius), *drawings = self.spheres
         near, far = _depths_of_sphere(center, radius, camera)
@@ -331,7 +331,7 @@ def _depths_of_sphere(center: Floats, radius: float, camera: Camera) -> tuple[fl
 
 
 def _find_skybox(model: mujoco.MjModel) -> int | None:
-    """Return the texture that MuJoCo draws behind everything; None without one that can be written."""
+    """Return the id of the skybox texture; None if there is no writable one."""
     skyboxes = np.flatnonzero(model.tex_type == mujoco.mjtTexture.mjTEXTURE_SKYBOX)
     if skyboxes.size == 0 or model.tex_adr[skyboxes[0]] < 0 or model.tex_nchannel[skyboxes[0]] < 3:
         return None
@@ -340,7 +340,7 @@ def _find_skybox(model: mujoco.MjModel) -> int | None:
 
 @block
 def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
-    """Set what ``MjrContext`` reads from the model, and give the model its own values back."""
+    """Set the quality fields of the model that ``MjrContext`` reads, and restore them at the end of the block."""
     sizes: Sequence[tuple[object, str, int]] = (
         (model.vis.global_, "offwidth", quality.width),
         (model.vis.global_, "offheight", quality.height),

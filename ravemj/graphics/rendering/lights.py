@@ -1,4 +1,4 @@
-"""Lights of pictures, and their reflection by surfaces in the renderer without OpenGL."""
+"""Lights, and the shading of surfaces by the renderer without OpenGL."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -12,16 +12,16 @@ from ravemj.graphics.rendering.style import Look
 from ravemj.model.look import LONE, SENSOR, SOFTNESS, STUDIO, STUDIO_PREFIX, Light
 
 SHININESS = 64
-"""Exponent of highlights: MuJoCo's for materials that say nothing."""
+"""Default exponent of highlights, as in MuJoCo."""
 
 GLOSS = 0.5
-"""Part of the specular light that surfaces reflect: MuJoCo's for materials that say nothing."""
+"""Default specular reflectance, as in MuJoCo."""
 
 _MOST = 8
-"""Lights that OpenGL has at once."""
+"""Maximum number of lights in OpenGL."""
 
 _PARTS = 4
-"""Lights that the main light becomes, side by side, so that the edges of its shadows are soft."""
+"""Number of adjacent lights that replace the main light, for soft shadows."""
 
 
 def place_lights(
@@ -37,17 +37,17 @@ def place_lights(
 
     Args:
         model: The model.
-        scene: What is drawn.
-        lights_of_model: Copies of the lights, as MuJoCo has set them up for the model.
-        look: Says which lights.
+        scene: The scene, whose lights are replaced.
+        lights_of_model: Copies of the lights that MuJoCo set up for the model.
+        look: The look.
         rotation: ``R_world_camera``.
-        soft: Whether lights that cast shadows become several, side by side.
+        soft: Whether lights with shadows are split into several adjacent ones.
     """
     own = [light for light in lights_of_model if _is_own(model, light)]
     lights: Sequence[Light] = ()
     if look.lights == "model":
         kept = own
-        if len(own) == 1 and len(lights_of_model) > 1:  # only the headlight, which is that of a studio
+        if len(own) == 1 and len(lights_of_model) > 1:  # only the headlight, which the studio lights replace
             lights, kept = (LONE,), []
     else:
         lights = SENSOR if look.lights == "sensor" else STUDIO
@@ -68,7 +68,7 @@ def _is_own(model: mujoco.MjModel, light: mujoco.MjvLight) -> bool:
 
 
 def _spread(lights: Sequence[Light], rotation: Floats, parts: int) -> Iterator[tuple[Light, Floats, float]]:
-    """Yield lights, their directions in the world, and which part of the light each is."""
+    """Yield lights, their directions in the world, and their fractions of the intensity."""
     for light in lights:
         direction = light.direction_in_world(rotation)
         if not light.casts_shadows or parts == 1:
@@ -97,7 +97,7 @@ _FIELDS = [name for name in dir(mujoco.MjvLight) if not name.startswith("_")]
 
 
 class Lights:
-    """The lights of a model as its visualiser sets them up, headlight included, or those of a look."""
+    """The lights of a picture: those of a model, headlight included, or those of a look."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
@@ -105,21 +105,21 @@ class Lights:
         self._shines = True
 
     def update(self, data: mujoco.MjData, camera: Camera, depths: tuple[float, float], look: Look) -> None:
-        """Copy the poses of the lights; some move with the camera, whose depth range [m] is given."""
+        """Copy the poses of the lights; some move with the camera. ``depths`` is its depth range [m]."""
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         aim(self._scene, camera, (1, 1), depths)
         mujoco.mjv_makeLights(self._model, data, self._scene)
-        found = [copy.copy(light) for light in self._scene.lights[: self._scene.nlight]]
-        place_lights(self._model, self._scene, found, look, camera.rotation, soft=False)
-        self._shines = look.lights != "sensor"  # whose images had no highlights before
+        lights = [copy.copy(light) for light in self._scene.lights[: self._scene.nlight]]
+        place_lights(self._model, self._scene, lights, look, camera.rotation, soft=False)
+        self._shines = look.lights != "sensor"  # simulated cameras have no highlights
 
     def on(self, points: Floats, rays: Floats, normals: Floats) -> tuple[Floats, Floats]:
-        """Return the light of three colours that surfaces reflect, (N, 3), and their highlights, (N, 3).
+        """Return the diffuse light on surface points, shape (N, 3), and their highlights, shape (N, 3), as RGB.
 
-        Light of 1 shows the surface's own colour; highlights have the colour of the light. The surfaces are at points
-        in the world (N, 3) [m] and seen along rays (N, 3); their unit normals (N, 3) are turned towards the eye where
-        they look away.
+        A diffuse light of 1 gives the surface's own colour; highlights have the colour of the light. Points are in the
+        world, shape (N, 3) [m], with the viewing rays and the unit normals, shape (N, 3) each; normals that point away
+        from the camera are flipped.
         """
         away = np.einsum("ij,ij->i", normals, rays) > 0
         facing = np.where(away[:, None], -normals, normals)

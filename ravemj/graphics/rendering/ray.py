@@ -1,7 +1,7 @@
-"""Pictures by ray casting: MuJoCo's collision geometry, no OpenGL library, the same view.
+"""Rendering by ray casting with MuJoCo's collision geometry, without OpenGL.
 
-Flat shading with lights and highlights, transparency, the floor, no textures and no shadows. The cost is about 0.1
-microseconds per pixel and geom in view.
+It has flat shading with lights and highlights, transparency and the floor, but no textures or shadows. The cost is
+about 0.1 microseconds per pixel and visible geom.
 """
 
 import copy
@@ -20,20 +20,20 @@ from ravemj.graphics.rendering.backdrop import Backdrop, FloorLevel
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.rendering.checks import check_data
 from ravemj.graphics.rendering.fragments import Fragments, Raster
-from ravemj.graphics.rendering.gl_scene import Contents
+from ravemj.graphics.rendering.gl_scene import DrawnExtent
 from ravemj.graphics.rendering.lights import Lights
 from ravemj.graphics.rendering.style import AS_IT_IS, DRAWN_GROUPS, Look, Style, drawn_geoms, geom_rgba
 from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import WHITE
 
 _BAND = 1 << 16
-"""Rays that are cast at once: a few megabytes, whatever the size of the picture."""
+"""Number of rays cast at once: a few megabytes, whatever the size of the picture."""
 
 _LAYERS = 6
-"""Transparent surfaces that are looked through, one behind the other."""
+"""Maximum number of transparent surfaces along a ray."""
 
 _EDGE = 12
-"""Difference between neighbouring pixels, of 255, from which an edge is smoothed."""
+"""Difference between neighbouring pixels, of 255, above which an edge is antialiased."""
 
 _SUBPIXELS = np.array([(-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125)])
 
@@ -47,11 +47,11 @@ _TWO_WALLS = (
     mujoco.mjtGeom.mjGEOM_CYLINDER,
     mujoco.mjtGeom.mjGEOM_BOX,
 )
-"""Convex shapes: a ray that enters one leaves it once, and one that hits it from behind started inside."""
+"""Convex shapes: a ray that enters one leaves it once, and a ray that hits a back face started inside."""
 
 
 class RayRenderer(Renderer):
-    """Draws one model by casting a ray through every pixel."""
+    """Renders one model by casting a ray through each pixel."""
 
     backend = "ray"
     has_shadows = False
@@ -76,7 +76,7 @@ class RayRenderer(Renderer):
         del style  # needs OpenGL
         width, height = self._size
         picture = np.empty((height, width, 3), dtype=np.uint8)
-        scene = self._scene(data, camera, Look.of(look))
+        scene = self._scene(data, camera, Look.coerced(look))
         drawn = Raster(camera, self._size, self._lights).fragments(primitives)
         for rows, rays in self._bands(camera):
             here = drawn.between(rows.start * width, rows.stop * width)
@@ -113,13 +113,13 @@ class RayRenderer(Renderer):
         self._closed = True
 
     def _scene(self, data: mujoco.MjData, camera: Camera, look: Look | None = None) -> "_RayScene":
-        """Hide what is not drawn, in a copy of the model, which others may draw or change meanwhile."""
+        """Prepare a copy of the model without hidden geoms, independent of changes by other threads."""
         if self._closed:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
         model = copy.copy(self._model)
         look = look or Look()
-        self._lights.update(data, camera, Contents.of(model, data).depths(camera), look)
+        self._lights.update(data, camera, DrawnExtent.from_model(model, data).depths(camera), look)
         floor = self._level.floor(data, look)
         seen = None if floor is None or not floor.is_below(camera) else floor
         backdrop = Backdrop(look, seen, camera, 1 / camera.pinhole(*self._size).fx)
@@ -159,9 +159,9 @@ class RayRenderer(Renderer):
 
 @dataclass
 class _RayScene:
-    """One state of a model, seen from one point."""
+    """One state of a model, seen from one camera position."""
 
-    model: mujoco.MjModel  # its geom groups say what can be hit
+    model: mujoco.MjModel  # its geom groups select the visible geoms
     data: mujoco.MjData
     origin: Floats  # the eye in the world, (3,) [m]
     rgba: Floats  # colours of the geoms, (ngeom, 4)
@@ -169,7 +169,7 @@ class _RayScene:
     backdrop: Backdrop
 
     def colors(self, rays: Floats, drawn: Fragments, layers: int = _LAYERS) -> Floats:
-        """Return what rays (N, 3) in world coordinates see, as colours (N, 3) in 0..255, not rounded."""
+        """Return the unrounded colours in 0..255 seen along rays in the world, both of shape (N, 3)."""
         colors = self.backdrop.colours(rays)
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)
@@ -191,9 +191,9 @@ class _RayScene:
         return colors
 
     def cast(self, rays: Floats) -> tuple[NDArray[np.int32], Floats, Floats]:
-        """Return what rays (N, 3) hit first: geom (N,), -1 for none; depth (N,); outer unit normal (N, 3).
+        """Return the first hits of rays, shape (N, 3): geom ids, -1 for none; depths; outer unit normals, shape (N, 3).
 
-        Like OpenGL, it does not see a shape from its inside. Meshes are seen from both sides.
+        Like OpenGL, it ignores shapes seen from inside. Meshes are visible from both sides.
         """
         count = len(rays)
         geom_ids = np.empty(count, dtype=np.int32)
@@ -202,7 +202,7 @@ class _RayScene:
         given = self.model, self.data, self.origin, rays.reshape(-1), DRAWN_GROUPS, True, -1
         mujoco.mj_multiRay(*given, geom_ids, depth, normals.reshape(-1), count, _MAX_DEPTH)
         inside = (np.einsum("ij,ij->i", normals, rays) > 0) & self._has_two_walls(geom_ids)
-        if inside.any():  # the eye is in these geoms, so no ray can see them
+        if inside.any():  # the camera is inside these geoms, so they are invisible
             again = np.flatnonzero(inside)
             self.model.geom_group[geom_ids[again]] = _HIDDEN_GROUP
             geom_ids[again], depth[again], normals[again] = self.cast(rays[again])
@@ -213,7 +213,7 @@ class _RayScene:
         return two_walls[geom_ids]
 
     def _opacity(self, geom_ids: NDArray[np.int32]) -> Floats:
-        """Return how much of what is behind is covered: MuJoCo draws the front of a shape twice."""
+        """Return the effective opacity: MuJoCo draws front faces twice."""
         walls = 1 + self._has_two_walls(geom_ids)
         return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
 
@@ -228,7 +228,7 @@ class _RayScene:
 
 
 def _edges(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Return which pixels differ from the one beside or below, or the one before, (H, W)."""
+    """Return the pixels that differ from the next or the previous one in their row or column, shape (H, W)."""
     edges = np.zeros(picture.shape[:2], dtype=np.bool_)
     for first, second in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         one, other = picture[first], picture[second]

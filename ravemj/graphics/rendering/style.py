@@ -1,4 +1,4 @@
-"""Styles and looks of pictures: visible geoms by the rules of MuJoCo's visualiser, lights, background."""
+"""Drawing styles and looks of pictures: visible geoms as in MuJoCo's visualizer, lights, background."""
 
 import math
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ DRAWN_GROUPS = np.array([1, 1, 1, 0, 0, 0], dtype=np.uint8)
 """Geom groups that a default ``mjvOption`` draws: 0, 1 and 2."""
 
 COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
-"""Geom groups of what collides: 2 is only seen, 3 only collides."""
+"""Geom groups of collision geometry: group 2 is visual only, group 3 collision only."""
 
-_UNSET_RGBA = (0.5, 0.5, 0.5, 1.0)  # which MuJoCo takes for no colour
+_UNSET_RGBA = (0.5, 0.5, 0.5, 1.0)  # MuJoCo's default, which means that no colour is set
 _TINT = np.array([0.3, 0.6, 1.0])
 _TINT_PART = 0.4
-"""A body that is pointed at has so much of this colour, which shows on white and on black."""
+"""Fraction of this colour on a highlighted body; it is visible on white and on black."""
 
 _OPACITY = 0.35
 
@@ -40,33 +40,33 @@ def geom_rgba(model: mujoco.MjModel) -> Floats:
 
 
 def drawn_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
-    """Return which geoms appear in pictures, (ngeom,): those of groups 0 to 2 that are not wholly transparent."""
+    """Return a mask of the visible geoms, shape (ngeom,): those of groups 0 to 2 that are not fully transparent."""
     groups = np.clip(model.geom_group, 0, len(DRAWN_GROUPS) - 1)
     return (DRAWN_GROUPS[groups] > 0) & (geom_rgba(model)[:, 3] > 0)
 
 
 @dataclass(frozen=True)
 class Style:
-    """A way to draw geoms. Rays draw them as they are; OpenGL is needed for others."""
+    """Drawing style of geoms. The ray caster supports only the default; others need OpenGL."""
 
-    collision: bool = False  # what collides is drawn, in place of what is seen
+    collision: bool = False  # collision geometry in place of visual geometry
     hulls: bool = False  # meshes are drawn as their convex hulls
     transparent: bool = False  # bodies are half transparent
     wireframe: bool = False  # only edges are drawn
-    lit: int = -1  # the body of the model that stands out from the others by a tint; -1: none
+    lit: int = -1  # index of the body that is highlighted by a tint; -1: none
 
     @property
     def groups(self) -> NDArray[np.uint8]:
-        """For each geom group, 1 if it is drawn."""
+        """Mask of the drawn geom groups."""
         return COLLISION_GROUPS if self.collision else DRAWN_GROUPS
 
     def apply(self, option: mujoco.MjvOption) -> None:
-        """Set what is taken over into a scene."""
+        """Set the visualization options with which a scene is updated."""
         option.geomgroup[:] = self.groups
         option.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = self.hulls
 
     def colours(self, model: mujoco.MjModel, rgba: Floats) -> Floats:
-        """Return the colours that geoms of these colours, (ngeom, 4), are drawn in."""
+        """Return the drawn colours of geoms, shape (ngeom, 4), given their own."""
         changed = rgba.copy()
         if self.transparent:
             changed[:, 3] *= _OPACITY
@@ -75,14 +75,14 @@ class Style:
         return changed
 
     def finish(self, model: mujoco.MjModel, scene: mujoco.MjvScene) -> None:
-        """Change a scene that was filled: edges only, a body that is tinted, or all transparent."""
+        """Apply wireframe, highlight and transparency to an updated scene."""
         scene.flags[mujoco.mjtRndFlag.mjRND_WIREFRAME] = self.wireframe
         if self.lit < 0 and not self.transparent:
             return
         for geom in scene.geoms[: scene.ngeom]:
             if geom.objtype != mujoco.mjtObj.mjOBJ_GEOM:
                 continue
-            if self.transparent:  # MuJoCo's own way leaves out what no joint moves
+            if self.transparent:  # MuJoCo's own transparency flag skips static bodies
                 geom.rgba[3] *= _OPACITY
                 geom.transparent = 1
             if model.geom_bodyid[geom.objid] == self.lit:
@@ -101,9 +101,9 @@ class Look:
 
     Attributes:
         background: Red, green, blue from 0 to 1; None: a vertical gradient.
-        floor: Whether there is a floor below the bodies. It is no body: nothing but pictures shows it.
-        lights: The lights. ``model`` leaves those of a model as they are, ``sensor`` are those of simulated cameras.
-        lowest: Height [m] at which the floor is at most, for pictures of a motion.
+        floor: Whether a floor is drawn below the bodies. It is not a body of the model.
+        lights: The lights: ``model`` keeps those of the model, ``sensor`` are those of simulated cameras.
+        lowest: Upper bound of the floor's height [m], for pictures of a motion.
     """
 
     background: Rgb | None = WHITE
@@ -112,31 +112,31 @@ class Look:
     lowest: float = math.inf
 
     @classmethod
-    def of(cls, look: "Look | ArrayLike") -> "Look":
-        """Return a look as it is, and for a colour the one with this background and the model's own lights.
+    def coerced(cls, look: "Look | ArrayLike") -> "Look":
+        """Convert a colour to the look with this background and the model's lights; return a look unchanged.
 
         Raises:
-            ArgumentError: this is no colour.
+            ArgumentError: it is neither a look nor a colour.
         """
         return look if isinstance(look, Look) else cls(checked_colour(look))
 
     @classmethod
     def of_sensor(cls, background: Rgb | None) -> "Look":
-        """Return the look of images of simulated cameras: white where nothing sets a background."""
+        """Return the look of simulated cameras; the background is white by default."""
         return cls(background or WHITE, lights="sensor")
 
 
 @dataclass(frozen=True)
 class LookChoices:
-    """Choices of users about a look.
+    """Users' choices for a look.
 
     Attributes:
-        shadows: Whether lights cast shadows; None: as is usual for such pictures.
+        shadows: Whether lights cast shadows; None: the default of the picture.
         floor: One of ``FLOORS``.
         lights: One of ``LIGHTS``.
 
     Raises:
-        ArgumentError: a choice is none of these.
+        ArgumentError: a choice is invalid.
     """
 
     shadows: bool | None = None
@@ -149,7 +149,7 @@ class LookChoices:
                 raise ArgumentError(f"{name}: is {value!r}, and should be one of {', '.join(choices)}")
 
     def look(self, background: Rgb | None) -> Look:
-        """Return the look of pictures with a background; None where nothing sets one."""
+        """Return the look with a background colour; None gives the default background."""
         return Look(background, background is None if self.floor == "auto" else self.floor == "on", self.lights)
 
 

@@ -1,11 +1,12 @@
-"""A motion as one HTML file, which turns, zooms and plays without a server."""
+"""A motion as one self-contained HTML file with camera and playback controls."""
 
 import html
 import math
 import re
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -21,17 +22,17 @@ from ravemj.graphics.webgl.surfaces import surfaces
 from ravemj.model.drawing import NOTHING, Primitives
 
 _HEIGHT = 480
-"""Of a page in a notebook [pixels]."""
+"""Height of a page in a notebook [pixels]."""
 
 _STILL = 1e-9
-"""A body that moves less than this [m, and parts of a unit quaternion] stands still."""
+"""Bodies that move less than this [m, and components of a unit quaternion] count as static."""
 
 
 class Recording(NamedTuple):
-    """What moved."""
+    """A recorded motion."""
 
     fps: float
-    positions: Floats  # of all bodies of the model in the world, shape (frames, bodies, 3) [m]
+    positions: Floats  # positions of all bodies of the model in the world, shape (frames, bodies, 3) [m]
     rotations: Floats  # their quaternions wxyz, shape (frames, bodies, 4)
     values: Floats  # of the joints, shape (frames, joints) [rad or m]
     names: list[str]  # of the joints
@@ -39,12 +40,12 @@ class Recording(NamedTuple):
 
 
 class Appearance(NamedTuple):
-    """How the page begins.
+    """Initial view of the page.
 
     Attributes:
         camera: The camera.
-        aspect: The smallest width, divided by the height, of a picture that shows all that the camera should show.
-            Narrower pages have a larger vertical angle.
+        aspect: Minimum aspect ratio (width by height) for which the camera's field of view shows the scene. Narrower
+            pages get a larger vertical field of view.
         look: Background, floor and lights.
         title: The title.
     """
@@ -53,11 +54,12 @@ class Appearance(NamedTuple):
     aspect: float
     look: Look
     title: str
-    shadows: bool | None = None  # whether lights cast shadows; None: if there is time for them
+    shadows: bool | None = None  # whether lights cast shadows; None: if rendering is fast enough
+    notes: tuple[str, ...] = ()  # lines of text in the corner
 
 
 class Animation(NamedTuple):
-    """A page that plays a motion; the last line of a notebook's cell shows it.
+    """A page that plays a motion; a notebook displays it as the result of a cell.
 
     Attributes:
         html: The whole page.
@@ -76,7 +78,7 @@ class Animation(NamedTuple):
         return Path(path)
 
     def _repr_html_(self) -> str:
-        """Return what notebooks show."""
+        """Return the notebook display."""
         return (
             f'<iframe srcdoc="{html.escape(self.html)}" title="motion" allow="fullscreen" '
             f'style="width: 100%; height: {_HEIGHT}px; border: 0"></iframe>'
@@ -92,24 +94,29 @@ def animation_page(
     recording: Recording,
     appearance: Appearance,
     drawings: Primitives = NOTHING,
+    mechanism: Mapping[str, Any] | None = None,
 ) -> str:
-    """Return a page that plays a recording; it holds all that it needs. What scripts have drawn does not move.
+    """Return a self-contained page that plays a recording. Drawings of scripts do not move.
 
-    Bodies that do not move in the recording stay where they are in the state ``data`` of the model.
+    Bodies without motion in the recording have their poses in the state ``data``, unless sliders move them:
+    ``webgl.sliders.mechanism`` returns these.
     """
     package = Package()
     pack_scene(package, model, surfaces(model))
     pack_drawings(package, drawings)
     _pack_recording(package, recording)
     _pack_view(package, model, data, appearance)
+    package.document["mechanism"] = mechanism
     parts = {
         "title": html.escape(appearance.title),
+        "notes": "".join(f"<p>{html.escape(line)}</p>" for line in appearance.notes),
         "style": _file("animation.css"),
         "camera": _file("camera.js"),
         "look": _file("look.js"),
         "renderer": _file("renderer.js"),
         "sharpness": _file("sharpness.js"),
         "wheel": _file("wheel.js"),
+        "mechanism": _file("mechanism.js"),
         "player": _file("animation.js"),
         "scene": package.text(),
     }
@@ -134,7 +141,7 @@ def _pack_recording(package: Package, recording: Recording) -> None:
 
 
 def _continuous(rotations: Floats) -> Floats:
-    """Return quaternions (frames, bodies, 4) of which each is on the same side as the one before."""
+    """Choose signs of quaternions, shape (frames, bodies, 4), so that each is on the same side as the previous one."""
     turns = np.sign(np.einsum("fbi,fbi->fb", rotations[1:], rotations[:-1]))
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=0)
     return np.concatenate([rotations[:1], rotations[1:] * signs[:, :, None]])

@@ -1,4 +1,4 @@
-"""Bytes for browsers: numbers of 16 bits, differences where neighbours are alike, all compressed."""
+"""Serialization for browsers: 16-bit quantization, differences of neighbours, compression."""
 
 import base64
 import json
@@ -10,19 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
-from ravemj.graphics.webgl.surfaces import Mesh, Surfaces, round_mesh
+from ravemj.graphics.webgl.surfaces import Surfaces, TriangleMesh, round_mesh
 from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _STEPS = 65535
 _WIDE = 65536
-"""So many corners need indices of 32 bits."""
+"""Meshes with more vertices need 32-bit indices."""
 
 
 class Package:
-    """A JSON document whose arrays stand behind it as bytes.
+    """A JSON document, followed by its arrays as bytes.
 
-    Layout: length of the document (4 bytes, little endian), the document, the arrays. ``{"at", "count", "type"}`` in
-    the document names an array by its first byte, how many numbers it has and ``i8``, ``u16``, ``u32`` or ``f32``.
+    Layout: length of the document (4 bytes, little endian), the document, the arrays. The document refers to an array
+    by ``{"at", "count", "type"}``: offset of its first byte, length, and ``i8``, ``u16``, ``u32`` or ``f32``.
     """
 
     def __init__(self) -> None:
@@ -31,7 +31,7 @@ class Package:
         self._length = 0
 
     def array(self, numbers: NDArray[Any]) -> dict[str, Any]:
-        """Add an array; return what names it in the document."""
+        """Add an array; return its reference for the document."""
         content = np.ascontiguousarray(numbers).tobytes()
         content += b"\0" * (-len(content) % 4)  # typed arrays of browsers begin at multiples of their elements' size
         kind = f"{numbers.dtype.kind}{8 * numbers.dtype.itemsize}"
@@ -41,10 +41,10 @@ class Package:
         return name
 
     def quantized(self, numbers: Floats) -> dict[str, Any]:
-        """Add the columns of an array (N, k) as 16 bits each, between the least and the largest number of the column.
+        """Add an array, shape (N, k), quantized to 16 bits between the least and the largest number of each column.
 
-        The error is at most 1/131070 of a column's range. The array has the columns one after the other, each number
-        as the difference from the one before.
+        The error is at most 1/131070 of a column's range. Columns are stored one after the other, as differences of
+        consecutive numbers.
         """
         low, high = numbers.min(axis=0), numbers.max(axis=0)
         step = np.where(high > low, (high - low) / _STEPS, 1.0)
@@ -56,18 +56,18 @@ class Package:
         }
 
     def content(self, level: int = 9) -> bytes:
-        """Return all of it, compressed (zlib) at a level from 1, quick, to 9, small."""
+        """Return the package, compressed with zlib at a level from 1 (fast) to 9 (small)."""
         document = json.dumps(self.document, separators=(",", ":")).encode()
         document += b" " * (-len(document) % 4)
         return zlib.compress(len(document).to_bytes(4, "little") + document + b"".join(self._arrays), level)
 
     def text(self) -> str:
-        """Return all of it, compressed and as letters."""
+        """Return the package, compressed and encoded as text."""
         return base64.b64encode(self.content()).decode()
 
 
 def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None:
-    """Add surfaces of a model: ``meshes``, ``shapes``, ``bodies``, and the ``ball`` that spheres are."""
+    """Add surfaces of a model: ``meshes``, ``shapes``, ``bodies``, and the unit sphere ``ball`` for drawings."""
     package.document["meshes"] = [_packed_mesh(package, mesh) for mesh in shown.meshes]
     package.document["ball"] = _packed_mesh(package, round_mesh(0.0))
     package.document["shapes"] = [
@@ -93,7 +93,7 @@ def pack_drawings(package: Package, drawings: Primitives) -> None:
     }
 
 
-def _packed_mesh(package: Package, mesh: Mesh) -> dict[str, Any]:
+def _packed_mesh(package: Package, mesh: TriangleMesh) -> dict[str, Any]:
     kind = np.uint32 if len(mesh.positions) >= _WIDE else np.uint16
     corners = np.diff(mesh.triangles.reshape(-1).astype(kind), prepend=kind(0))
     return {
@@ -104,7 +104,7 @@ def _packed_mesh(package: Package, mesh: Mesh) -> dict[str, Any]:
 
 
 def octahedral(normals: Floats) -> NDArray[np.int8]:
-    """Return unit vectors (N, 3) as two numbers each, (N, 2): folded onto a square, within 1 degree.
+    """Return the octahedral encoding of unit vectors, shape (N, 3), as two numbers each, shape (N, 2), within 1 degree.
 
     Source: Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014.
     """

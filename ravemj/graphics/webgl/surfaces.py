@@ -1,4 +1,4 @@
-"""The surfaces of a compiled model as triangles: few, since shapes of one kind share theirs."""
+"""Conversion of a compiled model's geoms to triangle meshes; geoms of equal shape share one mesh."""
 
 import itertools
 import math
@@ -19,39 +19,39 @@ _SLICES, _STACKS = 40, 20
 """Facets around and along round shapes."""
 
 _SHARP = 0.8
-"""MuJoCo draws a corner with its own normal if the cosine between that and the face's is at least this much."""
+"""Cosine of the angle between vertex and face normal above which MuJoCo shades smoothly."""
 
 _PLANE = 1000.0
-"""Half the side of a plane that has no end [m]."""
+"""Half the side of an infinite plane [m]."""
 
 _TWO_TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
-"""A square of four corners."""
+"""Triangles of a square with four corners."""
 
 
-class Mesh(NamedTuple):
-    """Triangles whose corners have normals."""
+class TriangleMesh(NamedTuple):
+    """A triangle mesh with vertex normals."""
 
-    positions: Floats  # of the corners, shape (N, 3)
+    positions: Floats  # of the vertices, shape (N, 3)
     normals: Floats  # unit normals there, shape (N, 3)
-    triangles: Triangles  # three corners each, shape (M, 3), counterclockwise seen from outside
+    triangles: Triangles  # vertex indices, shape (M, 3), counterclockwise seen from outside
 
 
-class Shape(NamedTuple):
-    """A mesh that moves with a body, for a geom; all by their numbers."""
+class MeshInstance(NamedTuple):
+    """An instance of a mesh on a body, for a geom; all by their indices."""
 
     mesh: int
     body: int
     geom: int
     T_body_shape: Floats  # with the scale in its columns, shape (3, 4) [m]
     rgba: Floats  # colour and opacity, 0 to 1
-    reach: float  # radius of a sphere about the shape's origin that holds it [m]
+    reach: float  # radius of a bounding sphere about the shape's origin [m]
 
 
 class Surfaces(NamedTuple):
-    """All that is drawn of a model."""
+    """The drawn geometry of a model."""
 
-    meshes: list[Mesh]
-    shapes: list[Shape]
+    meshes: list[TriangleMesh]
+    shapes: list[MeshInstance]
 
 
 def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, hulls: bool = False) -> Surfaces:
@@ -59,13 +59,13 @@ def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, h
 
     Args:
         model: The compiled model.
-        geoms: Which geoms, shape (ngeom,); None: all that pictures show.
-        hulls: Whether meshes that collide are given as their convex hulls.
+        geoms: Mask of geoms, shape (ngeom,); None: all visible ones.
+        hulls: Whether colliding meshes are replaced by their convex hulls.
     """
-    meshes: list[Mesh] = []
+    meshes: list[TriangleMesh] = []
     numbers: dict[tuple[int, ...], int] = {}
     colours = geom_rgba(model)
-    shapes: list[Shape] = []
+    shapes: list[MeshInstance] = []
     for geom in np.flatnonzero(drawn_geoms(model) if geoms is None else geoms).tolist():
         key, scale, make = _shared(model, geom, is_hull=hulls and _has_hull(model, geom))
         if key not in numbers:
@@ -76,17 +76,19 @@ def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, h
         is_plane = key[0] == mujoco.mjtGeom.mjGEOM_PLANE
         reach = float(np.linalg.norm(scale) if is_plane else model.geom_rbound[geom])
         placed = np.column_stack([rotation.reshape(3, 3) * scale, model.geom_pos[geom]])
-        shapes.append(Shape(numbers[key], int(model.geom_bodyid[geom]), geom, placed, colours[geom], reach))
+        shapes.append(MeshInstance(numbers[key], int(model.geom_bodyid[geom]), geom, placed, colours[geom], reach))
     return Surfaces(meshes, shapes)
 
 
-def _shared(model: mujoco.MjModel, geom: int, *, is_hull: bool) -> tuple[tuple[int, ...], Floats, Callable[[], Mesh]]:
-    """Return what geoms have in common that share a mesh, by what its axes are multiplied, (3,), and what makes it."""
+def _shared(
+    model: mujoco.MjModel, geom: int, *, is_hull: bool
+) -> tuple[tuple[int, ...], Floats, Callable[[], TriangleMesh]]:
+    """Return the key of geoms that share a mesh, the scale of this one, shape (3,), and the constructor of the mesh."""
     kind, data, size = int(model.geom_type[geom]), int(model.geom_dataid[geom]), model.geom_size[geom]
     match mujoco.mjtGeom(kind):
         case mujoco.mjtGeom.mjGEOM_MESH:
             return (kind, data, is_hull), np.ones(3), partial(_hull if is_hull else _mesh_of_model, model, data)
-        case mujoco.mjtGeom.mjGEOM_CAPSULE:  # its ends stay round only if it is scaled evenly
+        case mujoco.mjtGeom.mjGEOM_CAPSULE:  # its ends stay round only under uniform scaling
             half_length = size[1] / size[0]
             return (kind, round(1000 * half_length)), np.full(3, size[0]), partial(round_mesh, half_length)
         case mujoco.mjtGeom.mjGEOM_CYLINDER:
@@ -100,8 +102,8 @@ def _shared(model: mujoco.MjModel, geom: int, *, is_hull: bool) -> tuple[tuple[i
             return (kind,), size.copy() if is_ellipsoid else np.full(3, size[0]), partial(round_mesh, 0.0)
 
 
-def _mesh_of_model(model: mujoco.MjModel, number: int) -> Mesh:
-    """Return a mesh as MuJoCo draws it; corners with several normals are there several times."""
+def _mesh_of_model(model: mujoco.MjModel, number: int) -> TriangleMesh:
+    """Return a mesh as MuJoCo draws it; vertices with several normals are duplicated."""
     first, count = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
     vertices = model.mesh_face[first : first + count].astype(np.int64)
     towards = model.mesh_facenormal[first : first + count].astype(np.int64)
@@ -116,18 +118,18 @@ def _mesh_of_model(model: mujoco.MjModel, number: int) -> Mesh:
     towards = np.where(is_flat, len(smooth) + plane.reshape(-1, 1), towards)
     pairs, corners = np.unique(vertices * len(normals) + towards, return_inverse=True)
     vertex, normal = np.divmod(pairs, len(normals))
-    return Mesh(positions[vertex], normals[normal], corners.reshape(-1, 3).astype(np.uint32))
+    return TriangleMesh(positions[vertex], normals[normal], corners.reshape(-1, 3).astype(np.uint32))
 
 
 def _has_hull(model: mujoco.MjModel, geom: int) -> bool:
-    """Return whether MuJoCo draws a geom as its hull where hulls are drawn."""
+    """Return whether a geom has a convex hull to draw."""
     data = int(model.geom_dataid[geom])
     is_mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
     collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
     return bool(is_mesh and collides and model.mesh_graphadr[data] >= 0)
 
 
-def _hull(model: mujoco.MjModel, number: int) -> Mesh:
+def _hull(model: mujoco.MjModel, number: int) -> TriangleMesh:
     """Return the convex hull of a mesh, with flat faces."""
     graph = model.mesh_graph[int(model.mesh_graphadr[number]) :]
     vertices, faces = int(graph[0]), int(graph[1])
@@ -136,44 +138,44 @@ def _hull(model: mujoco.MjModel, number: int) -> Mesh:
     sides = corners.reshape(-1, 3, 3)
     normals = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    return Mesh(corners, normals.repeat(3, axis=0), np.arange(3 * faces, dtype=np.uint32).reshape(-1, 3))
+    return TriangleMesh(corners, normals.repeat(3, axis=0), np.arange(3 * faces, dtype=np.uint32).reshape(-1, 3))
 
 
-def _square() -> Mesh:
+def _square() -> TriangleMesh:
     corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
-    return Mesh(corners, np.tile([0.0, 0, 1], (4, 1)), _TWO_TRIANGLES)
+    return TriangleMesh(corners, np.tile([0.0, 0, 1], (4, 1)), _TWO_TRIANGLES)
 
 
-def _box() -> Mesh:
+def _box() -> TriangleMesh:
     positions, normals = np.zeros((6, 4, 3)), np.zeros((6, 4, 3))
     for face, (axis, side) in enumerate(itertools.product(range(3), (-1.0, 1.0))):
         positions[face, :, axis] = normals[face, :, axis] = side
         positions[face, :, axis - 2], positions[face, :, axis - 1] = [-side, side, side, -side], [-1, -1, 1, 1]
     triangles = 4 * np.arange(6, dtype=np.uint32)[:, None, None] + _TWO_TRIANGLES
-    return Mesh(positions.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3))
+    return TriangleMesh(positions.reshape(-1, 3), normals.reshape(-1, 3), triangles.reshape(-1, 3))
 
 
-def round_mesh(half_length: float) -> Mesh:
-    """Return a sphere of radius 1, pulled apart along z by a cylinder where the half length is more than 0."""
+def round_mesh(half_length: float) -> TriangleMesh:
+    """Return a unit sphere or, if ``half_length`` is above 0, a capsule along z."""
     polar = np.linspace(0, math.pi, _STACKS + 1)
     rings = np.stack([np.sin(polar), np.cos(polar)], axis=1)
     shift = np.where(np.arange(_STACKS + 1) <= _STACKS // 2, half_length, -half_length)
-    if half_length:  # the equator is there twice, once at either end of the cylinder
+    if half_length:  # the equator is duplicated, for both ends of the cylinder
         middle = _STACKS // 2
         rings = np.insert(rings, middle, rings[middle], axis=0)
         shift = np.insert(shift, middle + 1, -half_length)
     return _revolved(rings + np.stack([0 * shift, shift], axis=1), rings)
 
 
-def _cylinder() -> Mesh:
+def _cylinder() -> TriangleMesh:
     """Return a cylinder of radius 1 along z from -1 to 1."""
     profile = np.array([[0.0, 1], [1, 1], [1, 1], [1, -1], [1, -1], [0, -1]])
     normals = np.array([[0.0, 1], [0, 1], [1, 0], [1, 0], [0, -1], [0, -1]])
     return _revolved(profile, normals)
 
 
-def _revolved(profile: Floats, normals: Floats) -> Mesh:
-    """Turn a profile, from the top down, about z; rows are distances from the axis and heights."""
+def _revolved(profile: Floats, normals: Floats) -> TriangleMesh:
+    """Revolve a profile about z, from top to bottom; its rows are distance from the axis and height."""
     turn = np.linspace(0, 2 * math.pi, _SLICES + 1)
     around = np.stack([np.cos(turn), np.sin(turn)], axis=1)
 
@@ -189,4 +191,6 @@ def _revolved(profile: Floats, normals: Floats) -> Mesh:
     triangles = np.concatenate([near, far])
     corners = positions[triangles]
     areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    return Mesh(positions, spread(normals), triangles[areas > 1e-12])  # none at the poles, nor where a ring is twice
+    return TriangleMesh(
+        positions, spread(normals), triangles[areas > 1e-12]
+    )  # without degenerate ones at the poles and at duplicated rings

@@ -1,8 +1,8 @@
-"""The mouse and the keys, without a window: what the GUI does with pointer and key events.
+"""Pointer and keyboard interaction with a simulation, independent of any window.
 
 ::
 
-    interaction = Interaction(simulation, camera, (960, 720))
+    interaction = Interaction.first_view(simulation, camera, (960, 720))
     interaction.handle(Key("escape"))  # interaction mode
     interaction.handle(Press(480, 360))
     interaction.handle(Release(480, 360))  # a click: the body in the middle is selected
@@ -28,14 +28,14 @@ from ravemj.gui.interaction.events import (
     Use,
     Wheel,
 )
-from ravemj.gui.interaction.hand import Mode
-from ravemj.gui.interaction.mode_buttons import Panel, Rect, Tool, tools
+from ravemj.gui.interaction.mode_buttons import Panel, Rect, ViewButton, button_rects
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.overlay import Overlay
 from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.playback import Playback
+from ravemj.gui.interaction.pointer_controller import Mode
 from ravemj.gui.interaction.selection import Selection
-from ravemj.gui.interaction.viewpoint import Ray, View
+from ravemj.gui.interaction.viewpoint import Viewpoint, ViewRay
 
 __all__ = [
     "Button",
@@ -55,17 +55,17 @@ __all__ = [
     "Panel",
     "Playback",
     "Press",
-    "Ray",
     "Rect",
     "Release",
     "Request",
     "Resize",
     "Selection",
-    "Tool",
     "Type",
     "Use",
-    "View",
+    "ViewButton",
+    "ViewRay",
+    "Viewpoint",
     "Wheel",
+    "button_rects",
     "pick",
-    "tools",
 ]

@@ -1,21 +1,21 @@
-"""A button or a slider, as plain data."""
+"""Buttons and sliders as plain data."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """A button, or a slider if it has a range.
+    """A button, or a slider if ``lower`` and ``upper`` differ.
 
     Attributes:
-        name: What ``Operate`` calls it.
-        label: What it does, for people.
-        text: What stands on a button, or beside a slider.
-        value: Where a slider is.
-        lower: Where its range begins.
-        upper: Where its range ends.
-        is_on: For a button that stays down, whether it is.
-        group: Where it is: among the ``tools``, in the row of a motion that is ``playing`` or of simulation ``time``,
+        name: Identifier in ``Operate`` events.
+        label: Tooltip: description of the action.
+        text: Caption of a button, or value text beside a slider.
+        value: Value of a slider.
+        lower: Least value of a slider.
+        upper: Largest value of a slider.
+        is_on: State of a toggle button.
+        group: Position: among the ``tools``, in the row of a motion that is ``playing`` or of simulation ``time``,
             or unfolded: a ``menu``, the ``joints`` or the ``tree`` with the ``joint tools`` above them, the ``help``.
     """
 
@@ -30,5 +30,5 @@ class Control:
 
     @property
     def is_slider(self) -> bool:
-        """Whether it has a value, and not only something to do."""
+        """Whether it is a slider and not a button."""
         return self.lower < self.upper

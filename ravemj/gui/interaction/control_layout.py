@@ -1,8 +1,8 @@
-"""Where a window has the controls, and how it draws them: as rectangles and text.
+"""Layout of the controls of a window, drawn as rectangles and text.
 
-The motion's are in a slim row at the bottom, between the wheels, and those of simulation time in another one; each is
-there only while there is something to control. The others are a column of small buttons under those of the modes, which
-low views have no room for. Sliders, tree and menus unfold beside it, the help over all.
+Playback is a row at the bottom, between the wheels; simulation time is a second one. Each is shown only while there is
+something to control. The others are a column of small buttons below the mode buttons, left out on low views. Sliders,
+tree and menus open beside the column, the help on top of everything.
 """
 
 from dataclasses import replace
@@ -15,25 +15,25 @@ from ravemj.gui.interaction.mode_buttons import Panel, Rect
 
 _MARGIN, _GAP = 8.0, 4.0
 _LEFT, _RIGHT = 212.0, 62.0
-"""What the wheels and their labels take of the bottom row."""
+"""Margins of the bottom row, which the wheels and their labels occupy [points]."""
 
 _COLUMN_TOP, _COLUMN_WIDTH, _COLUMN_HEIGHT = 104.0, 44.0, 22.0
 _WHEEL = 180.0
-"""What the wheel, its label and the row below it take at the right."""
+"""Margin of the column, which the wheel, its label and the row below occupy [points]."""
 
 _BAR, _ICON = 26.0, 28.0
 _CLOCK, _SPEED, _PASSED = 110.0, 44.0, 130.0
 _SHORTEST_TRACK = 80.0
 _JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 180.0, 104.0, 84.0
 _NARROWEST = 0.2
-"""Least part of their widths that names and tracks have on narrow views."""
+"""Minimum width of names and tracks on narrow views, as a fraction of their usual widths."""
 
 _LETTER = 6.9
-"""Width of most letters."""
+"""Typical width of a letter [points]."""
 
 _KNOB, _SCROLL_BAR = 8.0, 4.0
 _LOWEST_VIEW = 420.0
-"""Height of a view from which on there is room for the column."""
+"""Minimum height of a view with the column of buttons [points]."""
 
 _Rgba = tuple[float, float, float, float]
 _BACK: _Rgba = (0.15, 0.15, 0.17, 0.8)
@@ -47,15 +47,15 @@ _ENTRY_WIDTH, _ENTRY_HEIGHT = 110.0, 24.0
 
 
 class ControlLayout(NamedTuple):
-    """The controls of a view with their places.
+    """Rectangles of the controls of a view.
 
     Attributes:
-        places: Where each control is; sliders have their track there. Those that do not fit are left out.
-        backs: What lies under several of them, and catches what misses them.
-        first_row: Which of the joints' sliders, or of the rows of the tree or the help, is the first that is seen.
-        last_row: The greatest number that this can be.
-        name_width: Width of the names before sliders.
-        help: What is drawn over all others.
+        places: Rectangle of each control, for sliders of their track. Controls that do not fit are left out.
+        backs: Background rectangles behind groups of controls; a press on one does not reach the scene.
+        first_row: Index of the first visible row of the joint sliders, the tree or the help.
+        last_row: Largest possible ``first_row``.
+        name_width: Width of the names before sliders [points].
+        help: Panels of the help, drawn on top.
     """
 
     places: dict[Control, Rect]
@@ -66,8 +66,8 @@ class ControlLayout(NamedTuple):
     help: tuple[Panel, ...] = ()
 
     @classmethod
-    def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_row: int = 0) -> "ControlLayout":
-        """Lay controls out on a view of some size [points], with one of the rows as the first where not all fit."""
+    def arrange(cls, controls: tuple[Control, ...], size: tuple[int, int], first_row: int = 0) -> "ControlLayout":
+        """Lay out controls on a view of a size [points], scrolled to a first row."""
         playing, time, others, menu, joints, joint_tools, tree, hiding = (
             [control for control in controls if control.group == group]
             for group in ("playing", "time", "tools", "menu", "joints", "joint tools", "tree", "help")
@@ -81,7 +81,7 @@ class ControlLayout(NamedTuple):
         places |= column | _menu(menu, left, size[1])
         if hiding:
             shown_help = help_layout(size, first_row)
-            places = {hiding[0]: shown_help.rect} | places  # the first that is at a point counts
+            places = {hiding[0]: shown_help.rect} | places  # of several controls at a point the first one counts
             return cls(places, tuple(backs), first_row, shown_help.last_row, help=shown_help.panels)
         fitting = int((size[1] - _COLUMN_TOP - 2 * _MARGIN - _BAR) / _JOINT_ROW) - bool(joint_tools)
         if fitting < 1:
@@ -108,11 +108,11 @@ class ControlLayout(NamedTuple):
 
     def at(self, point: _Point | None) -> Control | None:
         """Return the control at a point of the view [points], or None."""
-        found = (control for control, rect in self.places.items() if point is not None and rect.contains(*point))
-        return next(found, None)
+        controls = (control for control, rect in self.places.items() if point is not None and rect.contains(*point))
+        return next(controls, None)
 
     def field_at(self, point: _Point | None) -> Control | None:
-        """Return what can be typed into at a point of the view [points]: the search, or the value of a joint."""
+        """Return the text field at a point of the view [points]: the search or a joint value; None if there is none."""
         for control, rect in self.places.items():
             field = rect._replace(x=rect.x + rect.width, width=_VALUE) if control.group == "joints" else rect
             if (control.group == "joints" or control.name == "search") and point and field.contains(*point):
@@ -120,19 +120,19 @@ class ControlLayout(NamedTuple):
         return None
 
     def covers(self, point: _Point | None) -> bool:
-        """Return whether a point of the view [points] is on the layout, be it between the controls."""
+        """Return whether a point of the view [points] is on a control or its background."""
         if point is None:
             return False
         return self.at(point) is not None or any(back.contains(*point) for back in self.backs)
 
     def value_at(self, slider: Control, x: float) -> float:
-        """Return what a slider stands for when its knob is in some column of the view [points]."""
+        """Return the value of a slider whose knob is dragged to a column of the view [points]."""
         rect = self.places[slider]
         part = (x - rect.x - _KNOB / 2) / (rect.width - _KNOB)
         return slider.lower + min(max(part, 0.0), 1.0) * (slider.upper - slider.lower)
 
     def panels(self) -> tuple[Panel, ...]:
-        """Return what to draw."""
+        """Return the rectangles and texts to draw."""
         drawn = [Panel(back, _BACK) for back in self.backs]
         if self.last_row and not self.help:
             drawn.append(self._scroll_bar(self.backs[-1]))
@@ -154,14 +154,14 @@ class ControlLayout(NamedTuple):
         return *drawn, *self.help
 
     def _scroll_bar(self, table: Rect) -> Panel:
-        """Return a mark that shows which part of the rows is seen."""
+        """Return the scroll bar of the rows."""
         shown = sum(control.group in {"joints", "tree"} for control in self.places)
         part = table.height / (shown + self.last_row)
         return Panel(Rect(table.x, table.y + self.first_row * part, _SCROLL_BAR, shown * part), _GROOVE)
 
 
 def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the places of a motion's controls; where there is little room, clock and speed are left out."""
+    """Return the rectangles of the playback controls; clock and speed are left out on narrow views."""
     room = size[0] - _LEFT - _RIGHT
     is_wide = room >= 3 * _ICON + _SHORTEST_TRACK + _CLOCK + _SPEED
     if not playing or room < 3 * _ICON + _SHORTEST_TRACK:
@@ -177,7 +177,7 @@ def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
 
 
 def _time_bar(time: list[Control], size: tuple[int, int], row: int) -> dict[Control, Rect]:
-    """Return the places of the controls of simulation time, so many rows above the bottom one."""
+    """Return the rectangles of the controls of simulation time, ``row`` rows above the bottom row."""
     widths = (_ICON, _ICON, _PASSED, _SPEED)
     if not time or size[0] - _LEFT - _RIGHT < sum(widths):
         return {}
@@ -193,10 +193,7 @@ def _around(places: dict[Control, Rect]) -> Rect:
 
 
 def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the places of the buttons: a second column beside the first where this would come to the wheel.
-
-    Low views have no room for them.
-    """
+    """Return the rectangles of the buttons, in two columns if one would reach the wheel; none on low views."""
     if size[1] < _LOWEST_VIEW:
         return {}
     step = _COLUMN_HEIGHT + _GAP
@@ -211,7 +208,7 @@ def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]
 
 
 def _menu(menu: list[Control], right: float, bottom: float) -> dict[Control, Rect]:
-    """Return the places of what is unfolded, at the left of something and as far down as there is room."""
+    """Return the rectangles of a menu left of ``right``, with its bottom at ``bottom`` or higher."""
     tops = takewhile(lambda top: top + _ENTRY_HEIGHT < bottom, count(_COLUMN_TOP, _ENTRY_HEIGHT))
     return {
         control: Rect(right - _ENTRY_WIDTH, top, _ENTRY_WIDTH, _ENTRY_HEIGHT - 1)
@@ -220,7 +217,7 @@ def _menu(menu: list[Control], right: float, bottom: float) -> dict[Control, Rec
 
 
 def shortened(labels: list[str], most: int) -> dict[str, str]:
-    """Return for each label a text of so many letters; where there is a place to cut at, all stay different."""
+    """Shorten labels to ``most`` letters; they stay different from each other if possible."""
     cut: dict[str, str] = {}
     for tail in range(most // 2, most - 2):
         head = most - 2 - tail
@@ -231,14 +228,14 @@ def shortened(labels: list[str], most: int) -> dict[str, str]:
 
 
 def _row_text(text: str, most: int) -> str:
-    """Return an indented name in so many letters: with less before it, and without its middle."""
+    """Shorten an indented name to ``most`` letters: reduce the indentation, then drop the middle."""
     name = text.lstrip()
     indent = min(len(text) - len(name), most // 3)
     return indent * " " + shortened([name], most - indent)[name]
 
 
 def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[Panel]:
-    """Return groove, knob and text of a slider; those of joints have their name before them."""
+    """Return the panels of a slider: groove, knob and value text, for joints also the name."""
     x, y, width, height = rect
     part = (min(max(control.value, control.lower), control.upper) - control.lower) / (control.upper - control.lower)
     middle, knob = y + height / 2, x + part * (width - _KNOB)
@@ -255,7 +252,7 @@ def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[
 
 
 def _icon(control: Control, rect: Rect) -> list[Panel]:
-    """Return the text of a control, else its picture: a triangle for playing, bars for a pause, both for a step."""
+    """Return the text of a control or its icon: triangle (play), bars (pause), both (step)."""
     x, y = rect.x + rect.width / 2, rect.y + rect.height / 2
     if control.text:
         return [Panel(rect, _CLEAR, control.text)]

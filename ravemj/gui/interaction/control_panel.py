@@ -1,4 +1,4 @@
-"""The pointer and the keyboard on the controls that a window draws."""
+"""Pointer and keyboard input of the controls that a window draws."""
 
 import math
 from collections.abc import Callable
@@ -12,31 +12,31 @@ from ravemj.gui.interaction.shortcuts import KEYS
 
 
 class ControlPanel:
-    """The controls of one view, where a window has them.
+    """Input and scroll state of the controls of one view.
 
     Attributes:
-        controls: What there is to press and to slide.
+        controls: The buttons and sliders.
     """
 
     def __init__(self, controls: Controls, *, is_drawn: bool = True) -> None:
-        """Begin with the first rows; nothing is drawn where the shell has controls of its own."""
+        """Start unscrolled; without ``is_drawn`` the shell has controls of its own and the layout stays empty."""
         self.controls = controls
         self._is_drawn = is_drawn
         self._first_row = 0.0
-        self._followed: tuple[str, tuple[str, ...]] = "", ()  # what was unfolded and selected last
+        self._followed: tuple[str, tuple[str, ...]] = "", ()  # menu and selection of the last layout
         self._field = ""
         self._text = ""
         self._search = ""
 
     @property
     def is_typing(self) -> bool:
-        """Whether keys are for a field of the panel."""
+        """Whether keyboard input goes to a text field of the panel."""
         return bool(self._field)
 
     def layout(self, size: tuple[int, int]) -> ControlLayout:
-        """Return where everything is now on a view of some size [points]."""
+        """Return the current layout on a view of a size [points]."""
         if not self._is_drawn:
-            return ControlLayout.of((), size)
+            return ControlLayout.arrange((), size)
         rows = self.controls.rows(self._search)
         controls = tuple(map(self._with_typed, (*self.controls.all(), *rows)))
         if self._field not in {control.name for control in controls}:
@@ -44,12 +44,12 @@ class ControlPanel:
         unfolded, chosen = self.controls.unfolded, self.controls.chosen[-1:]
         if unfolded != self._followed[0]:
             self._first_row = 0.0
-        layout = ControlLayout.of(controls, size, round(self._first_row))
+        layout = ControlLayout.arrange(controls, size, round(self._first_row))
         number = next((number for number, row in enumerate(rows[1:]) if row.name in chosen), None)
         is_seen = any(control.name in chosen for control in layout.places)
         if number is not None and not is_seen and (unfolded, chosen) != self._followed:
             self._first_row = number
-            layout = ControlLayout.of(controls, size, number)
+            layout = ControlLayout.arrange(controls, size, number)
         self._followed = unfolded, chosen
         return layout
 
@@ -57,7 +57,7 @@ class ControlPanel:
         return replace(control, text=f"{self._text}|", is_on=True) if control.name == self._field else control
 
     def press(self, press: Press, layout: ControlLayout) -> Callable[[float, float], None] | None:
-        """Press a button, type into a field, or take hold of a slider: what is returned lets it follow the pointer."""
+        """Press a button, focus a text field, or grab a slider; return a callback for pointer moves, or None."""
         at = press.x, press.y
         control, field = layout.at(at), layout.field_at(at)
         if press.button is not Button.LEFT:
@@ -65,12 +65,12 @@ class ControlPanel:
         if field is not None:
             self._field, self._text = field.name, self._search if field.name == "search" else ""
         elif control is not None and control.is_slider:
-            return self._hold(control, press, layout)
+            return self._start_slide(control, press, layout)
         elif control is not None:
             self.controls.operate(control.name)
         return None
 
-    def _hold(self, slider: Control, press: Press, layout: ControlLayout) -> Callable[[float, float], None]:
+    def _start_slide(self, slider: Control, press: Press, layout: ControlLayout) -> Callable[[float, float], None]:
         def slide(x: float, y: float) -> None:
             del y
             self.controls.operate(slider.name, layout.value_at(slider, x))
@@ -79,11 +79,11 @@ class ControlPanel:
         return slide
 
     def scroll(self, layout: ControlLayout, steps: float) -> None:
-        """Show others of the sliders that have no room all at once."""
+        """Scroll the rows by steps of the wheel."""
         self._first_row = min(max(self._first_row - steps, 0.0), layout.last_row)
 
     def key(self, name: str) -> None:
-        """Do what a key is for."""
+        """Edit the focused text field, or operate the control with this shortcut."""
         if not self.is_typing:
             if name in KEYS:
                 self.controls.operate(KEYS[name])
@@ -98,12 +98,12 @@ class ControlPanel:
             self._set_value()
 
     def type(self, letter: str) -> None:
-        """Add a letter to what is typed; nothing happens while nothing is."""
+        """Append a letter to the focused text field, if there is one."""
         if self.is_typing:
             self._set_text(self._text + letter)
 
     def stop_typing(self) -> None:
-        """Let keys mean what they mean elsewhere; a search stays."""
+        """Remove the focus from the text field; a search stays."""
         self._field = self._text = ""
 
     def _set_text(self, text: str) -> None:
@@ -112,7 +112,7 @@ class ControlPanel:
             self._search = text
 
     def _select_next(self) -> None:
-        """Select the first row that was found, or that after the selected one."""
+        """Select the next search result."""
         names = [row.name for row in self.controls.rows(self._search)[1:]]
         for name in self.controls.chosen[-1:]:
             if name in names:
@@ -122,7 +122,7 @@ class ControlPanel:
             self.controls.operate(names[0])
 
     def _set_value(self) -> None:
-        """Bring a joint to the value that was typed, in the unit that is shown."""
+        """Set a joint to the typed value, in the displayed unit."""
         try:
             value = float(self._text)
         except ValueError:

@@ -1,6 +1,6 @@
-"""The buttons and sliders of a view: playing a motion, saving what is seen, and one slider for each joint.
+"""The buttons and sliders of a view: playback, saving pictures, camera, display, and one slider per joint.
 
-They are plain data, which a window draws (``layout``) and a page makes its own buttons and sliders of.
+They are plain data, which a window draws (``control_layout``) and a page converts to HTML elements.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from ravemj.gui.interaction.playback import Playback
 from ravemj.gui.interaction.selection import Selector
 from ravemj.gui.interaction.shortcuts import DISPLAY, VIEW, Shortcut, key_text
 from ravemj.gui.interaction.time_controls import TimeControls
-from ravemj.gui.interaction.tree import Node, Tree, choose, names_of
+from ravemj.gui.interaction.tree import SceneTree, TreeRow, choose, names_of
 from ravemj.gui.interaction.viewpoint import camera_line
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Menu(NamedTuple):
-    """A button that unfolds others: its text, what it does, and the others."""
+    """A menu button: text, description, and entries."""
 
     text: str
     label: str
@@ -34,17 +34,17 @@ class Menu(NamedTuple):
 MENUS = {
     "view": Menu("View", "Ways to look at it", VIEW),
     "display": Menu("Show", "What is shown besides the bodies", DISPLAY),
-    "tree": Menu("Tree", "Bodies, links and joints (B)", ()),
+    "tree": Menu("SceneTree", "Bodies, links and joints (B)", ()),
     "help": Menu("?", "Help: gestures and keys (H)", ()),
 }
-"""What can be unfolded, besides the sliders of the joints."""
+"""The menus, besides the joint sliders."""
 
 _WITHOUT_BUTTON = {shortcut.name for menu in MENUS.values() for shortcut in menu.shortcuts} | {*MENUS, "reload"}
-"""What keys do whether or not it is unfolded."""
+"""Names of controls that keys operate although they have no visible button."""
 
 
 class Request(Enum):
-    """What only the one who draws the view can do; the values are the names of the controls."""
+    """An action of the window or page that draws the view; the values are names of controls."""
 
     PICTURE = "picture"
     VIDEO = "video"
@@ -52,11 +52,11 @@ class Request(Enum):
 
 @dataclass
 class Display:
-    """What is shown besides the bodies as they look; all views of a viewer share it.
+    """Display options, shared by all views of a viewer.
 
     Attributes:
-        shown: Names of what is shown, of ``shortcuts.DISPLAY``.
-        wants_reload: Whether people have asked to read the model again; None where nobody would do it.
+        shown: Names of the active options, of ``shortcuts.DISPLAY``.
+        wants_reload: Whether the user has requested a reload of the model; None if reloading is not supported.
     """
 
     shown: frozenset[str] = frozenset()
@@ -64,18 +64,18 @@ class Display:
 
 
 class Controls:
-    """What there is to press and to slide in one view, and what that does.
+    """The buttons and sliders of one view, and their actions.
 
     Attributes:
         navigation: The view.
-        time: The motion that is played, and simulation time; all views share them.
-        notices: What the viewer tells; all views share it.
-        display: What is shown besides the bodies; all views share it.
-        unfolded: Name of the button whose menu is unfolded, or empty.
+        time: Playback and simulation time, shared by all views.
+        notices: Messages to the user, shared by all views.
+        display: Display options, shared by all views.
+        unfolded: Name of the open menu, or empty.
         in_degrees: Whether angles are shown in degrees, not in radians.
-        pulls: Whether a drag on a link pulls the arm, as it does with Ctrl and Shift.
-        reach: The link that was pulled last, with its arm.
-        requests: What was asked of the one who draws, and is not done yet.
+        pulls: Whether a drag on a link moves it by inverse kinematics without Ctrl and Shift.
+        reach: The last inverse-kinematics drag.
+        requests: Pending actions of the window or page; a text is to be copied.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class Controls:
         self.pulls = False
         self.reach: Reach | None = None
         self.requests: list[Request | str] = []
-        self._tree = Tree(selector.simulation)
+        self._tree = SceneTree(selector.simulation)
 
     def another(self, navigation: Navigation) -> "Controls":
         """Return the controls of another view."""
@@ -99,24 +99,24 @@ class Controls:
 
     @property
     def playback(self) -> Playback:
-        """The motion that is played."""
+        """Playback of the motion."""
         return self.time.playback
 
     @property
     def appearance(self) -> object:
-        """What is equal for as long as the view, and what the views share, look the same."""
+        """A key that changes when the controls or the messages must be redrawn."""
         notices = self.notices
         told = notices.lines, notices.recording, notices.text_size
         return self.navigation.appearance, self.time.appearance, told, self.display.shown
 
-    def pass_time(self, now: float) -> None:
-        """Let a motion that plays go on, and old notices go away; ``now`` as ``time.monotonic`` says."""
-        self.navigation.pass_time(now)
-        self.time.pass_time(now)
-        self.notices.pass_time(now)
+    def advance(self, now: float) -> None:
+        """Advance playback and expire notices; ``now`` is from ``time.monotonic``."""
+        self.navigation.advance(now)
+        self.time.advance(now)
+        self.notices.advance(now)
 
     def all(self) -> tuple[Control, ...]:
-        """Return the controls as they are now. The simulation is locked by the caller, as for ``operate``."""
+        """Return the current controls. The caller holds the simulation's lock, as for ``operate``."""
         body = self._body()
         recording = self.notices.recording
         video = "Stop recording" if recording else "Record a video (MP4)"
@@ -133,6 +133,9 @@ class Controls:
         if body is not None:
             label = "Pull links: a drag on one takes the joints above it along (P)"
             controls.append(Control("pull", label, "Pull", is_on=self.pulls))
+            if self._selector.selection is not None:
+                label = "Pin the selected link: it stays, and pulling another one moves the rest and the base (A)"
+                controls.append(Control("pin", label, "Pin", is_on=self._selector.is_pinned))
             label = f"DOFs of {body.scene.name}: a slider for each"
             controls.append(Control("joints", label, "DOFs", is_on=self.unfolded == "joints"))
             if self.unfolded == "joints":
@@ -141,17 +144,17 @@ class Controls:
             controls += [self._entry(shortcut) for shortcut in MENUS[self.unfolded].shortcuts]
         return tuple(controls)
 
-    def tree(self) -> tuple[Node, ...]:
-        """Return the tree of bodies, links and joints while it is unfolded; the same object until it changes."""
+    def tree(self) -> tuple[TreeRow, ...]:
+        """Return the tree of bodies, links and joints if it is open; the same object until it changes."""
         return self._tree.nodes() if self.unfolded == "tree" else ()
 
     @property
     def chosen(self) -> tuple[str, ...]:
-        """Names of the rows of the tree that are selected."""
+        """Names of the selected rows of the tree."""
         return names_of(self._selector.selection)
 
     def rows(self, search: str) -> list[Control]:
-        """Return, for a window, the rows of the tree that a search leaves, or a button that hides the help."""
+        """Return the tree rows that match a search, for a window; if the help is open, a button that closes it."""
         if self.unfolded == "help":
             return [Control("help", "", group="help")]
         if self.unfolded != "tree":
@@ -179,7 +182,6 @@ class Controls:
         ]
 
     def _entry(self, shortcut: Shortcut) -> Control:
-        """Return an entry of a menu."""
         is_on = shortcut.name in self.display.shown if shortcut in DISPLAY else None
         if shortcut.name == "turntable":
             is_on = self.navigation.view.is_upright
@@ -187,7 +189,7 @@ class Controls:
         return Control(shortcut.name, label, shortcut.text, is_on=is_on, group="menu")
 
     def _body(self) -> BodyState | None:
-        """Return the body whose joints have sliders: the selected one, else one that plays, else the first robot."""
+        """Return the body with joint sliders: the selected one, else the one that is played, else the first robot."""
         selection, motion = self._selector.selection, self.playback.motion
         bodies = [] if selection is None else [selection.body]
         bodies += [] if motion is None else motion.bodies
@@ -195,24 +197,24 @@ class Controls:
         return next((body for body in bodies if body.scene.dof_axes), None)
 
     def _redundant_reach(self) -> "Reach | None":
-        """Return the redundant arm that was pulled last, while its link is selected and nothing covers its slider."""
+        """Return the last dragged redundant arm if its link is still selected and no menu covers its slider."""
         reach, selection = self.reach, self._selector.selection
         if reach is None or reach.free_dof is None or selection is None or self.unfolded not in {"", "joints"}:
             return None
         return reach if (selection.body, selection.link) == (reach.body, reach.link) else None
 
     def operate(self, name: str, value: float = 0.0) -> None:
-        """Press a button, or move a slider to a value; nothing happens where there is no such control."""
+        """Press a button or set a slider; unknown names are ignored."""
         if name in _WITHOUT_BUTTON:
-            if not self.steer(name):
+            if not self.change_view(name):
                 self._switch(name)
         elif self.time.operate(name, value) or choose(self._selector, self.navigation.view, name):
             return
         elif name in {control.name for control in self.all()}:
             self._operate(name, value)
 
-    def steer(self, name: str) -> bool:
-        """Change the view, if that needs no look at the bodies, as to fit what is selected does; return whether."""
+    def change_view(self, name: str) -> bool:
+        """Operate a control that changes only the camera; return False for controls that need the bodies."""
         if name == "fit" and self._selector.selection is None:
             self.navigation.fit()
             return True
@@ -242,8 +244,8 @@ class Controls:
             self.requests.append(camera_line(self.navigation.view.camera))
         elif name == "joints":
             self.unfolded = "" if self.unfolded == name else name
-        elif name == "pull":
-            self.pulls = not self.pulls
+        elif name in {"pull", "pin"}:
+            self._switch_pulling(name)
         elif name == "sweep":
             self._sweep(value)
         elif name == "units":
@@ -251,26 +253,32 @@ class Controls:
         elif body is not None:
             self._operate_joints(body, name, value)
 
+    def _switch_pulling(self, name: str) -> None:
+        if name == "pin":
+            self._selector.toggle_pin()
+        else:
+            self.pulls = not self.pulls
+
     def _operate_joints(self, body: BodyState, name: str, value: float) -> None:
         if name == "values":
             self.requests.append(joint_controls.values_line(body))
-        else:
-            self.take(body)
+        elif not self._selector.is_fixed:
+            self.pause_motion(body)
             joint_controls.operate(body, name, value)
 
     def _sweep(self, value: float) -> None:
         reach = self._redundant_reach()
-        if reach is not None:
-            self.take(reach.body)
+        if reach is not None and not self._selector.is_fixed:
+            self.pause_motion(reach.body)
             reach.sweep_to(value)
 
-    def take_requests(self) -> list[Request | str]:
-        """Return what was asked of the one who draws, and forget it; a text is to be copied."""
+    def pop_requests(self) -> list[Request | str]:
+        """Return and clear the pending actions of the window or page."""
         requests, self.requests = self.requests, []
         return requests
 
-    def take(self, body: BodyState) -> None:
-        """Pause a motion of a body, which a hand takes hold of."""
+    def pause_motion(self, body: BodyState) -> None:
+        """Pause the playback if it moves this body, because the user drags it."""
         motion = self.playback.motion
         if motion is not None and body in motion.bodies:
             self.playback.pause()

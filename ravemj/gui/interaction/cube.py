@@ -1,4 +1,4 @@
-"""The cube around a selected body: its faces move the body, its edges turn it."""
+"""The box handle around a selected body: dragging a face moves the body, dragging an edge turns it."""
 
 import itertools
 from collections.abc import Iterator
@@ -10,15 +10,15 @@ import numpy as np
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.picking import visible_box
-from ravemj.gui.interaction.viewpoint import Ray, View
+from ravemj.gui.interaction.viewpoint import Viewpoint, ViewRay
 from ravemj.model import drawing
 from ravemj.model.drawing import Primitives
 
 _MARGIN = 0.1
-"""How far the cube stands off, as a part of half its longest side."""
+"""Clearance between body and box, as a fraction of half its longest side."""
 
 _REACH, _REACH_BESIDE = 8.0, 12.0
-"""How near an edge the pointer has to be on a face, and beside the cube [points]."""
+"""Pick distance of an edge, in front of a face and beside the box [points]."""
 
 _FACES = np.array([0.1, 0.6, 0.2, 0.15])
 _EDGES = np.array([[0.1, 0.6, 0.2, 1.0]])
@@ -28,12 +28,12 @@ _MARKED_EDGE = np.array([[1.0, 0.75, 0.0, 1.0]])
 
 
 class Grip(NamedTuple):
-    """Where the pointer holds a cube.
+    """The grabbed face or edge of a box handle.
 
     Attributes:
-        axis: Number of the cube's axis that the face is across, or that the edge is along.
-        is_edge: Whether this is an edge.
-        point: The place, in the world [m], shape (3,).
+        axis: Index of the box axis normal to the face or parallel to the edge.
+        is_edge: Whether it is an edge and not a face.
+        point: The grabbed point, in the world [m], shape (3,).
     """
 
     axis: int
@@ -49,11 +49,11 @@ class _Edge(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Cube:
-    """A box along the axes of a body's first link, around all that is seen of the body.
+    """The box handle: aligned with a body's first link, around its visible geometry.
 
     Attributes:
-        T_world_cube: Its centre and axes, 4x4.
-        half: Half of its sides [m], shape (3,).
+        T_world_cube: Pose of its centre, shape (4, 4).
+        half: Half extents [m], shape (3,).
     """
 
     T_world_cube: Floats
@@ -61,7 +61,7 @@ class Cube:
 
     @classmethod
     def around(cls, body: BodyState) -> "Cube | None":
-        """Return the cube around a body where it is now; None where nothing of it is seen."""
+        """Return the box handle of a body at its current pose; None if the body is not visible."""
         T_world_cube = body.link_transform(0)
         box = visible_box(body, None, T_world_cube)
         if box is None:
@@ -69,17 +69,17 @@ class Cube:
         T_world_cube[:3, 3] += T_world_cube[:3, :3] @ box.center
         return cls(T_world_cube, box.half + _MARGIN * box.half.max())
 
-    def grip(self, view: View, x: float, y: float) -> Grip | None:
-        """Return what of the cube is under a point of the screen: an edge that is seen, else a face, or None."""
+    def grip(self, view: Viewpoint, x: float, y: float) -> Grip | None:
+        """Return the visible edge, else the face, under a point of the screen; None if there is none."""
         ray = view.ray(x, y)
         T_cube_world = inverse(self.T_world_cube)
-        local = Ray(T_cube_world[:3, :3] @ ray.start + T_cube_world[:3, 3], T_cube_world[:3, :3] @ ray.direction)
+        local = ViewRay(T_cube_world[:3, :3] @ ray.start + T_cube_world[:3, 3], T_cube_world[:3, :3] @ ray.direction)
         if (np.abs(local.start) <= self.half).all():
             return None
         face = self._face_grip(local)
         return self._edge_grip(view, (x, y), local, _REACH_BESIDE if face is None else _REACH) or face
 
-    def _face_grip(self, local: Ray) -> Grip | None:
+    def _face_grip(self, local: ViewRay) -> Grip | None:
         with np.errstate(divide="ignore", invalid="ignore"):
             crossings = np.stack([-self.half - local.start, self.half - local.start]) / local.direction
         near, far = np.nanmin(crossings, axis=0), np.nanmax(crossings, axis=0)
@@ -88,10 +88,10 @@ class Cube:
             return None
         return Grip(axis, False, self._in_world(local.start + near[axis] * local.direction))
 
-    def _edge_grip(self, view: View, at: tuple[float, float], local: Ray, within: float) -> Grip | None:
+    def _edge_grip(self, view: Viewpoint, at: tuple[float, float], local: ViewRay, within: float) -> Grip | None:
         edges = [edge for edge in self._edges() if any(self._sees(local.start, *face) for face in edge.faces)]
-        found = [(_distance_on_screen(view, at, self._in_world(edge.ends)), edge) for edge in edges]
-        distance, edge = min(found, key=lambda one: one[0], default=(np.inf, None))
+        candidates = [(_distance_on_screen(view, at, self._in_world(edge.ends)), edge) for edge in edges]
+        distance, edge = min(candidates, key=lambda candidate: candidate[0], default=(np.inf, None))
         if edge is None or distance > within:
             return None
         point = _nearest_on_segment(edge.ends, local)
@@ -113,13 +113,13 @@ class Cube:
         return points @ self.T_world_cube[:3, :3].T + self.T_world_cube[:3, 3]
 
     def primitives(self) -> Primitives:
-        """Return its figures, in the world."""
+        """Return its drawing, in the world."""
         ends = np.concatenate([edge.ends for edge in self._edges()])
         lines = drawing.line_list(ends, _EDGE_WIDTH, np.repeat(_EDGES, len(ends), axis=0))
         return drawing.merge([drawing.box(np.zeros(3), self.half, _FACES), lines]).placed(self.T_world_cube)
 
-    def mark(self, grip: Grip) -> Primitives:
-        """Return a figure on the face or the edge that a drag would take, in the world."""
+    def highlight(self, grip: Grip) -> Primitives:
+        """Return the highlight of a face or an edge, in the world."""
         held = (grip.point - self.T_world_cube[:3, 3]) @ self.T_world_cube[:3, :3]
         corner = np.copysign(self.half, held)
         along = np.eye(3)[grip.axis] * self.half
@@ -130,8 +130,8 @@ class Cube:
         return face.placed(self.T_world_cube)
 
 
-def _distance_on_screen(view: View, at: tuple[float, float], ends: Floats) -> float:
-    """Return how far a point of the screen is from the picture of a segment [points]; infinite behind the eye."""
+def _distance_on_screen(view: Viewpoint, at: tuple[float, float], ends: Floats) -> float:
+    """Return the distance from a point of the screen to a projected segment [points]; infinite behind the camera."""
     (start, end), depths = view.camera.project(ends, *view.size)
     if (depths <= 0).any():
         return np.inf
@@ -141,14 +141,14 @@ def _distance_on_screen(view: View, at: tuple[float, float], ends: Floats) -> fl
     return float(np.linalg.norm(towards - part * along))
 
 
-def _nearest_on_segment(ends: Floats, ray: Ray) -> Floats:
+def _nearest_on_segment(ends: Floats, ray: ViewRay) -> Floats:
     along = ends[1] - ends[0]
     part = nearest_on_line(ends[0], along, ray)
     return ends[0] + min(max(0.5 if part is None else part, 0.0), 1.0) * along
 
 
-def nearest_on_line(start: Floats, along: Floats, ray: Ray) -> float | None:
-    """Return where on a line a ray comes nearest to it, as a factor of ``along``; None where they are parallel."""
+def nearest_on_line(start: Floats, along: Floats, ray: ViewRay) -> float | None:
+    """Return the point of a line nearest to a ray, as a multiple of ``along``; None if they are parallel."""
     across = np.cross(np.cross(along, ray.direction), ray.direction)
     slope = float(along @ across)
     if abs(slope) < 1e-6 * float(along @ along):

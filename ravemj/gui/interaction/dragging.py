@@ -1,4 +1,4 @@
-"""What follows the pointer's ray: bodies that are moved and turned, joints."""
+"""Drags: bodies and joints that follow the pointer's ray."""
 
 import math
 from collections.abc import Callable
@@ -10,24 +10,24 @@ from ravemj.engine.simulation import BodyState
 from ravemj.geometry_functions import matrixFromAxisAngle
 from ravemj.gui.interaction.cube import Cube, Grip, nearest_on_line
 from ravemj.gui.interaction.joint_handle import JointHandle, joint_and_axis
-from ravemj.gui.interaction.viewpoint import Ray
+from ravemj.gui.interaction.viewpoint import ViewRay
 from ravemj.model.limits import clamp
 
-Follow = Callable[[Ray], None]
-"""Takes the pointer's ray as it is now."""
+Follow = Callable[[ViewRay], None]
+"""Callback of a drag; its argument is the current ray of the pointer."""
 
 _FLATTEST = 0.02
-"""Sine of the angle from which on a ray counts as along a plane, and tells nothing about a point in it."""
+"""Sine of the angle between ray and plane below which their intersection is ill-conditioned."""
 
 _ASLANT = 0.3
-"""The same for planes in which things turn: the pointer turns them by its way along the rim instead."""
+"""The same for rotations: at flatter angles the pointer's motion along the rim is used instead."""
 
 
 def move_by_face(body: BodyState, cube: Cube, grip: Grip) -> Follow:
-    """Let a body follow the pointer in the plane of a face."""
+    """Start a drag that moves a body in the plane of a face."""
     T_start, normal = body.link_transform(0), cube.T_world_cube[:3, grip.axis]
 
-    def follow(ray: Ray) -> None:
+    def follow(ray: ViewRay) -> None:
         point = in_plane(ray, grip.point, normal)
         if point is not None:
             T_world_link0 = T_start.copy()
@@ -37,12 +37,12 @@ def move_by_face(body: BodyState, cube: Cube, grip: Grip) -> Follow:
     return follow
 
 
-def turn_by_edge(body: BodyState, cube: Cube, grip: Grip, ray: Ray) -> Follow:
-    """Let a body turn with the pointer about the axis that is parallel to an edge, through the cube's centre."""
+def turn_by_edge(body: BodyState, cube: Cube, grip: Grip, ray: ViewRay) -> Follow:
+    """Start a drag that rotates a body about the axis through the box centre that is parallel to an edge."""
     T_start, axis, center = body.link_transform(0), cube.T_world_cube[:3, grip.axis], cube.T_world_cube[:3, 3]
     turn = Turn(center, axis, grip.point, ray)
 
-    def follow(ray: Ray) -> None:
+    def follow(ray: ViewRay) -> None:
         motion = matrixFromAxisAngle(axis, turn.angle(ray))
         motion[:3, 3] = center - motion[:3, :3] @ center
         body.set_transform(motion @ T_start)
@@ -50,46 +50,47 @@ def turn_by_edge(body: BodyState, cube: Cube, grip: Grip, ray: Ray) -> Follow:
     return follow
 
 
-def move_joint(body: BodyState, dof: int, handle: JointHandle, point: Floats, ray: Ray) -> Follow:
-    """Let a joint follow the pointer, which holds a point of its handle, as far as its limits go."""
+def move_joint(body: BodyState, dof: int, handle: JointHandle, point: Floats, ray: ViewRay) -> Follow:
+    """Start a drag of a joint by a point of its handle; the joint limits hold."""
     start = float(body.kinematics.values()[dof])
     joint, axis = joint_and_axis(body, dof)
-    measure = (
-        Slide(handle.axis, point).way if joint.slides(axis) else Turn(handle.center, handle.axis, point, ray).angle
-    )
+    if joint.slides(axis):
+        measure = Slide(handle.axis, point).displacement
+    else:
+        measure = Turn(handle.center, handle.axis, point, ray).angle
 
     return lambda ray: set_dof(body, dof, start + measure(ray))
 
 
 def set_dof(body: BodyState, dof: int, value: float) -> None:
-    """Give a joint another value [rad or m], as far as its limits go."""
+    """Set a joint value [rad or m], clamped to its limits."""
     values = body.kinematics.values()
     values[dof] = clamp(body.scene.dof_axes[dof], value)
     body.set_values(values)
 
 
 class Turn:
-    """Measures how far the pointer has turned something about an axis; also by more than one turn."""
+    """Measures the angle that the pointer has turned about an axis, over any number of turns."""
 
-    def __init__(self, center: Floats, axis: Floats, grip: Floats, ray: Ray) -> None:
-        """Begin at a grip about an axis (unit vector) through a centre; all in the world, of shape (3,) [m]."""
+    def __init__(self, center: Floats, axis: Floats, grip: Floats, ray: ViewRay) -> None:
+        """Start at a grabbed point ``grip``; axis (unit vector), centre and grip are in the world, shape (3,) [m]."""
         self._center, self._axis, self._grip = center, axis, grip
         self._arm = _across(grip - center, axis)
-        self._tangent = np.cross(axis, self._arm)  # the way of the grip for each radian
+        self._tangent = np.cross(axis, self._arm)  # displacement of the grip per radian
         self._is_aslant = abs(float(ray.direction @ axis)) < _ASLANT
         self._last = 0.0
 
-    def angle(self, ray: Ray) -> float:
-        """Return the angle [rad] from the start to where the pointer is now; the last one where it cannot be told."""
-        found = self._along_rim(ray) if self._is_aslant else self._around(ray)
-        if found is not None:
-            self._last = found
+    def angle(self, ray: ViewRay) -> float:
+        """Return the angle since the start [rad]; the previous one if the ray does not determine it."""
+        angle = self._along_rim(ray) if self._is_aslant else self._around(ray)
+        if angle is not None:
+            self._last = angle
         return self._last
 
-    def _along_rim(self, ray: Ray) -> float | None:
+    def _along_rim(self, ray: ViewRay) -> float | None:
         return nearest_on_line(self._grip, self._tangent, ray) if self._tangent.any() else None
 
-    def _around(self, ray: Ray) -> float | None:
+    def _around(self, ray: ViewRay) -> float | None:
         point = in_plane(ray, self._grip, self._axis)
         if point is None:
             return None
@@ -99,27 +100,27 @@ class Turn:
 
 
 class Slide:
-    """Measures how far the pointer has pulled something along an axis."""
+    """Measures the displacement of the pointer along an axis."""
 
     def __init__(self, axis: Floats, grip: Floats) -> None:
         self._axis, self._grip = axis, grip
         self._last = 0.0
 
-    def way(self, ray: Ray) -> float:
-        """Return the way [m] from the start to where the pointer is now; the last one where it cannot be told."""
-        found = nearest_on_line(self._grip, self._axis, ray)
-        if found is not None:
-            self._last = found
+    def displacement(self, ray: ViewRay) -> float:
+        """Return the displacement since the start [m]; the previous one if the ray does not determine it."""
+        displacement = nearest_on_line(self._grip, self._axis, ray)
+        if displacement is not None:
+            self._last = displacement
         return self._last
 
 
 def _across(vector: Floats, axis: Floats) -> Floats:
-    """Return the part of a vector that is across a unit vector."""
+    """Return the component of a vector normal to a unit vector."""
     return vector - float(vector @ axis) * axis
 
 
-def in_plane(ray: Ray, point: Floats, normal: Floats) -> Floats | None:
-    """Return where a ray meets a plane before the eye; None where it does not, or hardly."""
+def in_plane(ray: ViewRay, point: Floats, normal: Floats) -> Floats | None:
+    """Return the intersection of a ray with a plane in front of the camera; None if there is none, or nearly so."""
     slope = float(ray.direction @ normal)
     distance = float((point - ray.start) @ normal) / slope if abs(slope) > _FLATTEST else -1.0
     return ray.start + distance * ray.direction if distance > 0 else None

@@ -1,13 +1,13 @@
-"""What people do with mouse and keys, in points of the screen: (0, 0) is the top left corner of the view."""
+"""Input events; positions are in points, (0, 0) is the top left corner of the view."""
 
 from dataclasses import dataclass
 from enum import Enum
 
-from ravemj.gui.interaction.mode_buttons import Tool
+from ravemj.gui.interaction.mode_buttons import ViewButton
 
 
 class Button(Enum):
-    """A button of the mouse."""
+    """A mouse button."""
 
     LEFT = "left"
     MIDDLE = "middle"
@@ -16,15 +16,15 @@ class Button(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Press:
-    """A button goes down.
+    """A mouse button or a finger was pressed.
 
     Attributes:
         x: Column of the pointer [points].
         y: Row of the pointer [points].
-        button: Which button.
+        button: The mouse button.
         ctrl: Whether Ctrl is held.
         shift: Whether Shift is held.
-        touch: Whether this is a finger: it turns the view beside what can be dragged, and a tap selects in both modes.
+        touch: Whether it is a finger: it turns the view unless it starts on a handle; a tap selects in both modes.
     """
 
     x: float
@@ -37,7 +37,7 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """The pointer is now elsewhere [points]."""
+    """The pointer has moved to a position [points]."""
 
     x: float
     y: float
@@ -45,7 +45,7 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """A button goes up."""
+    """A mouse button was released."""
 
     x: float
     y: float
@@ -54,21 +54,21 @@ class Release:
 
 @dataclass(frozen=True, slots=True)
 class Wheel:
-    """The wheel turns; positive steps are away from the hand."""
+    """The mouse wheel was turned; positive steps are away from the user."""
 
     steps: float
 
 
 @dataclass(frozen=True, slots=True)
 class Fingers:
-    """Two fingers move.
+    """Two fingers have moved.
 
     Attributes:
-        x: Column of their middle [points].
-        y: Row of their middle [points].
-        right: How far it came from the left [points].
-        down: How far it came from above [points].
-        spread: By which factor their distance grew; above 0.
+        x: Column of their midpoint [points].
+        y: Row of their midpoint [points].
+        right: Displacement of the midpoint to the right [points].
+        down: Displacement of the midpoint downwards [points].
+        spread: Ratio of their new to their old distance; above 0.
     """
 
     x: float
@@ -80,20 +80,20 @@ class Fingers:
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """A button or a wheel on the view is used otherwise than by pressing it there.
+    """A mode button or a wheel was operated by other means than the pointer on the view.
 
     Attributes:
-        tool: Which one.
-        amount: How far a wheel is moved, to the right or down [points].
+        tool: The button or wheel.
+        amount: Displacement of a wheel, to the right or down [points].
     """
 
-    tool: Tool
+    tool: ViewButton
     amount: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key goes down or up; ``escape``, ``enter``, ``backspace`` and letters such as ``s`` are known."""
+    """A key was pressed or released: ``escape``, ``enter``, ``backspace``, or a letter such as ``s``."""
 
     name: str
     pressed: bool = True
@@ -101,18 +101,18 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """A letter is typed: what the keyboard makes of keys, which ``Key`` tells as well."""
+    """A letter was typed. The keys that produce it are reported by ``Key`` as well."""
 
     letter: str
 
 
 @dataclass(frozen=True, slots=True)
 class Operate:
-    """A control is used otherwise than with the pointer on the view.
+    """A control was operated by other means than the pointer on the view.
 
     Attributes:
-        name: Its name; ``Controls`` has them.
-        value: Where a slider goes.
+        name: Name of the control, from ``Controls``.
+        value: New value of a slider.
     """
 
     name: str
@@ -121,7 +121,7 @@ class Operate:
 
 @dataclass(frozen=True, slots=True)
 class Resize:
-    """The view has another size [points]."""
+    """The view was resized [points]."""
 
     width: int
     height: int
@@ -129,7 +129,7 @@ class Resize:
 
 @dataclass(frozen=True, slots=True)
 class Leave:
-    """The view is left: keys and buttons that are held do not count any more."""
+    """The pointer or the focus has left the view: keys and buttons count as released."""
 
 
 Event = Press | Move | Release | Wheel | Fingers | Use | Key | Type | Operate | Resize | Leave

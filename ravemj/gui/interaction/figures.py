@@ -1,4 +1,4 @@
-"""What can be shown of a model that pictures do not show: frames, axes, masses, contacts, names, the floor."""
+"""Drawings for the display options: frames, joint axes, inertias, contacts, link names, the floor grid."""
 
 import math
 from collections.abc import Callable
@@ -15,13 +15,13 @@ from ravemj.model.inertia import principal_frame, principal_moments
 from ravemj.model.scene import Inertial
 
 _FRAME, _AXIS, _CONTACT = 0.08, 0.12, 0.012
-"""Lengths of the axes of frames and joints and the radius of contacts, in radii of the scene."""
+"""Lengths of the axes of frames and joints, and the radius of contacts [radii of the scene]."""
 
 _FORCE, _LONGEST_FORCE = 0.15, 1.0
-"""Length of an arrow for the mean weight of a link, and the greatest one, in radii of the scene."""
+"""Length of an arrow for a force as large as the mean weight of a link, and the longest arrow [radii of the scene]."""
 
 _SMALLEST_MASS = 1e-9
-"""Mass below which a link has no inertia to be shown [kg]."""
+"""Links of a smaller mass have no inertia ellipsoid [kg]."""
 
 _RGB = np.array([[0.85, 0.15, 0.15, 1.0], [0.1, 0.6, 0.15, 1.0], [0.15, 0.3, 0.9, 1.0]])
 _JOINT = np.array([0.95, 0.55, 0.0, 1.0])
@@ -35,16 +35,16 @@ _WIDTH = 2.5
 _ARC_STEP = np.radians(6)
 
 _FLOOR_REACH = 2.0
-"""How far the grid goes, in radii of what stands on it."""
+"""Half the side of the grid [radii of the scene]."""
 
 _STEPS = (0.1, 1.0, 10.0, 100.0, 1000.0)
-"""Distances between lines [m]."""
+"""Allowed distances between grid lines [m]."""
 
 _MOST_LINES = 24
-"""Most lines from the middle of the grid to a side."""
+"""Maximum number of lines from the middle of the grid to a side."""
 
 _BELOW = 1e-3
-"""How far below z = 0 the lines are, in radii, so that a floor of the model hides them and they do not flicker."""
+"""Depth of the lines below z = 0 [radii of the scene]: a floor of the model hides them, without flicker."""
 
 _LINES, _MARKS = (0.62, 0.62, 0.65, 0.5), (0.45, 0.45, 0.5, 0.9)
 _AXIS_WIDTH = 3.0
@@ -53,15 +53,15 @@ _Part = Callable[[Simulation, float], list[Primitives]]
 
 
 def figures(simulation: Simulation, shown: frozenset[str], radius: float) -> list[Primitives]:
-    """Return the figures of what is shown, of ``shortcuts.DISPLAY``, in sizes that fit a scene of some radius [m].
+    """Return the drawings of the active display options, sized for a scene of a radius [m].
 
-    The caller has locked the simulation.
+    The options are names of ``shortcuts.DISPLAY``. The caller has locked the simulation.
     """
     return [figure for name, part in _PARTS.items() if name in shown for figure in part(simulation, radius)]
 
 
 def names(simulation: Simulation) -> tuple[Label, ...]:
-    """Return the names of all links, at their centres of mass."""
+    """Return labels with the names of all links, at their centres of mass."""
     return tuple(
         Label(place, link.name)
         for body in simulation.bodies
@@ -75,7 +75,7 @@ def _frames(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _axes(length: float, width: float) -> Primitives:
-    """Return the axes x, y, z of a frame in red, green, blue."""
+    """Return the x, y and z axes of a frame, in red, green and blue."""
     ends = np.concatenate([[np.zeros(3), axis] for axis in length * np.eye(3)])
     return drawing.line_list(ends, width, np.repeat(_RGB, 2, axis=0))
 
@@ -90,7 +90,7 @@ def _joints(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _joint(body: BodyState, dof: int, length: float) -> Primitives:
-    """Return the axis of a joint, and for hinges the sector between its limits, with a line where it is now."""
+    """Return the axis of a joint, and for hinges the sector between its limits and a line at its value."""
     joint, T_world_axis = joint_frame(body, dof)
     axis, value = body.scene.dof_axes[dof], float(body.kinematics.values()[dof])
     ends = np.array([[0.0, 0.0, -length], [0.0, 0.0, length]])
@@ -111,24 +111,21 @@ def _joint(body: BodyState, dof: int, length: float) -> Primitives:
 
 
 def _masses(simulation: Simulation, radius: float) -> list[Primitives]:
-    found: list[Primitives] = []
+    drawings: list[Primitives] = []
     for body in simulation.bodies:
         massive = [link.inertial.mass > _SMALLEST_MASS for link in body.scene.links]
         centers = _centers(body)[massive]
-        found.append(drawing.spheres(centers, 0.5 * _CONTACT * radius, np.tile(_MASS, (len(centers), 1))))
-        if all(link.static for link in body.scene.links):  # a floor's ellipsoid would cover all that stands on it
+        drawings.append(drawing.spheres(centers, 0.5 * _CONTACT * radius, np.tile(_MASS, (len(centers), 1))))
+        if all(link.static for link in body.scene.links):  # a floor's ellipsoid would hide everything on it
             continue
         for link, T_world_link in zip(body.scene.links, body.link_transforms(), strict=True):
             if link.inertial.mass > _SMALLEST_MASS:
-                found.append(_ellipsoid(link.inertial).placed(T_world_link))
-    return found
+                drawings.append(_ellipsoid(link.inertial).placed(T_world_link))
+    return drawings
 
 
 def _ellipsoid(inertial: Inertial) -> Primitives:
-    """Return the solid ellipsoid of even density that has a mass and moments of inertia, in the link.
-
-    With half axes a, b, c the moment about the first is m (b^2 + c^2) / 5.
-    """
+    """Return the homogeneous ellipsoid of a link's mass and moments of inertia, in the link frame."""
     moments = principal_moments(inertial)
     squares = 2.5 / inertial.mass * (moments.sum() - 2 * moments)
     half = np.sqrt(np.maximum(squares, 0.0))
@@ -140,7 +137,6 @@ def _ellipsoid(inertial: Inertial) -> Primitives:
 
 
 def _sphere() -> tuple[Floats, Ints]:
-    """Return points and triangles of a unit sphere."""
     columns, rows = 16, 9
     turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, columns + 1), np.linspace(-np.pi / 2, np.pi / 2, rows))
     points = np.stack([np.cos(height) * np.cos(turn), np.cos(height) * np.sin(turn), np.sin(height)], axis=-1)
@@ -154,11 +150,12 @@ _SPHERE, _FACETS = _sphere()
 
 
 def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
-    """Return a sphere where shapes of different bodies are deepest in each other; with physics, the forces as well."""
+    """Return a sphere at the deepest point of each contact between bodies; with physics, the contact forces as well."""
     physics = simulation.physics
     if physics is not None:
         return _forces(*physics.contacts(), physics.mean_weight(), radius)
-    from ravemj.engine.collision.world import cross  # noqa: PLC0415 - slow to import
+    from ravemj.engine.collision.patches import patches  # noqa: PLC0415 - slow to import
+    from ravemj.engine.collision.world import cross  # noqa: PLC0415
 
     world = simulation.collisions()
     points: list[Floats] = []
@@ -166,7 +163,7 @@ def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
         earlier = [world.geoms_of_body(other) for other in simulation.bodies[:number]]
         if earlier:
             pairs = world.make_pairs(*cross(world.geoms_of_body(body), np.concatenate(earlier)))
-            points += [world.shapes.contact(*geoms).position for geoms in world.hits(pairs)]
+            points += [contact.position for some in patches(world, [*world.hits(pairs)]) for contact in some]
     return _points(np.array(points).reshape(-1, 3), radius)
 
 
@@ -175,7 +172,7 @@ def _points(points: Floats, radius: float) -> list[Primitives]:
 
 
 def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> list[Primitives]:
-    """Return the contacts of physics, each with an arrow along its force, as long as it is large."""
+    """Return the contacts of the physics engine, each with an arrow proportional to its force."""
     sizes = np.linalg.norm(forces, axis=1)
     unit = weight or float(sizes.max(initial=0.0))
     arrows: list[Primitives] = []
@@ -187,7 +184,7 @@ def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> lis
 
 
 def _centers(body: BodyState) -> Floats:
-    """Return the centres of mass of all links, in the world [m], shape (links, 3)."""
+    """Return the centres of mass of all links in the world [m], shape (links, 3)."""
     T_world_links = body.link_transforms()
     return np.einsum("nij,nj->ni", T_world_links[:, :3, :3], body.inertias.coms) + T_world_links[:, :3, 3]
 
@@ -199,7 +196,7 @@ _PARTS: dict[str, _Part] = {"frames": _frames, "axes": _joints, "masses": _masse
 
 
 def floor_grid(center: Floats, radius: float) -> Primitives:
-    """Return lines on the floor around a sphere (centre and radius [m]), and the axes of the world at its origin."""
+    """Return a grid on the floor around a sphere (centre and radius [m]), and the world's axes at the origin."""
     step, reach = _step_and_reach(center, radius)
     places = step * np.arange(-round(reach / step), round(reach / step) + 1)
     ends = np.array([[(place, -reach), (place, reach)] for place in places])
@@ -212,7 +209,7 @@ def floor_grid(center: Floats, radius: float) -> Primitives:
 
 
 def floor_labels(center: Floats, radius: float) -> tuple[Label, ...]:
-    """Return the texts on the grid: metres along x and y, and the names of the axes at their ends."""
+    """Return the labels of the grid: metres along x and y, and the names of the axes."""
     step, reach = _step_and_reach(center, radius)
     apart = max(10 * step, math.ceil(0.25 * reach)) if reach >= 1 else 0.5
     labels = [
@@ -225,7 +222,7 @@ def floor_labels(center: Floats, radius: float) -> tuple[Label, ...]:
 
 
 def _step_and_reach(center: Floats, radius: float) -> tuple[float, float]:
-    """Return the distance between lines, and how far they go to each side of the origin; whole steps [m]."""
+    """Return the distance between lines and half the side of the grid, in whole steps [m]."""
     wanted = _FLOOR_REACH * radius + float(np.abs(center[:2]).max())
     step = next((step for step in _STEPS if wanted / step <= _MOST_LINES), _STEPS[-1])
     return step, step * min(max(math.ceil(wanted / step), 1), _MOST_LINES)

@@ -1,4 +1,4 @@
-"""The help, as a window draws it: rows of text in one or two columns, wrapped to their width."""
+"""Layout of the help in a window: rows of text in one or two columns, wrapped to their width."""
 
 import textwrap
 from collections.abc import Iterator
@@ -9,13 +9,13 @@ from ravemj.gui.interaction.shortcuts import sections
 
 _MARGIN, _PADDING, _LINE = 8.0, 6.0, 18.0
 _WIDEST, _TWO_COLUMNS = 900.0, 640.0
-"""Most width of the help, and least width with two columns."""
+"""Maximum width of the help, and minimum width for two columns [points]."""
 
 _KEY_WIDTH, _SHORT = 58.0, 8
-"""Where the text beside a key begins, and most letters of keys that stand in front of what they do."""
+"""Column of the descriptions [points], and maximum length of keys that have the description beside them [letters]."""
 
 _LETTER = 6.4
-"""Width of a letter, where many follow one another."""
+"""Mean width of a letter in running text [points]."""
 
 _GLASS = (0.09, 0.1, 0.12, 0.95)
 _CLEAR = (0.0, 0.0, 0.0, 0.0)
@@ -30,7 +30,7 @@ class _Text(NamedTuple):
 
 
 class HelpLayout(NamedTuple):
-    """Where the help is, the greatest number that its first row can have, and what to draw."""
+    """Rectangle of the help, its largest possible first row, and its panels."""
 
     rect: Rect
     last_row: int
@@ -38,7 +38,7 @@ class HelpLayout(NamedTuple):
 
 
 def help_layout(size: tuple[int, int], first_row: int) -> HelpLayout:
-    """Lay the help out for a view of some size [points], from a row on where there is no room for all."""
+    """Lay out the help for a view of a size [points], scrolled to a first row."""
     width = min(_WIDEST, size[0] - 2 * _MARGIN)
     columns = 2 if width >= _TWO_COLUMNS else 1
     column_width = (width - 2 * _PADDING) / columns

@@ -1,4 +1,4 @@
-"""The sliders of the joints of one body."""
+"""The joint sliders of one body."""
 
 import math
 import random
@@ -13,10 +13,10 @@ from ravemj.gui.interaction.joint_handle import joint_and_axis
 from ravemj.model.limits import clamp
 
 _WIDEST = {True: (1.0, "m"), False: (math.pi, "rad")}
-"""How far a control goes to each side where the limits of the axis are much wider, and its unit; True: it slides."""
+"""Half the range of a slider whose joint limits are much wider, and the unit; by whether the axis is prismatic."""
 
 _MUCH = 4.0
-"""How many times wider than that limits are that no slider can cover."""
+"""Joint limits wider by this factor count as much wider."""
 
 
 _TOOLS = (
@@ -36,13 +36,13 @@ def controls(body: BodyState, *, in_degrees: bool) -> list[Control]:
 
 
 def sweep_control(body: BodyState, dof: int, *, in_degrees: bool) -> Control:
-    """Return a slider for a joint of a redundant arm whose hand stays where it is."""
+    """Return a slider for the free joint of a redundant arm, which moves while the hand stays."""
     slider = _slider(body, dof, float(body.kinematics.values()[dof]), in_degrees=in_degrees)
     return replace(slider, name="sweep", label=f"{slider.label}, hand stays")
 
 
 def operate(body: BodyState, name: str, value: float) -> None:
-    """Move the joint of a slider, or all joints: to zero, or to random values, as far as their limits go."""
+    """Set the joint of a slider, or all joints to zero or to random values, within their limits."""
     if name.startswith("dof "):
         set_dof(body, int(name.removeprefix("dof ")), value)
         return
@@ -54,7 +54,7 @@ def operate(body: BodyState, name: str, value: float) -> None:
 
 
 def values_line(body: BodyState) -> str:
-    """Return the line of a script that sets the values that the sliders show."""
+    """Return a line of Python that sets the present joint values."""
     values = ", ".join(str(round(value, 6) + 0.0) for value in body.kinematics.values().tolist())
     return f"env.GetKinBody({body.scene.name!r}).SetDOFValues([{values}])"
 

@@ -1,4 +1,4 @@
-"""The cylinder at a selected joint."""
+"""The cylindrical handle of a selected joint."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.picking import visible_box
-from ravemj.gui.interaction.viewpoint import Ray
+from ravemj.gui.interaction.viewpoint import ViewRay
 from ravemj.model import drawing
 from ravemj.model.chains import joints_above
 from ravemj.model.drawing import Primitives
@@ -17,13 +17,13 @@ from ravemj.model.manipulators import joint_dofs
 from ravemj.model.scene import Joint, KinBody
 
 SIZES = (1.0, 2.0, 4.0, 0.5)
-"""Factors of the cylinder's size, one for each click."""
+"""Scale factors of the cylinder, selected by repeated clicks."""
 
 _RADIUS = 0.15
-"""The radius, as a part of the diagonal of what is seen of the link."""
+"""Radius of the cylinder, as a fraction of the diagonal of the link's visible geometry."""
 
 _SMALLEST, _LARGEST = 0.02, 0.1
-"""The same, as parts of the diagonal of the whole body."""
+"""Bounds of the radius, as fractions of the diagonal of the body's visible geometry."""
 
 _OVERHANG = 1.2
 _STRIPES = 6
@@ -36,9 +36,9 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 49)
 
 
 def driving_dof(body: KinBody, link: int) -> int | None:
-    """Return the first DOF of the joint that moves a link: its parent joint, or the one above where that is a weld.
+    """Return the first DOF of the joint that moves a link: its parent joint, above welds the next moving one.
 
-    A joint that follows others stands for the first one that it follows. None where nothing moves the link.
+    For a mimic joint it is the first joint that it follows. None if no joint moves the link.
     """
     joints = body.all_joints
     for index in joints_above(body, link):
@@ -51,19 +51,19 @@ def driving_dof(body: KinBody, link: int) -> int | None:
 
 
 def joint_and_axis(body: BodyState, dof: int) -> tuple[Joint, int]:
-    """Return the joint that a DOF belongs to, and the number of its axis."""
+    """Return the joint of a DOF, and the index of the axis in the joint."""
     joint = body.scene.joint_of_dof(dof)
     return joint, dof - body.kinematics.first_dofs[body.scene.joints.index(joint)]
 
 
 @dataclass(frozen=True, eq=False)
 class JointHandle:
-    """A cylinder about the axis of a joint, or along it.
+    """A cylinder on the axis of a joint.
 
     Attributes:
-        T_world_handle: Its centre and axes, 4x4; z is the joint's axis. It moves with the joint's child.
+        T_world_handle: Pose of its centre, shape (4, 4); z is the joint axis. It moves with the child link.
         radius: Its radius [m].
-        height: Its full height [m].
+        height: Its height [m].
     """
 
     T_world_handle: Floats
@@ -72,7 +72,7 @@ class JointHandle:
 
     @classmethod
     def at(cls, body: BodyState, dof: int, scale: float = 1.0) -> "JointHandle":
-        """Return the handle of a DOF where it is now, larger than usual by a factor."""
+        """Return the handle of a DOF at the present pose, scaled by a factor."""
         joint, T_world_handle = joint_frame(body, dof)
         child, whole = (visible_box(body, links, T_world_handle) for links in ([joint.child], None))
         length = 1.0 if whole is None else 2 * float(np.linalg.norm(whole.half))
@@ -93,21 +93,21 @@ class JointHandle:
         """The direction of the joint's axis in the world, unit vector, shape (3,)."""
         return self.T_world_handle[:3, 2]
 
-    def hit(self, ray: Ray) -> Floats | None:
-        """Return where a ray meets the cylinder, in the world [m], shape (3,), or None."""
+    def hit(self, ray: ViewRay) -> Floats | None:
+        """Return the first intersection of a ray with the cylinder, in the world [m], shape (3,), or None."""
         size = np.array([self.radius, self.height / 2, 0.0])
         turned = self.T_world_handle[:3, :3].reshape(-1)
         kind = int(mujoco.mjtGeom.mjGEOM_CYLINDER)
         distance = mujoco.mju_rayGeom(self.center, turned, size, ray.start, ray.direction, kind, np.zeros(3))
         return None if distance < 0 else ray.start + distance * ray.direction
 
-    def mark(self) -> Primitives:
-        """Return a figure on it that shows that a drag would take it, in the world."""
+    def highlight(self) -> Primitives:
+        """Return its highlight, in the world."""
         size = _MARK_MARGIN * self.radius, _MARK_MARGIN * self.height
         return drawing.cylinder(*size, _MARKED).placed(self.T_world_handle)
 
     def primitives(self) -> Primitives:
-        """Return its figures, in the world: stripes show how it turns."""
+        """Return its drawing, in the world; stripes show its rotation."""
         ring = self.radius * np.column_stack([np.cos(_CIRCLE), np.sin(_CIRCLE), 0 * _CIRCLE])
         up = np.array([0.0, 0.0, self.height / 2])
         corners = ring[: -1 : len(ring) // _STRIPES]
@@ -120,7 +120,7 @@ def _strip(points: Floats) -> Primitives:
 
 
 def joint_frame(body: BodyState, dof: int) -> tuple[Joint, Floats]:
-    """Return the joint of a DOF and the frame of its axis in the world, 4x4: z along it, x fixed to the child."""
+    """Return the joint of a DOF and the frame of its axis in the world, 4x4: z along the axis, x fixed to the child."""
     joint, axis = joint_and_axis(body, dof)
     values = body.kinematics.values()[dof - axis :].tolist()
     T_world_parent, T_world_child = (body.link_transform(link) for link in (joint.parent, joint.child))

@@ -1,4 +1,4 @@
-"""The buttons and wheels on the view, as rectangles that every shell can draw."""
+"""OpenRAVE's mode buttons and camera wheels, as rectangles that every shell can draw."""
 
 from enum import Enum
 from typing import NamedTuple
@@ -27,18 +27,18 @@ class Rect(NamedTuple):
     height: float
 
     def contains(self, x: float, y: float) -> bool:
-        """Return whether a point is in it."""
+        """Return whether a point is inside."""
         return self.x <= x < self.x + self.width and self.y <= y < self.y + self.height
 
 
 class Panel(NamedTuple):
-    """A rectangle to draw, behind those that come after it.
+    """A rectangle with text; later panels are drawn over earlier ones.
 
     Attributes:
-        rect: Where.
-        rgba: Its colour, in 0..1; with no opacity, only the text is drawn.
-        text: What stands in its middle.
-        is_left: Whether the text stands at its left edge.
+        rect: The rectangle.
+        rgba: Its colour, in 0..1; if the opacity is 0, only the text is drawn.
+        text: Text in its centre.
+        is_left: Whether the text is left-aligned instead.
         text_rgb: Colour of the text, in 0..255.
     """
 
@@ -49,8 +49,8 @@ class Panel(NamedTuple):
     text_rgb: tuple[int, int, int] = (255, 255, 255)
 
 
-class Tool(Enum):
-    """What can be pressed; the values are the names that people read."""
+class ViewButton(Enum):
+    """A mode button or a camera wheel; the values are the displayed names."""
 
     INTERACT = "Interaction mode"
     CAMERA = "Camera mode"
@@ -59,35 +59,35 @@ class Tool(Enum):
     DOLLY = "Dolly"
 
 
-def tools(size: tuple[int, int]) -> dict[Tool, Rect]:
-    """Return where the buttons and wheels are on a view of some size [points]; none where it is too small."""
+def button_rects(size: tuple[int, int]) -> dict[ViewButton, Rect]:
+    """Return the rectangles of the buttons and wheels on a view of a size [points]; none if it is too small."""
     width, height = size
     right, bottom = width - _MARGIN, height - _MARGIN
     if width < 3 * _WHEEL_LENGTH or height < 2 * _WHEEL_LENGTH:
         return {}
     upright = bottom - _WHEEL_WIDTH - _MARGIN - _WHEEL_LENGTH
     return {
-        Tool.INTERACT: Rect(right - _BUTTON, _MARGIN, _BUTTON, _BUTTON),
-        Tool.CAMERA: Rect(right - _BUTTON, 2 * _MARGIN + _BUTTON, _BUTTON, _BUTTON),
-        Tool.ROT_X: Rect(_MARGIN, upright, _WHEEL_WIDTH, _WHEEL_LENGTH),
-        Tool.ROT_Y: Rect(2 * _MARGIN + _WHEEL_WIDTH, bottom - _WHEEL_WIDTH, _WHEEL_LENGTH, _WHEEL_WIDTH),
-        Tool.DOLLY: Rect(right - _WHEEL_WIDTH, upright, _WHEEL_WIDTH, _WHEEL_LENGTH),
+        ViewButton.INTERACT: Rect(right - _BUTTON, _MARGIN, _BUTTON, _BUTTON),
+        ViewButton.CAMERA: Rect(right - _BUTTON, 2 * _MARGIN + _BUTTON, _BUTTON, _BUTTON),
+        ViewButton.ROT_X: Rect(_MARGIN, upright, _WHEEL_WIDTH, _WHEEL_LENGTH),
+        ViewButton.ROT_Y: Rect(2 * _MARGIN + _WHEEL_WIDTH, bottom - _WHEEL_WIDTH, _WHEEL_LENGTH, _WHEEL_WIDTH),
+        ViewButton.DOLLY: Rect(right - _WHEEL_WIDTH, upright, _WHEEL_WIDTH, _WHEEL_LENGTH),
     }
 
 
-def tool_at(size: tuple[int, int], x: float, y: float) -> Tool | None:
+def button_at(size: tuple[int, int], x: float, y: float) -> ViewButton | None:
     """Return the button or wheel at a point of the view [points], or None."""
-    return next((tool for tool, rect in tools(size).items() if rect.contains(x, y)), None)
+    return next((tool for tool, rect in button_rects(size).items() if rect.contains(x, y)), None)
 
 
-def panels(size: tuple[int, int], chosen: Tool) -> tuple[Panel, ...]:
-    """Return what to draw for the buttons and wheels on a view of some size [points], with one button chosen."""
+def panels(size: tuple[int, int], chosen: ViewButton) -> tuple[Panel, ...]:
+    """Return the panels of the buttons and wheels on a view of a size [points]; ``chosen`` is the active button."""
     drawn: list[Panel] = []
-    for tool, rect in tools(size).items():
+    for tool, rect in button_rects(size).items():
         drawn.append(Panel(rect, _CHOSEN if tool is chosen else _BACK))
-        if tool is Tool.INTERACT:
+        if tool is ViewButton.INTERACT:
             drawn += _arrow(rect)
-        elif tool is Tool.CAMERA:
+        elif tool is ViewButton.CAMERA:
             drawn += _camera(rect)
         else:
             drawn += _ridges(rect)
@@ -96,7 +96,7 @@ def panels(size: tuple[int, int], chosen: Tool) -> tuple[Panel, ...]:
 
 
 def _arrow(rect: Rect) -> list[Panel]:
-    """Return a red arrow that points up and to the left, as a mouse pointer does."""
+    """Return a red arrow like a mouse pointer."""
     head = [Panel(Rect(rect.x + 9, rect.y + 5 + row, 2 + 0.8 * row, 1), _RED) for row in range(18)]
     tail = [Panel(Rect(rect.x + 14 + 0.5 * row, rect.y + 22 + row, 5, 1), _RED) for row in range(9)]
     return head + tail
@@ -117,8 +117,8 @@ def _ridges(rect: Rect) -> list[Panel]:
     return [Panel(Rect(rect.x + step * rect.width, rect.y + 3, 2, rect.height - 6), _RIDGE) for step in steps]
 
 
-def _label(tool: Tool, rect: Rect) -> Rect:
-    if tool is Tool.ROT_Y:
+def _label(tool: ViewButton, rect: Rect) -> Rect:
+    if tool is ViewButton.ROT_Y:
         return Rect(rect.x + rect.width + 2, rect.y + rect.height - _LABEL_HEIGHT, _LABEL_WIDTH, _LABEL_HEIGHT)
-    x = rect.x if tool is Tool.ROT_X else rect.x + rect.width - _LABEL_WIDTH
+    x = rect.x if tool is ViewButton.ROT_X else rect.x + rect.width - _LABEL_WIDTH
     return Rect(x, rect.y - _LABEL_HEIGHT - 2, _LABEL_WIDTH, _LABEL_HEIGHT)

@@ -1,4 +1,4 @@
-"""The view of a window or a page, and the ways back from wherever the mouse has brought it."""
+"""Camera navigation of one view: home, standard views, fitting, and smooth transitions."""
 
 from dataclasses import dataclass, replace
 
@@ -7,10 +7,10 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering import bounding_sphere
-from ravemj.gui.interaction.viewpoint import View
+from ravemj.gui.interaction.viewpoint import Viewpoint
 
 GLIDE = 0.2
-"""How long the view takes to get where a button or a key sends it [s]."""
+"""Duration of a camera transition [s]."""
 
 SIDES = {
     "front": (-1.0, 0.0, 0.0),
@@ -23,38 +23,38 @@ SIDES = {
 """The viewing directions of six views. Robots look along +x, so the one from the front looks along -x."""
 
 Sphere = tuple[Floats, float]
-"""Centre, shape (3,), and radius of a sphere [m]."""
+"""Centre [m], shape (3,), and radius [m] of a sphere."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Glide:
-    start: View
+    start: Viewpoint
     begun: float | None = None
     part: float = 0.0
 
 
 class Navigation:
-    """Where a view is looked from. Nothing here waits for the bodies."""
+    """The viewpoint of one view and its transitions. Its methods never wait for the simulation's lock."""
 
-    def __init__(self, view: View, simulation: Simulation) -> None:
+    def __init__(self, view: Viewpoint, simulation: Simulation) -> None:
         self._view = self._home = view
         self._simulation = simulation
         self._sphere: Sphere = np.zeros(3), 1.0
         self._glide: _Glide | None = None
 
     def another(self) -> "Navigation":
-        """Return one that begins with this view, and has the same way home."""
+        """Return a copy for another view, with the same home view."""
         other = Navigation(self.view, self._simulation)
         other._home, other._sphere = self._home, self._sphere
         return other
 
     @property
     def appearance(self) -> object:
-        """What is equal for as long as the view looks the same."""
+        """A key that changes when the viewpoint changes."""
         return self._view, self._glide
 
     def scene_sphere(self) -> Sphere:
-        """Return a sphere around everything: as it was last, while others have the simulation."""
+        """Return the bounding sphere of the scene; the last known one while others hold the lock."""
         with self._simulation.lock.attempt(0) as is_free:
             if is_free:
                 compiled = self._simulation.compiled()
@@ -62,28 +62,28 @@ class Navigation:
         return self._sphere
 
     @property
-    def view(self) -> View:
-        """The view; while it glides, that where it will come to rest."""
+    def view(self) -> Viewpoint:
+        """The viewpoint; during a transition its final one."""
         return self._view
 
     @view.setter
-    def view(self, view: View) -> None:
+    def view(self, view: Viewpoint) -> None:
         self._view, self._glide = view, None
 
     @property
-    def drawn(self) -> View:
-        """The view to be drawn: on its way, while it glides."""
+    def drawn(self) -> Viewpoint:
+        """The viewpoint to draw: during a transition the interpolated one."""
         glide = self._glide
         if glide is None:
             return self._view
-        return replace(glide.start, size=self._view.size).on_the_way(self._view, glide.part)
+        return replace(glide.start, size=self._view.size).interpolated(self._view, glide.part)
 
     def set_home(self) -> None:
-        """Come back to the present view from now on."""
+        """Make the present viewpoint the home view."""
         self._home = self._view
 
-    def pass_time(self, now: float) -> None:
-        """Let the view glide; ``now`` as ``time.monotonic`` says."""
+    def advance(self, now: float) -> None:
+        """Advance the transition; ``now`` is from ``time.monotonic``."""
         glide = self._glide
         if glide is None:
             return
@@ -91,13 +91,13 @@ class Navigation:
         part = (now - begun) / GLIDE
         self._glide = replace(glide, begun=begun, part=part * part * (3 - 2 * part)) if part < 1 else None
 
-    def _glide_to(self, view: View) -> None:
+    def _glide_to(self, view: Viewpoint) -> None:
         start = self.drawn
         self.view = view
         self._glide = _Glide(start)
 
-    def focused(self) -> View:
-        """Return the view with a focus: before one was set, as deep as the middle of the scene."""
+    def focused(self) -> Viewpoint:
+        """Return the viewpoint with a focus; if none was set, at the depth of the scene's centre."""
         if self.view.distance > 0:
             return self.view
         center, radius = self.scene_sphere()
@@ -105,7 +105,7 @@ class Navigation:
         return replace(self.view, distance=depth if depth > 0 else radius)
 
     def go(self, name: str) -> bool:
-        """Go ``home``, ``upright``, ``turntable`` or to one of ``SIDES``; return False for other names."""
+        """Move to ``home``, ``upright``, ``turntable`` or one of ``SIDES``; return False for other names."""
         if name == "home":
             self._glide_to(replace(self._home, size=self.view.size, is_upright=self.view.is_upright))
         elif name == "upright":
@@ -120,5 +120,5 @@ class Navigation:
         return True
 
     def fit(self, sphere: Sphere | None = None) -> None:
-        """Show a sphere as large as it fits into the view; None: everything."""
+        """Start a transition to a viewpoint that a sphere just fits into; None: the bounding sphere of the scene."""
         self._glide_to(self.view.fitted(*(sphere or self.scene_sphere())))

@@ -1,17 +1,17 @@
-"""What a viewer tells for some seconds."""
+"""Temporary messages of a viewer."""
 
 import threading
 import time
 
 
 class Notices:
-    """Lines of text that go away by themselves; all views of a viewer show them.
+    """Lines of text that expire, shown by all views of a viewer.
 
-    No method waits for anybody, so that threads can tell what they did while a script holds the simulation.
+    No method waits for a lock, so any thread can report while a script holds the simulation.
 
     Attributes:
-        recording: Whether a video is being made of a view.
-        text_size: Height of the letters of what is shown [points]; None: as who draws it likes.
+        recording: Whether a video of a view is being recorded.
+        text_size: Height of the letters [points]; None: the default of the window or page.
     """
 
     def __init__(self) -> None:
@@ -21,22 +21,22 @@ class Notices:
         self.text_size: float | None = None
 
     def say(self, line: str, seconds: float = 6.0) -> None:
-        """Show a line for some time."""
+        """Show a line for a time [s]."""
         with self._lock:
             self._lines[line] = time.monotonic() + seconds
 
-    def take_back(self, line: str) -> None:
-        """Show a line no more."""
+    def withdraw(self, line: str) -> None:
+        """Remove a line."""
         with self._lock:
             self._lines.pop(line, None)
 
-    def pass_time(self, now: float) -> None:
-        """Forget what has been shown for long enough; ``now`` as ``time.monotonic`` says."""
+    def advance(self, now: float) -> None:
+        """Remove expired lines; ``now`` is from ``time.monotonic``."""
         with self._lock:
             self._lines = {line: end for line, end in self._lines.items() if end > now}
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """What is shown now."""
+        """The current lines."""
         with self._lock:
             return tuple(self._lines)

@@ -1,4 +1,4 @@
-"""What is drawn over the bodies."""
+"""The overlay of a view: drawings, texts and controls."""
 
 from typing import NamedTuple
 
@@ -7,8 +7,8 @@ from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.gui.interaction.control import Control
 from ravemj.gui.interaction.mode_buttons import Panel
 from ravemj.gui.interaction.shortcuts import Section
-from ravemj.gui.interaction.tree import Node
-from ravemj.gui.interaction.viewpoint import View
+from ravemj.gui.interaction.tree import TreeRow
+from ravemj.gui.interaction.viewpoint import Viewpoint
 from ravemj.model.drawing import Primitives
 
 
@@ -20,21 +20,21 @@ class Label(NamedTuple):
 
 
 class Overlay(NamedTuple):
-    """What is drawn over the bodies.
+    """Everything that a shell draws over the bodies.
 
     Attributes:
-        primitives: Figures in the world.
-        lines: Text for the top left corner.
-        panels: Buttons, wheels and sliders, for a shell that has none of its own.
-        controls: What the buttons and sliders beside the tutorial's are, as plain data.
+        primitives: Drawings in the world.
+        lines: Lines of text in the top left corner.
+        panels: Buttons, wheels and sliders, for a shell without controls of its own.
+        controls: Buttons and sliders as plain data, apart from mode buttons and wheels.
         labels: Texts in the world.
-        help: What can be done, while that is unfolded.
-        tree: The bodies, links and joints, while they are unfolded.
-        chosen: Names of what of the tree is selected.
-        style: How the bodies are drawn.
-        cursor: How the pointer looks: ``default``, ``grab`` for a view that can be turned, ``pointer`` for a button or
-            something to click on, ``move`` for something to drag, ``text`` for something to type into.
-        text_size: Height of the letters of the lines [points]; None: as the shell likes.
+        help: Sections of the help while it is open.
+        tree: Rows of the tree of bodies, links and joints while it is open.
+        chosen: Names of the selected rows of the tree.
+        style: Drawing style of the bodies.
+        cursor: Shape of the pointer: ``default``, ``grab`` for a view that can be turned, ``pointer`` for a button or
+            a clickable link, ``move`` for a handle, ``text`` for a text field.
+        text_size: Height of the letters of the lines [points]; None: the default of the shell.
     """
 
     primitives: Primitives
@@ -43,14 +43,14 @@ class Overlay(NamedTuple):
     controls: tuple[Control, ...] = ()
     labels: tuple[Label, ...] = ()
     help: tuple[Section, ...] = ()
-    tree: tuple[Node, ...] = ()
+    tree: tuple[TreeRow, ...] = ()
     chosen: tuple[str, ...] = ()
     style: Style = AS_IT_IS
     cursor: str = "default"
     text_size: float | None = None
 
-    def labels_on(self, view: View) -> list[tuple[float, float, str]]:
-        """Return column and row [points] and text of the labels that are before the eye and on a view."""
+    def labels_on(self, view: Viewpoint) -> list[tuple[float, float, str]]:
+        """Return column, row [points] and text of the labels in front of the camera and inside the view."""
         if not self.labels:
             return []
         pixels, depths = view.camera.project([label.point for label in self.labels], *view.size)

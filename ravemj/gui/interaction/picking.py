@@ -1,4 +1,4 @@
-"""What the pointer points at: the nearest surface that pictures show, by ray casting."""
+"""Picking: the nearest visible surface on a ray, by ray casting."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.graphics.rendering import bounding_sphere, drawn_geoms, geom_corners
-from ravemj.gui.interaction.viewpoint import Ray
+from ravemj.gui.interaction.viewpoint import ViewRay
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +19,7 @@ class Hit:
         link: Index of its link.
         position: The point, in the world [m], shape (3,).
         normal: Unit normal of the surface, outwards, shape (3,).
-        distance: How far it is from the eye [m].
+        distance: Its distance from the eye [m].
     """
 
     body: BodyState
@@ -29,8 +29,8 @@ class Hit:
     distance: float
 
 
-def pick(simulation: Simulation, ray: Ray) -> Hit | None:
-    """Return the nearest point on a link that a ray meets, or None."""
+def pick(simulation: Simulation, ray: ViewRay) -> Hit | None:
+    """Return the first hit of a ray on a visible link, or None."""
     compiled = simulation.compiled()
     model, data = compiled.model, compiled.data
     center, radius = bounding_sphere(model, data)
@@ -49,14 +49,14 @@ def pick(simulation: Simulation, ray: Ray) -> Hit | None:
 
 @dataclass(frozen=True, eq=False)
 class VisibleBox:
-    """A box along the axes of a frame around what pictures show of some links: centre and half sides [m], (3,)."""
+    """Axis-aligned bounding box of visible geometry in some frame: centre and half extents [m], shape (3,) each."""
 
     center: Floats
     half: Floats
 
 
 def visible_box(body: BodyState, links: "list[int] | None", T_world_frame: Floats) -> VisibleBox | None:
-    """Return the box along the axes of a frame (4x4) around links of a body (None: all); None where none is seen."""
+    """Return the bounding box of visible links (None: all), aligned with a frame (4x4); None if no link is visible."""
     compiled = body.simulation.compiled()
     model, data, body_ids = compiled.model, compiled.data, compiled.part(body).body_ids
     if links is not None:

@@ -1,4 +1,4 @@
-"""A motion that is played, paused, and gone through by hand."""
+"""Playback of a motion."""
 
 import math
 
@@ -7,20 +7,20 @@ from ravemj.errors import ArgumentError
 from ravemj.trajectories.body_motion import BodyMotion
 
 STEP = 1 / 30
-"""How far ``step`` goes [s]: a frame of a video."""
+"""Time step of ``step`` [s]: one frame of a video."""
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
-"""What a button chooses from; scripts may choose any."""
+"""Speeds that the button cycles through; scripts may set any other."""
 
 _LONGEST_PAUSE = 0.5
-"""Time that counts at most between two pictures [s]: where drawing or a script takes longer, the motion waits."""
+"""Largest time step between two frames [s]; if drawing or a script takes longer, the motion is delayed."""
 
 
 class Playback:
-    """Plays a motion in a viewer; ``viewer.play`` returns it, ``viewer.playback`` too.
+    """Playback of a motion in a viewer, from ``viewer.play`` or ``viewer.playback``.
 
-    A window or a page lets it go on while it draws; ``seek`` and ``step`` move the bodies at once, with or without one.
-    Its methods can be called in any thread.
+    A window or a page advances it while drawing; ``seek`` and ``step`` move the bodies immediately, also without a
+    window. The methods are thread-safe.
 
     Example:
         >>> playback = viewer.play(ravemj.Motion.line([0, 0], [3.14, 0]))
@@ -40,7 +40,7 @@ class Playback:
 
     @property
     def motion(self) -> BodyMotion | None:
-        """What is played, or None; a body that is taken out of the world takes its motion along."""
+        """The motion, or None. Removing its body from the environment clears it."""
         with self._simulation.lock:
             if self._motion is not None and not all(map(self._simulation.holds, self._motion.bodies)):
                 self.clear()
@@ -48,23 +48,23 @@ class Playback:
 
     @property
     def duration(self) -> float:
-        """How long the motion is [s]; 0 where there is none."""
+        """Duration of the motion [s]; 0 if there is none."""
         motion = self.motion
         return 0.0 if motion is None else motion.duration
 
     @property
     def time(self) -> float:
-        """Where in the motion the bodies are [s], from 0 to ``duration``."""
+        """Current time of the motion [s], from 0 to ``duration``."""
         return self._time
 
     @property
     def playing(self) -> bool:
-        """Whether it goes on by itself; False once the end is reached."""
+        """Whether it is running; False at the end of the motion."""
         return self._playing
 
     @property
     def speed(self) -> float:
-        """Seconds of the motion in a second: 1 is real time, 0.5 half as fast."""
+        """Playback speed; 1 is real time."""
         return self._speed
 
     @speed.setter
@@ -75,35 +75,35 @@ class Playback:
             self._speed = float(speed)
 
     def load(self, motion: BodyMotion) -> None:
-        """Take another motion, in place of the one before, and go to its start."""
+        """Replace the motion, and go to its start."""
         with self._simulation.lock:
             self.pause()
             motion.place(0.0)
             self._motion, self._time = motion, 0.0
 
     def clear(self) -> None:
-        """Forget the motion; the bodies stay where they are."""
+        """Remove the motion; the bodies keep their poses."""
         with self._simulation.lock:
             self.pause()
             self._motion, self._time = None, 0.0
 
     def play(self) -> None:
-        """Go on; from the end, go on from the start."""
+        """Start or resume; at the end, restart."""
         with self._simulation.lock:
             if self._time >= self.duration:
                 self.seek(0.0)
             self._playing, self._last = self.duration > 0, None
 
     def pause(self) -> None:
-        """Stop where the motion is now."""
+        """Pause at the current time."""
         with self._simulation.lock:
             self._playing = False
 
     def seek(self, time: float) -> None:
-        """Go to a time of the motion [s]; before the start and after the end, to these.
+        """Go to a time of the motion [s], clamped to its duration.
 
         Raises:
-            ArgumentError: this is no number.
+            ArgumentError: ``time`` is not a number.
         """
         if math.isnan(time):
             raise ArgumentError("time: is nan, and should be a number of seconds")
@@ -113,17 +113,17 @@ class Playback:
                 try:
                     self._motion.place(self._time)
                 except Exception:
-                    self._playing = False  # what fails now would fail with every picture
+                    self._playing = False  # else the error would repeat with every frame
                     raise
 
     def step(self, count: int = 1) -> None:
-        """Pause, and go on by some frames of 1/30 s; back where the count is negative."""
+        """Pause, and go forward by frames of 1/30 s; backward if the count is negative."""
         with self._simulation.lock:
             self.pause()
             self.seek(self._time + count * STEP)
 
     def advance(self, now: float) -> None:
-        """Let time pass while it plays: before each picture, with the time [s] of any clock that never goes back."""
+        """Advance the motion if it runs; ``now`` [s] is from any monotonic clock. Called before each frame."""
         with self._simulation.lock:
             if self.motion is None or not self._playing:
                 return

@@ -1,4 +1,4 @@
-"""Links that follow the pointer by inverse kinematics: the arm comes along."""
+"""Dragging links by inverse kinematics."""
 
 import math
 
@@ -7,7 +7,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, Pose, inverse
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.dragging import in_plane
-from ravemj.gui.interaction.viewpoint import Ray
+from ravemj.gui.interaction.viewpoint import ViewRay
 from ravemj.ik.arms import chain_of
 from ravemj.ik.self_motion import null_space
 from ravemj.ik.solver import make_solver
@@ -19,32 +19,32 @@ from ravemj.model.manipulators import chain
 from ravemj.model.scene import KinBody, Manipulator
 
 _TURNING = 0.03
-"""How much turning by 1 rad counts beside a distance as long as the arm: where both cannot be, the point is reached."""
+"""Weight of the orientation error [1/rad] beside a position error of the arm's length: position has priority."""
 
 _WEIGHTS = np.array([1.0, 1.0, 1.0, _TURNING, _TURNING, _TURNING])
 _SWEEP = 0.08
-"""How far a step of the wheel moves the joints of a redundant arm, in joint space [rad]."""
+"""Length of a null-space step per wheel step, in joint space [rad]."""
 
 _MOST_STEPS = 100
-"""Most of such steps to the value of a slider."""
+"""Maximum number of null-space steps towards a slider value."""
 
 _CLOSE = 1e-4
-"""The tolerance of the joint value [rad or m]."""
+"""Tolerance of the joint value [rad or m]."""
 
 _STUCK = 0.1
 """A step that moves the joint by a smaller fraction of its length shows that limits of other joints stop the arm."""
 
 _SAME = 0.05
-"""Configurations whose joints all differ by less [rad or m] are the same to the eye."""
+"""Solutions whose joint values all differ by less [rad or m] are drawn once."""
 
 _GHOST = np.array([0.3, 0.4, 0.75, 0.75])
 _WIDTH = 6.0
 
 
 class Reach:
-    """A link that is held at a point, and follows the pointer with the joints above it, as far as their limits go.
+    """An inverse-kinematics drag: a point of a link follows the pointer by the joints above it, within their limits.
 
-    The link keeps its orientation where the joints can do that, too. Goals out of reach are come as near to as can be.
+    The link keeps its orientation if possible. If the goal is out of reach, the link goes to the nearest pose.
 
     Attributes:
         body: The body.
@@ -52,13 +52,13 @@ class Reach:
     """
 
     def __init__(self, body: BodyState, link: int, point: Floats, normal: Floats) -> None:
-        """Take hold of a link.
+        """Start the drag of a link.
 
         Args:
             body: The body.
             link: Index of the link.
-            point: What the pointer holds, in the world [m], shape (3,).
-            normal: Normal of the plane of the pointer, unit vector, shape (3,).
+            point: The grabbed point, in the world [m], shape (3,).
+            normal: Normal of the drag plane, unit vector, shape (3,).
 
         Raises:
             ValueError: no joints move the link, or one of them follows others or is spherical; the message says so.
@@ -75,47 +75,47 @@ class Reach:
         self._free = self._free_joint()
 
     def _free_joint(self) -> int | None:
-        """Return the joint of the arm that can have any value while the link stays; None where it is not redundant.
+        """Return the free joint of a redundant arm, whose value is arbitrary while the link stays; else None.
 
-        Where there is a choice, it is the one that moves most.
+        Of several candidates it is the joint that moves most in the null space.
         """
         if self._solver.free:
             return self._solver.free[0]
         chain = self._solver.chain
-        values = np.random.default_rng(0).uniform(-1.0, 1.0, chain.dof)  # where nothing is singular
+        values = np.random.default_rng(0).uniform(-1.0, 1.0, chain.dof)  # away from singular configurations
         basis = null_space(chain, np.clip(values, *chain.bounds))
         return int(np.argmax(np.linalg.norm(basis, axis=1))) if basis.size else None
 
     @property
     def free_dof(self) -> int | None:
-        """The DOF that can have any value while the link stays; None where the arm is not redundant."""
+        """The free DOF of a redundant arm, or None."""
         return None if self._free is None else self._dofs[self._free]
 
     @property
     def _values(self) -> Floats:
         return self.body.kinematics.values()[self._dofs]
 
-    def follow(self, ray: Ray) -> None:
-        """Come to where the pointer's ray meets the plane."""
+    def follow(self, ray: ViewRay) -> None:
+        """Move the link towards the intersection of the ray and the drag plane."""
         goal = in_plane(ray, self._point, self._normal)
         if goal is not None:
             self._T_world_goal[:3, 3] = goal
             self._come_near(self._values)
 
     def _come_near(self, start: Floats) -> None:
-        """Come as near to the goal as joint values do that lead down from a start."""
+        """Minimize the distance to the goal from start values."""
         T_base_goal = inverse(self.body.link_transform(self._base)) @ self._T_world_goal
         values = self.body.kinematics.values()
         values[self._dofs] = self._solver.numeric.nearest(T_base_goal, start, _WEIGHTS).values
         self.body.set_values(values)
 
     def sweep(self, steps: float) -> None:
-        """Let a redundant arm move by steps of the wheel while its link stays; nothing happens to other arms."""
+        """Move a redundant arm in its null space by wheel steps; other arms stay."""
         if self._free is not None:
             self._come_near(self._values + _SWEEP * steps * self._self_motion(self._free))
 
     def sweep_to(self, value: float) -> None:
-        """Bring the free joint to a value [rad or m], or as near as limits let it, while the link stays where it is."""
+        """Move the free joint to a value [rad or m] while the link stays, as far as the limits permit."""
         free = self._free
         if free is None:
             return
@@ -136,16 +136,16 @@ class Reach:
                 return
 
     def _self_motion(self, free: int) -> Floats:
-        """Return the joint velocities that leave the link and move a joint most, of length 1; 0 where it cannot."""
+        """Return the unit null-space velocity that moves a joint most; zeros if the joint cannot move."""
         basis = null_space(self._solver.chain, self._values)
         along = basis @ basis[free]
         return along / max(float(np.linalg.norm(along)), np.finfo(float).tiny)
 
     def ghosts(self) -> Primitives:
-        """Return the other configurations that bring the link to where it is: lines from joint to joint.
+        """Return drawings of the other IK solutions for the link's present pose: lines from joint to joint.
 
-        They are those of the closed form, with the free joints as they are; none where there is no closed form. Lines,
-        since pages are sent figures whole with every frame: seven arms of solid links would be megabytes a second.
+        They are the closed-form solutions, with the present values of free joints; none if there is no closed form.
+        Solid links would be megabytes per second for pages, which receive all drawings with every frame.
         """
         solver, values = self._solver, self._values
         if solver.closed is None:
@@ -163,13 +163,13 @@ class Reach:
 
 
 def _ghost(points: Floats) -> Primitives:
-    """Return a figure of an arm in some configuration."""
+    """Return the drawing of an arm in one configuration."""
     colours = np.tile(_GHOST, (len(points), 1))
     return drawing.merge([drawing.line_strip(points, _WIDTH, colours), drawing.points(points, 2 * _WIDTH, colours)])
 
 
 def _arm_to(body: KinBody, base: int, link: int, place: Floats) -> Manipulator:
-    """Return the arm from one link to a point of another, in that link [m], shape (3,)."""
+    """Return the arm from a base link to a point of another link, in that link's frame [m], shape (3,)."""
     way = chain(body, base, link) or []
     moving = [index for index in way if index < len(body.joints) and not body.joints[index].static]
     if not moving:
@@ -190,7 +190,7 @@ def _arm_to(body: KinBody, base: int, link: int, place: Floats) -> Manipulator:
 
 
 def _root_of(body: KinBody, link: int) -> int:
-    """Return the link that the chain of joints to a link begins with."""
+    """Return the first link of the joint chain that leads to a link."""
     above = {joint.child: joint.parent for joint in body.all_joints if joint.places_child}
     while link in above:
         link = above[link]

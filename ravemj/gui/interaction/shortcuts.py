@@ -1,17 +1,17 @@
-"""What can be done with the mouse and the keys: one table, for the keys, the menus, the help and the manual."""
+"""Table of pointer gestures and keyboard shortcuts, for the keys, the menus, the help and the manual."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
 
 
 class Shortcut(NamedTuple):
-    """Something to do that has a key.
+    """An action with a keyboard shortcut.
 
     Attributes:
-        name: Name of the control that does it.
-        keys: Names of the keys that do it, as ``Key`` has them.
-        text: What it is called in a menu.
-        label: What it does.
+        name: Name of the control.
+        keys: Names of its keys, as in ``Key`` events.
+        text: Caption in a menu.
+        label: Description.
     """
 
     name: str
@@ -32,7 +32,7 @@ VIEW = (
     Shortcut("above", ("5",), "Above", "look from above, with y up"),
     Shortcut("below", ("6",), "Below", "look from below, with y up"),
 )
-"""Ways to look."""
+"""Camera actions."""
 
 DISPLAY = (
     Shortcut("floor", ("g",), "Floor", "show a grid on the floor, in metres, and the axes of the world"),
@@ -46,12 +46,15 @@ DISPLAY = (
     Shortcut("wireframe", ("w",), "Wireframe", "show edges only"),
     Shortcut("names", ("n",), "Names", "show the names of the links"),
 )
-"""What can be shown besides the bodies."""
+"""Display options."""
 
 OTHERS = (
     Shortcut("help", ("f1", "h", "?"), "?", "show this help, or hide it"),
     Shortcut("tree", ("b",), "", "show the tree of bodies, links and joints, or hide it"),
     Shortcut("pull", ("p",), "", "pull links with left drags, or move bodies again"),
+    Shortcut(
+        "pin", ("a",), "", "pin the link under the pointer, or the selected one, where it is; or take its pin out"
+    ),
     Shortcut("reload", ("r",), "", "read the model again (in ravemj view)"),
     Shortcut("play", (" ",), "", "play or pause a motion; without one, simulation time"),
     Shortcut("back", ("arrowleft",), "", "one frame of a motion back"),
@@ -59,14 +62,14 @@ OTHERS = (
     Shortcut("slower", ("-",), "", "play a motion slower; without one, simulation time"),
     Shortcut("faster", ("+", "="), "", "play a motion faster; without one, simulation time"),
 )
-"""What has a key, and is in no menu."""
+"""Actions that are in no menu."""
 
 KEYS = {key: shortcut.name for shortcut in (*VIEW, *DISPLAY, *OTHERS) for key in shortcut.keys}
 """The control that each key operates."""
 
 
 class Gesture(NamedTuple):
-    """A gesture of the mouse, and what it does."""
+    """A pointer gesture and its effect."""
 
     to: str
     do: str
@@ -103,12 +106,16 @@ GESTURES = {
             "Ctrl + Shift + left drag, or left drag with the button Pull: it follows in the plane of the view",
         ),
         Gesture(
+            "pull a link while others stay",
+            "pin these first: A over each, or select it and press the button Pin; the base moves then",
+        ),
+        Gesture(
             "move a redundant arm while its link stays",
             "mouse wheel, while the link is pulled; or the slider that is there from then on",
         ),
     ),
 }
-"""The gestures of the tutorial, and more."""
+"""Gestures by mode: those of OpenRAVE's tutorial, and further ones."""
 
 TOUCH = "Touch screen"
 TOUCH_GESTURES = (
@@ -118,29 +125,29 @@ TOUCH_GESTURES = (
     Gesture("select the joint above a link, or change the size of the cylinder", "a long press, as Ctrl + click"),
     Gesture("move what is selected", "drag the cube or the cylinder, in interaction mode; beside it the view turns"),
 )
-"""What fingers do on pages; windows have none."""
+"""Touch gestures; windows have none."""
 
 _KEY_NAMES = {"home": "Home", " ": "Space", "arrowleft": "Left", "arrowright": "Right", "f1": "F1"}
 
 
 def key_text(keys: tuple[str, ...]) -> str:
-    """Return keys as people read them."""
+    """Return the displayed names of keys."""
     return ", ".join(_KEY_NAMES.get(key, key.upper()) for key in keys)
 
 
 Section = tuple[str, tuple[tuple[str, str], ...]]
-"""A heading, and rows of what is wanted and what to do for it."""
+"""A heading, and rows of an action and its keys or gesture."""
 
 
 def sections() -> tuple[Section, ...]:
-    """Return the help."""
+    """Return the sections of the help."""
     gestures = ((title, _rows(rows)) for title, rows in GESTURES.items())
     keys = (("View", VIEW), ("Display", DISPLAY), ("More keys", OTHERS))
     return *gestures, *((title, tuple((row.label, key_text(row.keys)) for row in rows)) for title, rows in keys)
 
 
 def page_sections() -> tuple[Section, ...]:
-    """Return the help of pages, whose last section is that of fingers."""
+    """Return the sections of the help of pages; the last one is about touch."""
     return *sections(), (TOUCH, _rows(TOUCH_GESTURES))
 
 
@@ -149,7 +156,7 @@ def _rows(gestures: Iterable[Gesture]) -> tuple[tuple[str, str], ...]:
 
 
 def as_markdown() -> str:
-    """Return the help as the tables of the manual."""
+    """Return the help as Markdown tables for the manual."""
     lines: list[str] = ["| to | do |", "|---|---|"]
     for title, rows in sections():
         lines += [f"| **{title}** | |", *(f"| {to} | {do} |" for to, do in rows)]

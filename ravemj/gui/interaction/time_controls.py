@@ -1,4 +1,4 @@
-"""The controls of a motion that is played, and those of simulation time."""
+"""Controls of playback and of simulation time."""
 
 import logging
 import math
@@ -11,39 +11,39 @@ from ravemj.gui.interaction.playback import SPEEDS, Playback
 _LOG = logging.getLogger("ravemj")
 
 _OF_TIME = {"play": "run", "forward": "step"}
-"""What keys for a motion do to simulation time where there is no motion."""
+"""Controls of simulation time that the playback keys operate if there is no motion."""
 
 _MEASURED = 0.5
-"""Over how long it is measured how fast simulation time passes [s]."""
+"""Averaging time of the measured simulation speed [s]."""
 
 
 class TimeControls:
-    """A row for a motion, and one for simulation time; each is there while there is something to control.
+    """Two rows of controls: one if there is a motion, one if there is simulation time to control.
 
-    The simulation is locked by who calls the methods.
+    The caller of the methods holds the simulation's lock.
 
     Attributes:
-        playback: The motion.
+        playback: Playback of the motion.
     """
 
     def __init__(self, simulation: Simulation, notices: Notices) -> None:
         self.playback = Playback(simulation)
         self._simulation, self._notices = simulation, notices
         self._sample: tuple[float, int] | None = None
-        self._factor = 0.0  # seconds of simulation that have passed in a second, as measured last
+        self._factor = 0.0  # last measured ratio of simulation time to real time
 
     @property
     def appearance(self) -> object:
-        """What is equal for as long as the controls look the same."""
+        """A key that changes when the controls must be redrawn."""
         playback, clock = self.playback, self._simulation.clock
         motion = playback.time, playback.duration, playback.playing, playback.speed
         if clock is None:
             return motion
-        now = clock.now // 100_000 if clock.is_running else clock.now  # [us]; people read ten numbers in a second
+        now = clock.now // 100_000 if clock.is_running else clock.now  # [us]; at most ten updates per second
         return motion, clock.is_running, now, clock.pace, self._factor, self._simulation.physics is None
 
-    def pass_time(self, now: float) -> None:
-        """Let a motion that plays go on, and see how fast simulation time passes until ``now`` (``time.monotonic``)."""
+    def advance(self, now: float) -> None:
+        """Advance playback and measure the simulation speed; ``now`` is from ``time.monotonic``."""
         self.playback.advance(now)
         clock = self._simulation.clock
         if clock is None or not clock.is_running:
@@ -55,7 +55,7 @@ class TimeControls:
             self._sample, self._factor = (now, clock.now), (clock.now - start) / 1e6 / (now - before)
 
     def all(self) -> list[Control]:
-        """Return the controls as they are now."""
+        """Return the current controls."""
         return [*self._of_motion(), *self._of_time()]
 
     def _of_motion(self) -> list[Control]:
@@ -91,7 +91,7 @@ class TimeControls:
         ]
 
     def operate(self, name: str, value: float) -> bool:
-        """Press a button, or move a slider to a value; return False where it is none of these."""
+        """Press a button or set a slider; return False for other controls."""
         has_motion = self.playback.duration > 0
         if not has_motion:
             name = _OF_TIME.get(name, name)
@@ -135,7 +135,7 @@ class TimeControls:
                 self._notices.say(f"The step failed: {error}")
 
     def _change_speed(self, *, has_motion: bool, is_faster: bool) -> None:
-        """Let the motion go faster or slower, or simulation time where there is no motion."""
+        """Change the speed of the motion, or of simulation time if there is no motion."""
         clock = self._simulation.clock
         speed = self.playback.speed if has_motion or clock is None else clock.pace
         others = [other for other in SPEEDS if (other > speed if is_faster else other < speed)]
@@ -149,5 +149,5 @@ class TimeControls:
 
 
 def _after(speed: float) -> float:
-    """Return the speed that a button has after this one; the slowest after the fastest."""
+    """Return the next speed of the button; after the fastest, the slowest."""
     return next((other for other in SPEEDS if other > speed), SPEEDS[0])

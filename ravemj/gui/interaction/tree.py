@@ -1,4 +1,4 @@
-"""The bodies with their links and joints, as a tree in rows."""
+"""Tree view of the bodies with their links and joints, as rows."""
 
 import re
 from collections.abc import Iterator
@@ -6,20 +6,20 @@ from typing import NamedTuple
 
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.gui.interaction.selection import Selection, Selector
-from ravemj.gui.interaction.viewpoint import View
+from ravemj.gui.interaction.viewpoint import Viewpoint
 
 _NAME = re.compile(r"(?P<kind>body|link|joint) (?P<body>[0-9]+)(?: (?P<number>[0-9]+))?")
-"""Names of rows; a body stands for its first link."""
+"""Names of rows; the row of a body selects its first link."""
 
 
-class Node(NamedTuple):
+class TreeRow(NamedTuple):
     """A row of the tree.
 
     Attributes:
-        name: What ``Operate`` calls it.
+        name: Identifier in ``Operate`` events.
         text: The name of the body, the link or the joint.
         kind: ``body``, ``link`` or ``joint``.
-        depth: How far it is indented; a joint is as deep as the link that it moves.
+        depth: Indentation level; a joint has the level of the link that it moves.
     """
 
     name: str
@@ -28,16 +28,16 @@ class Node(NamedTuple):
     depth: int
 
 
-class Tree:
-    """The tree of one viewer's bodies; its rows are made anew only where bodies have changed."""
+class SceneTree:
+    """The tree of a viewer's bodies; rows are rebuilt only if bodies have changed."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._made_of: list[object] = []
-        self._nodes: tuple[Node, ...] = ()
+        self._nodes: tuple[TreeRow, ...] = ()
 
-    def nodes(self) -> tuple[Node, ...]:
-        """Return the rows: below each link the joints that hang on it, each followed by the link that it moves."""
+    def nodes(self) -> tuple[TreeRow, ...]:
+        """Return the rows: below each link its child joints, each followed by the link that it moves."""
         made_of: list[object] = [part for body in self._simulation.bodies for part in (body, body.scene)]
         if len(made_of) != len(self._made_of) or any(a is not b for a, b in zip(made_of, self._made_of, strict=True)):
             self._made_of = made_of
@@ -45,15 +45,15 @@ class Tree:
         return self._nodes
 
 
-def _of_body(body: BodyState) -> Iterator[Node]:
+def _of_body(body: BodyState) -> Iterator[TreeRow]:
     joints = body.scene.all_joints
     placed = {joint.child for joint in joints if joint.places_child}
-    yield Node(f"body {body.index}", body.scene.name, "body", 0)
+    yield TreeRow(f"body {body.index}", body.scene.name, "body", 0)
     waiting = [("link", link, 1) for link in reversed(range(len(body.scene.links))) if link not in placed]
     while waiting:
         kind, number, depth = waiting.pop()
         parts = body.scene.links if kind == "link" else joints
-        yield Node(f"{kind} {body.index} {number}", parts[number].name, kind, depth)
+        yield TreeRow(f"{kind} {body.index} {number}", parts[number].name, kind, depth)
         if kind == "link":
             below = [index for index, joint in enumerate(joints) if joint.parent == number]
             waiting += [("joint", index, depth + 1) for index in reversed(below)]
@@ -62,7 +62,7 @@ def _of_body(body: BodyState) -> Iterator[Node]:
 
 
 def names_of(selection: Selection | None) -> tuple[str, ...]:
-    """Return the names of the rows that something selected is in: its body, its link and its joint."""
+    """Return the names of the rows of a selection: its body, link and joint."""
     if selection is None:
         return ()
     index, scene = selection.body.index, selection.body.scene
@@ -72,15 +72,15 @@ def names_of(selection: Selection | None) -> tuple[str, ...]:
     return tuple(names)
 
 
-def choose(selector: Selector, view: View, name: str) -> bool:
-    """Select what a row stands for; return False where there is no such row."""
-    found = _NAME.fullmatch(name)
-    body = None if found is None else selector.simulation.body_at(int(found["body"]))
-    if found is None or body is None:
+def choose(selector: Selector, view: Viewpoint, name: str) -> bool:
+    """Select the body, link or joint of a row; return False if the row does not exist."""
+    match = _NAME.fullmatch(name)
+    body = None if match is None else selector.simulation.body_at(int(match["body"]))
+    if match is None or body is None:
         return False
-    number = int(found["number"] or 0)
-    if found["kind"] == "joint" and number < len(body.scene.all_joints):
+    number = int(match["number"] or 0)
+    if match["kind"] == "joint" and number < len(body.scene.all_joints):
         selector.choose_joint(view, body, number)
-    elif found["kind"] != "joint" and number < len(body.scene.links):
+    elif match["kind"] != "joint" and number < len(body.scene.links):
         selector.choose(view, body, number)
     return True

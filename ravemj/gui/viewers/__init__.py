@@ -1,4 +1,4 @@
-"""Viewers: a camera and a background on a simulation, with or without a window.
+"""Viewers of a simulation: in a window, in a browser, or offscreen.
 
 The methods in ``CamelCase`` are OpenRAVE's.
 """
@@ -16,23 +16,23 @@ from ravemj.gui.viewers.viewer import Viewer
 __all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
 
 VIEWERS = ("window", "web", "qtcoin", "qtosg", "qtogre", "offscreen")
-"""Names of viewers: ours, and those that OpenRAVE's scripts ask for."""
+"""Names of viewers: ravemj's own, and OpenRAVE's, which its scripts request."""
 
 _LOG = logging.getLogger("ravemj")
 
 
 def has_display() -> bool:
     """Return whether a window could be opened from here."""
-    if sys.platform == "darwin":  # GLFW wants the main thread there
+    if sys.platform == "darwin":  # GLFW requires the main thread on macOS
         return False
     return sys.platform == "win32" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def open_viewer(simulation: Simulation, renderer: SimulationRenderer, name: str, show: bool) -> Viewer | None:
-    """Open the viewer that a name of ``VIEWERS`` asks for; the log says which it is.
+    """Open a viewer by a name of ``VIEWERS``; its kind is logged.
 
-    ``window``, ``web`` (a page in a browser) and ``offscreen`` mean just that; the others mean the best of these that
-    works here. None, and an error in the log, for an unknown name.
+    ``window``, ``web`` (a page in a browser) and ``offscreen`` are exact; OpenRAVE's names select the best of these
+    that works on this machine. For an unknown name, None is returned and an error is logged.
     """
     if name not in VIEWERS:
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
@@ -59,7 +59,7 @@ def open_viewer(simulation: Simulation, renderer: SimulationRenderer, name: str,
 
 
 def _choice(name: str) -> tuple[str, str]:
-    """Return the kind of viewer that a name means here, and why it is not the kind that its name says."""
+    """Return the kind of viewer for a name, and the reason if it differs from the name."""
     if name in ("web", "offscreen"):
         return name, ""
     if has_display():

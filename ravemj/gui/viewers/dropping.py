@@ -1,4 +1,4 @@
-"""Files that people drop on a window or a page: they are added to the environment."""
+"""Files dropped on a window or a page: they are added to the environment."""
 
 import logging
 import os
@@ -9,11 +9,11 @@ import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from ravemj.core.forks import in_this_process
 from ravemj.errors import Source, SourceError
 from ravemj.gui.interaction import Notices
+from ravemj.gui.viewers.host import Host
 
 _LOG = logging.getLogger("ravemj")
 
@@ -21,23 +21,23 @@ _MODELS = {".xml", ".dae", ".zae", ".json", ".urdf", ".xacro"}
 _MANIFEST = "package.xml"  # of a package of ROS: no model
 _NAMED = 5
 _SHOWN = 20.0
-"""How long it is said what is wrong with a file [s]."""
+"""Duration of messages about files that cannot be added [s]."""
 
 
 def add_files(
-    env: Any,  # noqa: ANN401 - the API stands above viewers
+    env: Host | None,
     paths: Sequence[str],
     notices: Notices,
     at_end: Callable[[], object] = lambda: None,
 ) -> None:
-    """Add files to an environment, in a thread of its own: reading may take long, and others may have the lock.
+    """Add files to an environment, in a new thread, since reading and waiting for the lock may take long.
 
     Args:
-        env: The environment, or None where it is gone.
-        paths: The files, folders and zip archives. Where models are among them, meshes and pictures beside these are
-            what they refer to.
-        notices: Where it is said what was added, and what is wrong with a file.
-        at_end: Called when that is done.
+        env: The environment; None if it no longer exists.
+        paths: Files, folders and zip archives. If there are models among them, meshes and pictures count as their
+            parts and are not added themselves.
+        notices: Receives messages about added files and errors.
+        at_end: Called at the end.
     """
 
     def add() -> None:
@@ -48,7 +48,7 @@ def add_files(
     threading.Thread(target=add, name="ravemj drop", daemon=True).start()
 
 
-def _add(env: Any, paths: Sequence[str], notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
+def _add(env: Host, paths: Sequence[str], notices: Notices) -> None:
     with tempfile.TemporaryDirectory(prefix="ravemj-") as folder:
         try:
             paths = [_unpacked(path, os.path.join(folder, str(place))) for place, path in enumerate(paths)]
@@ -69,7 +69,7 @@ def _add(env: Any, paths: Sequence[str], notices: Notices) -> None:  # noqa: ANN
 
 
 def _unpacked(path: str, folder: str) -> str:
-    """Return the folder that a zip archive is unpacked to; another file or folder as it is.
+    """Unpack a zip archive and return the new folder; return the path of any other file or folder unchanged.
 
     Raises:
         SourceError: the archive is damaged or too large, or has names that lead out of it.
@@ -83,7 +83,7 @@ def _unpacked(path: str, folder: str) -> str:
 
 
 def _models(path: str) -> list[str]:
-    """Return the models in a file or folder: of a folder its URDF, or the models that lie directly in it.
+    """Return the models in a path: the file itself, the only URDF of a folder, or the models directly in the folder.
 
     Raises:
         SourceError: a folder has several URDFs.
@@ -99,7 +99,7 @@ def _models(path: str) -> list[str]:
 
 
 class Upload:
-    """Files that come from a page in pieces, into a folder of their own that goes with this."""
+    """Files that a page uploads in chunks, in a temporary folder that is removed with this object."""
 
     _LARGEST = 64 * 2**20
 
@@ -109,9 +109,9 @@ class Upload:
         self._size = 0
         self.paths: list[str] = []
 
-    def take(self, name: str, piece: bytes) -> bool:
-        """Write a piece of a file, whose name may have folders, to its end; return False if all is too large."""
-        self._size += len(piece)
+    def append(self, name: str, chunk: bytes) -> bool:
+        """Append a chunk to a file; the name may include folders. Return False if the upload is too large."""
+        self._size += len(chunk)
         if self._size > self._LARGEST:
             return False
         path = os.path.join(self._folder, *name.split("/"))
@@ -120,13 +120,13 @@ class Upload:
             self.paths.append(top)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "ab") as file:
-            file.write(piece)
+            file.write(chunk)
         return True
 
-    def add_to(self, env: Any, notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
-        """Add the files to an environment, unless that is gone, and remove them then."""
+    def add_to(self, env: Host | None, notices: Notices) -> None:
+        """Add the files to an environment, if it still exists, and then remove them."""
 
         def remove() -> None:
-            self._remove()  # ``self`` is kept until then, or the folder would go before it is read
+            self._remove()  # ``self`` is referenced until then; else its folder would be removed before it is read
 
         add_files(env, self.paths, notices, remove)

@@ -1,4 +1,4 @@
-"""A GLFW window: what it is asked to be, and what people do in it."""
+"""A GLFW window and its input events."""
 
 import functools
 import threading
@@ -13,27 +13,27 @@ _is_used = False
 _is_fork = False  # of a process that has opened windows
 
 _dispatching = threading.Lock()
-"""Held while GLFW hands out events: all windows share one queue, and each has a thread of its own."""
+"""Held while GLFW dispatches events: all windows share one queue, and each has its own thread."""
 
 
 _FRAME = 40
-"""What the frame of a window takes of the screen's height."""
+"""Height of a window's frame, in units of the screen."""
 
 
 class GlfwWindow:
     """A window with an OpenGL context; all of its methods belong to one thread.
 
     Attributes:
-        events: What people did since the list was last emptied.
-        dropped: Paths of files that people dropped on it since the list was last emptied.
+        events: Input events since the list was last emptied.
+        dropped: Paths of files dropped on it since the list was last emptied.
         size: Width and height, in units of the screen.
-        pixels: Width and height of what is drawn [pixels]; 0 while it is minimised.
-        pixel_ratio: How many pixels a point has: 1, or more on screens with small pixels.
-        is_lost: Whether what was drawn in it is lost.
+        pixels: Width and height of the framebuffer [pixels]; 0 while the window is minimised.
+        pixel_ratio: Pixels per point: 1, or more on high-density screens.
+        is_lost: Whether its content is lost and must be redrawn.
     """
 
     def __init__(self, title: str, width: int, height: int) -> None:
-        """Open a window of some size, in units of the screen.
+        """Open a window of a size in units of the screen.
 
         Raises:
             RenderingError: there is no display, or it has no OpenGL.
@@ -95,7 +95,7 @@ class GlfwWindow:
             glfw.KEY_BACKSPACE: "backspace",
         }
 
-    # --- what people do
+    # --- input
 
     def _on_size(self, _window: object, width: int, height: int) -> None:
         self.size = max(width, 1), max(height, 1)
@@ -115,7 +115,7 @@ class GlfwWindow:
 
     def _move(self, x: float, y: float) -> None:
         if self.events and isinstance(self.events[-1], Move):
-            self.events.pop()  # only where the pointer is now counts
+            self.events.pop()  # only the latest pointer position counts
         self.events.append(Move(x, y))
 
     def _on_enter(self, window: object, entered: int) -> None:
@@ -159,16 +159,16 @@ class GlfwWindow:
     def _on_drop(self, _window: object, paths: list[str]) -> None:
         self.dropped += paths
 
-    # --- what it is
+    # --- state
 
     @property
     def is_broken(self) -> bool:
-        """Whether the display is gone; nothing should be asked of the window any more."""
+        """Whether the connection to the display is lost; no other method may be called then."""
         return self._x is not None and self._x.is_broken
 
     @property
     def is_closed(self) -> bool:
-        """Whether the user closed it."""
+        """Whether the user has closed it."""
         return bool(self._glfw.window_should_close(self._window))
 
     @property
@@ -183,17 +183,17 @@ class GlfwWindow:
         return x * columns / width, y * rows / height
 
     def call(self, function: str, *arguments: object) -> None:
-        """Call a function of GLFW for the window, such as ``set_window_title``; sizes are in units of the screen."""
+        """Call a GLFW function such as ``set_window_title`` with this window; sizes are in units of the screen."""
         getattr(self._glfw, function)(self._window, *arguments)
 
     def set_background(self, rgb: tuple[int, int, int]) -> None:
-        """Set the colour, in 0..255, of what is new in a larger window until it is drawn."""
+        """Set the colour (0..255) of newly exposed areas of an enlarged window, until they are drawn."""
         if rgb != self._rgb and self._x is not None:
             self._x.keep_picture(self._glfw.get_x11_window(self._window), rgb)
         self._rgb = rgb
 
     def set_cursor(self, name: str) -> None:
-        """Have the pointer look as ``Overlay.cursor`` says."""
+        """Set the pointer shape, a name of ``Overlay.cursor``."""
         if name == self._cursor:
             return
         self._cursor = name
@@ -204,12 +204,12 @@ class GlfwWindow:
         glfw.set_cursor(self._window, self._cursors.get(name))
 
     def copy_text(self, text: str) -> None:
-        """Put a text on the clipboard."""
+        """Copy a text to the clipboard."""
         with _dispatching:  # while it lasts, others ask for it, too
             self._glfw.set_clipboard_string(self._window, text)
 
     def wait(self, seconds: float) -> None:
-        """Wait until people do something, but not longer than some time."""
+        """Wait for input, at most for a time [s]."""
         if self._x is None:
             self._glfw.wait_events_timeout(seconds)
             return
@@ -219,12 +219,12 @@ class GlfwWindow:
                 self._glfw.poll_events()
 
     def swap(self) -> None:
-        """Show what was drawn."""
+        """Swap the buffers: show the drawn frame."""
         self.is_lost = False
         self._glfw.swap_buffers(self._window)
 
     def close(self) -> None:
-        """Close the window, or leave it where the display is gone."""
+        """Close the window; if the display is lost, only drop the reference."""
         if self._x is not None and self._x.is_broken:
             self._x.abandon()
             return
@@ -235,7 +235,7 @@ class GlfwWindow:
 
 @in_child
 def _leave_windows() -> None:
-    """Leave the windows to the parent."""
+    """Disown the windows in a forked child: they belong to the parent."""
     global _is_fork, _dispatching
     _is_fork, _dispatching = _is_fork or _is_used, threading.Lock()
 
@@ -257,7 +257,7 @@ def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has n
 
 
 def _fitting(glfw: Any, width: int, height: int) -> tuple[int, int]:  # noqa: ANN401 - glfw has no types
-    """Return a size that fits on the screen, with the frame of the window."""
+    """Clip a size so that the window with its frame fits on the screen."""
     monitor = glfw.get_primary_monitor()
     if not monitor:
         return width, height

@@ -1,17 +1,17 @@
-"""What every viewer has besides pictures: what people select in it, who is told, and what it plays."""
+"""Common base of viewers: selection, callbacks and playback."""
 
 import itertools
 import logging
-import weakref
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.handles import Handle
-from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
-from ravemj.gui.interaction import Hit, Interaction, Playback, Ray
+from ravemj.gui.interaction import Hit, Interaction, Playback, ViewRay
+from ravemj.gui.viewers.host import Body, Host
 from ravemj.trajectories.motion_arguments import MotionLike, body_motion
 
 _LOG = logging.getLogger("ravemj")
@@ -20,17 +20,17 @@ Callback = Callable[..., object]
 
 
 class Callbacks:
-    """Functions for one occasion, each for as long as its handle lives."""
+    """Callbacks of one event, each active while its handle exists."""
 
     def __init__(self) -> None:
         self._functions: dict[int, Callback] = {}
         self._keys = itertools.count()
 
     def add(self, function: Callback) -> Handle:
-        """Take a function up.
+        """Register a function.
 
         Raises:
-            ArgumentError: it cannot be called.
+            ArgumentError: it is not callable.
         """
         if not callable(function):
             raise ArgumentError(f"callback: {function!r} cannot be called")
@@ -39,7 +39,7 @@ class Callbacks:
         return Handle(self._functions.pop, key, None)
 
     def call(self, *arguments: object) -> list[object]:
-        """Call all functions and return what they return; what they raise is logged."""
+        """Call all functions and return their results; exceptions are logged."""
         answers: list[object] = []
         for function in self._functions.copy().values():
             try:
@@ -52,75 +52,72 @@ class Callbacks:
         return bool(self._functions)
 
 
-class _Body(Protocol):
-    """A body of the API, which stands above viewers."""
-
-    @property
-    def simulation_state(self) -> BodyState: ...
-
-
 class Interactive(ApiObject):
-    """Part of every viewer: its mouse and keys, what they select, and a motion that it plays.
+    """Common base of all viewers: interaction, selection and playback.
 
     Attributes:
-        environment: What the viewer was made for; OpenRAVE's scripts ask ``GetEnv``.
-        interaction: Takes events of mouse and keys; ``ravemj.gui.interaction`` says how.
+        environment: Weak reference to the environment; OpenRAVE's scripts call ``GetEnv``.
+        interaction: Handles pointer and keyboard events; see ``ravemj.gui.interaction``.
     """
 
-    _internal = ("announce", "environment")
+    _internal = ("announce", "environment", "host")
 
-    environment: "weakref.ref[Any] | None" = None
+    environment: Callable[[], Host | None] | None = None
 
     def __init__(self, simulation: Simulation, camera: Camera, size: tuple[int, int]) -> None:
         self._simulation = simulation
         self._selection_callbacks = Callbacks()
-        self.interaction = Interaction(simulation, camera, size, self._may_select)
+        self.interaction = Interaction.first_view(simulation, camera, size, self._may_select)
 
     def announce(self) -> None:
-        """Tell people where the viewer is, once it belongs to an environment; windows are seen by themselves."""
+        """Announce the address of the viewer, once it belongs to an environment; windows need no announcement."""
 
     def GetEnv(self) -> Any:  # noqa: ANN401 - the API stands above viewers
-        """Return the environment that the viewer was made for."""
+        """Return the environment of the viewer."""
+        return self.host()
+
+    def host(self) -> Host | None:
+        """Return the environment as a ``Host``; None if it no longer exists."""
         return None if self.environment is None else self.environment()
 
     def GetSelectedBody(self) -> Any:  # noqa: ANN401 - the API stands above viewers
-        """Return the body that the user selected, also by one of its joints; None if there is none."""
-        selection, env = self.interaction.selection, self.GetEnv()
+        """Return the selected body, or the body of the selected joint; None without a selection."""
+        selection, env = self.interaction.selection, self.host()
         return None if selection is None or env is None else env.wrap(selection.body)
 
     def GetSelectedLink(self) -> Any:  # noqa: ANN401 - the API stands above viewers
-        """Return the link that the user clicked on to select something; None if nothing is selected."""
+        """Return the link that was clicked for the selection; None without a selection."""
         selection, body = self.interaction.selection, self.GetSelectedBody()
         return None if selection is None or body is None else body.GetLinks()[selection.link]
 
     def GetSelectedJoint(self) -> Any:  # noqa: ANN401 - the API stands above viewers
-        """Return the joint that the user selected; None if there is none."""
+        """Return the selected joint; None if none is selected."""
         selection, body = self.interaction.selection, self.GetSelectedBody()
         if selection is None or body is None or selection.dof is None:
             return None
         return body.GetJointFromDOFIndex(selection.dof)
 
     def RegisterItemSelectionCallback(self, callback: Callback) -> Handle:
-        """Have a function called when the user is about to select a link, in the thread of the window.
+        """Register a callback for clicks that are about to select a link; it runs in the thread of the window.
 
         Args:
             callback: The function. Its arguments are the link, the point on it in the world [m], shape (3,), and the
-                direction from the eye to it, a unit vector of shape (3,). Where it returns True, as in OpenRAVE, it
-                has dealt with the click, and nothing is selected.
+                direction from the eye to it, a unit vector of shape (3,). If it returns True, as in OpenRAVE, the
+                click counts as handled and nothing is selected.
 
         Returns:
-            A handle; the function is forgotten when it is closed or dropped.
+            A handle; closing or dropping it unregisters the function.
 
         Raises:
-            ArgumentError: this cannot be called.
+            ArgumentError: it is not callable.
 
         Example:
             >>> handle = viewer.RegisterItemSelectionCallback(lambda link, point, direction: print(link.GetName()))
         """
         return self._selection_callbacks.add(callback)
 
-    def _may_select(self, hit: Hit, ray: Ray) -> bool:
-        env = self.GetEnv()
+    def _may_select(self, hit: Hit, ray: ViewRay) -> bool:
+        env = self.host()
         if env is None or not self._selection_callbacks:
             return True
         link = env.wrap(hit.body).GetLinks()[hit.link]
@@ -128,28 +125,28 @@ class Interactive(ApiObject):
 
     @property
     def playback(self) -> Playback:
-        """The motion that is played, or was: where it is, how fast it goes."""
+        """Playback state: current motion, time and speed."""
         return self.interaction.controls.playback
 
-    def play(self, motion: MotionLike, *, robot: _Body | None = None, speed: float = 1.0) -> Playback:
-        """Play a motion, and let people go through it: play and pause it, step, change the speed, drag its time.
+    def play(self, motion: MotionLike, *, robot: Body | None = None, speed: float = 1.0) -> Playback:
+        """Play a motion, with controls for pausing, stepping, speed and time.
 
-        This returns at once. Windows and pages play in real time while they show it. Without either nothing plays by
-        itself; ``playback.seek`` goes to any time.
+        This returns immediately. Windows and pages play in real time while they are shown. An offscreen viewer does
+        not advance the motion; ``playback.seek`` sets its time.
 
         Args:
             motion: A ``Motion``, a trajectory with times, rows of time and joint values, or the path of a file. Joints
                 stop at their limits.
-            robot: The body that moves; by default the first robot with joints, or the one whose joints a table names.
-                A trajectory names its bodies.
-            speed: Seconds of the motion in a second.
+            robot: The moving body; by default the first robot with joints, or the one whose joints a table names.
+                Trajectories name their bodies.
+            speed: Playback speed; 1 is real time.
 
         Returns:
-            The playback, which is ``viewer.playback`` too.
+            The playback, also available as ``viewer.playback``.
 
         Raises:
-            ArgumentError: the motion does not fit the robot, the trajectory moves no body that is there, or has no
-                times. What was played before goes on then.
+            ArgumentError: the motion does not fit the robot, or the trajectory has no times or moves no body of the
+                environment. The previous motion continues then.
 
         Example:
             >>> viewer.play(ravemj.Motion.line([0, 0], [3.14, 0], duration=2))

@@ -1,4 +1,4 @@
-"""Viewers in the cells of notebooks: live where their server answers, else as what they looked like."""
+"""Viewers in notebook cells: live if their server can be reached, else as a picture."""
 
 import html
 import importlib.util
@@ -14,10 +14,10 @@ from ravemj.graphics.video import picture_bytes
 _HEIGHT, _LINES = 480, 60  # pixels; the second is that of _ALONE in a narrow cell
 _PROXY = "jupyter_server_proxy"
 _PREFIX = "JUPYTERHUB_SERVICE_PREFIX"
-"""The variable that says where JupyterHub has a user's server."""
+"""Environment variable with the URL prefix of a user's JupyterHub server."""
 
 _ELSEWHERE = (_PREFIX, "SSH_CONNECTION", "VSCODE_IPC_HOOK_CLI", "CODESPACES", "KAGGLE_KERNEL_RUN_TYPE")
-"""Variables that tell that the browser runs on another machine, and comes to no port of this one."""
+"""Environment variables that indicate a browser on another machine, which cannot reach ports of this one."""
 
 _ALONE = (
     "No port of this machine reaches the browser, so this page draws what was there when the cell ran. "
@@ -26,13 +26,13 @@ _ALONE = (
 
 
 def in_notebook() -> bool:
-    """Return whether Python runs for a notebook."""
+    """Return whether Python runs in a notebook kernel."""
     ipython: Any = sys.modules.get("IPython")
     return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
 
 
 def is_proxied() -> bool:
-    """Return whether browsers come through the notebook's server: ``jupyter-server-proxy`` or Colab lets them."""
+    """Return whether browsers reach this machine through a proxy: ``jupyter-server-proxy`` or Colab."""
     return in_notebook() and (_in_colab() or importlib.util.find_spec(_PROXY) is not None)
 
 
@@ -41,15 +41,15 @@ def _in_colab() -> bool:
 
 
 def mimebundle(url: str, picture: Frame | None, still: Callable[[], str]) -> dict[str, str]:
-    """Return what notebooks show for a viewer, by type.
+    """Return the displayed content of a viewer in notebooks, by MIME type.
 
-    The HTML is the page where its server answers, and a picture elsewhere, as in a notebook that was saved or sent. In
-    Colab, its own helper shows the page.
+    The HTML shows the page if its server answers, else a picture, as in a saved notebook. In Colab, Colab's own
+    helper shows the page.
 
     Args:
-        url: The page.
-        picture: What the viewer shows now; None if nothing can draw here.
-        still: Returns the HTML of the scene that draws itself, for browsers that come to no port of this machine.
+        url: Address of the page.
+        picture: The current picture of the viewer; None if no renderer works here.
+        still: Returns the scene as self-contained HTML, for browsers that cannot reach this machine's ports.
     """
     port, path = url.split("/", 3)[2].rpartition(":")[2], url.split("/", 3)[3]
     if _in_colab():
@@ -81,7 +81,7 @@ def _image(picture: Frame) -> str:
 
 
 def show(viewer: object) -> None:
-    """Show an object below the cell that runs."""
+    """Display an object below the running cell."""
     from IPython.display import display  # noqa: PLC0415 - only where IPython runs  # pyright: ignore
 
     display(viewer)

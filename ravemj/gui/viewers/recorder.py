@@ -1,4 +1,4 @@
-"""Pictures and videos that people save from a viewer, written by threads of their own into the working folder."""
+"""Saving pictures and videos of a viewer, in background threads, into the working folder."""
 
 import itertools
 import logging
@@ -20,23 +20,23 @@ from ravemj.gui.viewers.sharpness import bounded_size
 
 _FPS = 30
 _LONGEST_END = 5.0
-"""How long the end of a viewer waits at most [s] for what is being written."""
+"""Maximum time that closing a viewer waits for files being written [s]."""
 
 _LOG = logging.getLogger("ravemj")
 
 
 class FrameSource:
-    """Draws what a view shows, frame by frame. It holds the view weakly, so that a closed view is freed."""
+    """Renders the frames of a view. It holds the view weakly, so that a closed view can be freed."""
 
     def __init__(self, interaction: Interaction, renderer: SimulationRenderer, look: Look, ratio: float = 1.0) -> None:
-        """Watch a view of some look, of which a point has ``ratio`` pixels."""
+        """Render a view with a look; ``ratio`` is the number of pixels per point."""
         self._interaction, self._renderer = weakref.ref(interaction), weakref.ref(renderer)
         self._look = look
         width, height = (round(ratio * length) for length in interaction.view.size)
         self._form = Format(*bounded_size(width, height))
 
     def frame(self, *, is_still: bool = False) -> Frame | None:
-        """Return what the view shows now, always of one size; None once there is none. Stills have shadows."""
+        """Return the current frame, always of one size; None if the view is gone. Stills have shadows."""
         interaction, renderer = self._interaction(), self._renderer()
         if interaction is None or renderer is None:
             return None
@@ -45,19 +45,19 @@ class FrameSource:
         return renderer.render(camera, self._look, form, gizmos=over.primitives, style=over.style)
 
     def close(self) -> None:
-        """Free what this thread has drawn with."""
+        """Free the renderer of this thread."""
         renderer = self._renderer()
         if renderer is not None:
             renderer.close()
 
 
 class Recorder:
-    """Saves what a viewer shows, and tells in its notices where.
+    """Saves pictures and videos of a viewer, and reports the paths in its notices.
 
-    A video of a motion has every frame at its time, however long drawing takes: it goes from the start of the motion to
-    its end, at the speed chosen. Without a motion it is what happens until it is stopped, in real time.
+    If there is a motion, a video covers it from start to end at the playback speed, with every frame exact, however
+    long drawing takes. Otherwise it records in real time until it is stopped.
 
-    This knows no simulation: it outlives forgotten viewers until what they began to save is written.
+    It has no reference to the simulation, so that files can be completed after the viewer is gone.
     """
 
     def __init__(self, notices: Notices) -> None:
@@ -73,12 +73,12 @@ class Recorder:
     def record(
         self, source: FrameSource, playback: Playback, deliver: Callable[[str, bytes], None] | None = None
     ) -> None:
-        """Begin a video of a motion if there is one, else of what happens; or end the one that is under way.
+        """Start a video, of the motion if there is one, else in real time; or stop the current video.
 
         Args:
-            source: Draws the frames.
-            playback: The motion that is played.
-            deliver: Called with the name and the content of the complete file; None: it goes to the working folder.
+            source: Renders the frames.
+            playback: Playback of the motion.
+            deliver: Called with name and content of the file; None writes it to the working folder.
         """
         if self._recorder is not None and self._recorder.is_alive():
             self._stop.set()
@@ -92,11 +92,11 @@ class Recorder:
             self._recorder = self._thread(lambda: self._deliver_video(times, source, deliver))
 
     def stop(self) -> None:
-        """End a video that is under way; it becomes complete in its own time."""
+        """Stop the current video; it is completed in the background."""
         self._stop.set()
 
     def end(self) -> None:
-        """End a video, and wait until all is written; not for long, since a script may hold what is drawn."""
+        """Stop the current video and wait for unfinished files, with a time limit, since a script may hold the lock."""
         self._stop.set()
         end = time.monotonic() + _LONGEST_END
         for thread in self._threads - {threading.current_thread()}:
@@ -152,7 +152,7 @@ class Recorder:
                 return
 
     def _frames_of_clock(self) -> Iterator[bool]:
-        """Yield for each frame that is due whether there is time to draw it; those that are late show the last one."""
+        """Yield for each frame time whether to render; False repeats the last frame, to catch up."""
         start = time.monotonic()
         for count in itertools.count():
             late = time.monotonic() - start - count / _FPS
@@ -170,7 +170,7 @@ def _write_picture(path: Path, source: FrameSource) -> None:
 
 
 def _frames_of_motion(playback: Playback) -> Iterator[bool]:
-    """Go through a motion frame by frame."""
+    """Seek through a motion frame by frame."""
     motion, step = playback.motion, playback.speed / _FPS
     playback.pause()
     for count in range(math.ceil(playback.duration / step - 1e-6) + 1):
@@ -181,7 +181,7 @@ def _frames_of_motion(playback: Playback) -> Iterator[bool]:
 
 
 def free_path(suffix: str) -> Path:
-    """Return a name in the working folder that no file has, made of the time."""
+    """Return an unused path in the working folder, with the date and time in its name."""
     stem = time.strftime("ravemj-%Y%m%d-%H%M%S")
     names = itertools.chain([stem], (f"{stem}-{number}" for number in itertools.count(2)))
     return next(path for name in names if not (path := Path(name + suffix)).exists())

@@ -1,43 +1,43 @@
-"""How sharp pictures are: as sharp as leaves time for 30 in a second while things move, and crisp at rest."""
+"""Adaptive resolution: full at rest, reduced while moving to keep 30 frames per second."""
 
 from typing import NamedTuple
 
 BUDGET = 0.028
-"""What drawing may take while things move [s]: 30 pictures in a second, and some time for the rest."""
+"""Time budget of a frame while moving [s]: 30 frames per second, with some time left for other work."""
 
 REST = 0.1
-"""After so long without a change [s] the picture is drawn once more, crisp."""
+"""Time without changes after which a frame of full quality is drawn [s]."""
 
 _PERIOD, _QUIET_PERIOD = 1 / 60, 1 / 30
-"""How often it is seen whether something has changed [s]; less often once nothing has for a while."""
+"""Polling period for changes, and the longer one after ``_QUIET`` [s]."""
 
 _QUIET = 1.0
-"""How long that is [s]."""
+"""Time without changes after which the longer polling period is used [s]."""
 
 _SPARE = 0.7
-"""Part of the budget that a sharper picture has to leave free, so that sharpness does not go to and fro."""
+"""Fraction of the budget within which a sharper level must stay before it is selected: hysteresis."""
 
 _INERTIA = 0.6
-"""Weight of earlier pictures when the next one's time is guessed."""
+"""Weight of earlier measurements in the moving average of the drawing time."""
 
 
 LEAST_SIDE, LARGEST_SIDE = 16, 4096
-"""Bounds of the width and height of pictures [px]."""
+"""Bounds of the width and height of pictures [pixels]."""
 
 
 def bounded_size(width: float, height: float) -> tuple[int, int]:
-    """Return the size of a picture within the bounds, with the same aspect if there is such a size."""
+    """Clip a picture size to the bounds, keeping the aspect ratio if possible."""
     shrink = min(LARGEST_SIDE / max(width, height), 1.0)
     return max(int(shrink * width), LEAST_SIDE), max(int(shrink * height), LEAST_SIDE)
 
 
 def period(unchanged: float) -> float:
-    """Return when to look again for a change [s], after so long without one [s]."""
+    """Return the polling period [s], given the time without changes [s]."""
     return _QUIET_PERIOD if unchanged > _QUIET else _PERIOD
 
 
 class Level(NamedTuple):
-    """Columns and rows as a part of the view's, samples per pixel, and the time as a part of that of crisp pictures."""
+    """A quality level: resolution relative to the view's, samples per pixel, and drawing time relative to ``CRISP``."""
 
     scale: float
     samples: int
@@ -49,29 +49,29 @@ CRISP = LEVELS[0]
 
 
 class Sharpness:
-    """Chooses how the next picture is drawn, by what the last ones took."""
+    """Selects the quality level of each frame from measured drawing times."""
 
     def __init__(self) -> None:
-        self._crisp: float | None = None  # what a crisp picture would take [s]
+        self._crisp: float | None = None  # estimated drawing time at full quality [s]
         self._level = CRISP
         self._changed: float | None = None
         self._is_crisp = False
 
-    def moving(self, now: float) -> Level:
-        """Return how to draw something that has changed [s, any clock]."""
+    def level_while_moving(self, now: float) -> Level:
+        """Return the quality level for a changed scene; ``now`` is from any clock [s]."""
         self._changed = now
         return self._level
 
     def is_due(self, now: float) -> bool:
-        """Return whether to draw what has not changed once more, crisp."""
+        """Return whether the unchanged scene must be redrawn in full quality."""
         return not self._is_crisp and self._changed is not None and now - self._changed >= REST
 
-    def drew(self, level: Level, seconds: float) -> None:
-        """Note what a picture took."""
+    def add_measurement(self, level: Level, seconds: float) -> None:
+        """Update the estimate with the drawing time of a frame [s]."""
         self._is_crisp = level == CRISP
         taken = seconds / level.cost
         self._crisp = taken if self._crisp is None else _INERTIA * self._crisp + (1 - _INERTIA) * taken
-        fitting = [one for one in LEVELS if self._crisp * one.cost <= self._share(one)]
+        fitting = [candidate for candidate in LEVELS if self._crisp * candidate.cost <= self._share(candidate)]
         self._level = fitting[0] if fitting else LEVELS[-1]
 
     def _share(self, level: Level) -> float:

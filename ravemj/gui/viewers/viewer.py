@@ -1,4 +1,4 @@
-"""What every viewer can do, and the viewer without a window."""
+"""The base class of viewers, which is also the offscreen viewer."""
 
 import contextlib
 import math
@@ -26,19 +26,19 @@ from ravemj.model.look import WHITE
 from ravemj.model.scene import View
 
 _SIZE = 640, 480
-_LARGEST = 16384  # pixels along a side that graphics cards can draw
+_LARGEST = 16384  # pixels along a side; a limit of graphics cards
 _FIGURES = "SetFiguresInCamera"
 
 _LARGEST_TEXT = 200  # points that letters are high; larger ones would fill the window
 
 LOCKED, PATIENCE = "Locked by the script", 1.0
-"""What a window or a page says while a script has had the environment for so long [s]."""
+"""Text in a window or page, once a script has held the environment's lock for this time [s]."""
 
 
 class Viewer(Interactive):
-    """A point of view on an environment; ``env.SetViewer`` makes it and ``env.GetViewer()`` returns it.
+    """A viewer of an environment, created by ``env.SetViewer`` and returned by ``env.GetViewer()``.
 
-    This one has no window: it draws when it is asked for a picture. The camera is OpenRAVE's: a 4x4 matrix
+    This one has no window: it renders on request. The camera follows OpenRAVE's convention: a 4x4 matrix
     ``T_world_camera`` whose columns are image right, image down, the viewing direction, and the position of the eye.
 
     Example:
@@ -48,11 +48,11 @@ class Viewer(Interactive):
         >>> frame = viewer.render(640, 480)
 
     Attributes:
-        environment: What it was made for; OpenRAVE's scripts ask ``GetEnv``.
-        interaction: Takes events of mouse and keys; windows hand in theirs.
+        environment: Weak reference to the environment; OpenRAVE's scripts call ``GetEnv``.
+        interaction: Handles pointer and keyboard events of the window.
     """
 
-    _internal = ("choose_look", "environment", "look", "own_background", "take_over")
+    _internal = ("apply_loaded", "choose_look", "environment", "look", "own_background")
 
     def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
         self._renderer = renderer
@@ -69,7 +69,7 @@ class Viewer(Interactive):
         self._thread_callbacks = Callbacks()
         self._image_callbacks = Callbacks()
         self._camera_of_nothing = None if simulation.bodies else self.camera
-        self._ended = Flag()  # set once the window or the page is closed; without either, from the start
+        self._ended = Flag()  # set when the window or the page is closed; offscreen, from the start
         self._ended.set()
 
     def GetXMLId(self) -> str:
@@ -77,7 +77,7 @@ class Viewer(Interactive):
         return self._name
 
     def GetName(self) -> str:
-        """Return the viewer's title: at first the name that ``SetViewer`` was given."""
+        """Return the viewer's title; its default is the name that ``SetViewer`` was given."""
         return self._title
 
     def SetName(self, title: str) -> None:
@@ -99,7 +99,7 @@ class Viewer(Interactive):
 
     @also_named(w="width", h="height")
     def SetSize(self, width: int, height: int) -> None:
-        """Set the size of the window, and of pictures that name none.
+        """Set the size of the window, and the default size of pictures.
 
         Args:
             width: Columns [pixels].
@@ -113,23 +113,23 @@ class Viewer(Interactive):
         self._ask_window("set_window_size", *size)
 
     def Move(self, x: int, y: int) -> None:
-        """Move the window; nothing happens without one.
+        """Move the window; no effect without one.
 
         Args:
-            x: Where its left edge goes on the screen [pixels].
-            y: Where its upper edge goes on the screen [pixels].
+            x: New column of its left edge on the screen [pixels].
+            y: New row of its upper edge on the screen [pixels].
         """
 
     def Show(self, showtype: int) -> None:
-        """Hide the window, or show it; nothing happens without one.
+        """Hide or show the window; no effect without one.
 
         Args:
-            showtype: 0 hides it.
+            showtype: 0 hides it, other values show it.
         """
         self._ask_window("show_window" if showtype else "hide_window")
 
     def _ask_window(self, function: str, *arguments: object) -> None:
-        """Have a function of GLFW called in the thread of the window; nothing happens without one."""
+        """Call a GLFW function in the thread of the window; no effect without a window."""
 
     def SetTextSize(self, size: float) -> None:
         """Set the size of the text in the corner.
@@ -146,31 +146,31 @@ class Viewer(Interactive):
         self.interaction.controls.notices.text_size = height
 
     def SetUserText(self, userText: str) -> None:
-        """Show a text in the corner, in place of the one before.
+        """Show a text in the corner; it replaces the previous one.
 
         Args:
-            userText: The text; empty: none.
+            userText: The text; an empty one removes it.
         """
         notices = self.interaction.controls.notices
         for line in self._user_lines:
-            notices.take_back(line)
+            notices.withdraw(line)
         self._user_lines = userText.splitlines()
         for line in self._user_lines:
             notices.say(line, math.inf)
 
     def RegisterCallback(self, properties: object, callback: Callback) -> Handle:
-        """Return a handle; the older form of ``RegisterItemSelectionCallback``.
+        """Return a handle of a registered callback; the deprecated form of ``RegisterItemSelectionCallback``.
 
         Args:
             properties: Not used.
-            callback: As there.
+            callback: See ``RegisterItemSelectionCallback``.
         """
         del properties
         return self.RegisterItemSelectionCallback(callback)
 
     @also_named(bShow="show")
     def main(self, show: bool = True, sig_thread_id: int = 0) -> int:
-        """Wait until the viewer is closed or ``quitmainloop`` is called; without window and page, return at once.
+        """Block until the viewer is closed or ``quitmainloop`` is called; offscreen viewers return immediately.
 
         Args:
             show: False hides the window.
@@ -185,23 +185,23 @@ class Viewer(Interactive):
         return 0
 
     def wait(self) -> None:
-        """Wait until the viewer is closed, by the user or by a script; without window and page, return at once."""
-        while not self._ended.wait(0.1):  # in slices, so that Ctrl-C gets through
+        """Block until the viewer is closed, by the user or by a script; offscreen viewers return immediately."""
+        while not self._ended.wait(0.1):  # with a timeout, so that Ctrl-C is handled
             pass
 
     @property
     def is_open(self) -> bool:
-        """Whether there is a window or a page server that is not closed yet."""
+        """Whether it has a window or a page server that is not closed."""
         return not self._ended.is_set()
 
     def quitmainloop(self) -> None:
         """End ``main``; a window closes."""
 
     def EnvironmentSync(self) -> None:
-        """Wait until the window shows the environment as it is now. Pictures always do."""
+        """Block until the window shows the present state of the environment. Pictures always do."""
 
     def RegisterViewerThreadCallback(self, callback: Callback) -> Handle:
-        """Have a function called in the thread of the window, once for each turn of its loop.
+        """Register a callback in the thread of the window, for each iteration of its event loop.
 
         Args:
             callback: The function, without arguments.
@@ -215,7 +215,7 @@ class Viewer(Interactive):
         return self._thread_callbacks.add(callback)
 
     def RegisterViewerImageCallback(self, callback: Callback) -> Handle:
-        """Have a function called with each picture of the window, in its own thread, and with those of ``render``.
+        """Register a callback for each frame of the window, in the window's thread, and for those of ``render``.
 
         Args:
             callback: The function; its argument is the picture, (height, width, 3), uint8.
@@ -237,15 +237,15 @@ class Viewer(Interactive):
         return cmd == _FIGURES
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str:
-        """Run one of OpenRAVE's commands by its text: ``SetFiguresInCamera 1``, and 0 to undo it.
+        """Run a command of OpenRAVE's viewers; the only one is ``SetFiguresInCamera`` with 1 or 0.
 
         Args:
-            cmd: Name and arguments. After ``SetFiguresInCamera 1`` drawings are in pictures of ``GetCameraImage``.
+            cmd: Name and arguments. ``SetFiguresInCamera 1`` includes drawings in pictures of ``GetCameraImage``.
             releasegil: Without meaning.
             lockenv: Without meaning.
 
         Returns:
-            What the command answers: nothing.
+            An empty text.
 
         Raises:
             openrave_exception: the command is not known (``CommandNotSupported``).
@@ -265,11 +265,11 @@ class Viewer(Interactive):
         Args:
             transform: ``T_world_camera``, 4x4 or 3x4, or a pose [w, x, y, z, tx, ty, tz]. z looks forward, x is image
                 right, y is image down. ``GetCameraTransform`` returns the same numbers.
-            focalDistance: Distance [m] to the point that the mouse turns the camera about; it changes no picture. 0
-                keeps the one before.
+            focalDistance: Distance [m] of the focus, which the mouse orbits; no effect on pictures. 0 keeps the
+                previous one.
 
         Raises:
-            ArgumentError: this is no rigid transform, or the distance no finite number.
+            ArgumentError: ``transform`` is not rigid, or the distance is not finite.
 
         Example:
             >>> viewer.SetCamera(saved)  # what viewer.GetCameraTransform() printed
@@ -286,7 +286,7 @@ class Viewer(Interactive):
         return self.camera.T_world_camera.copy()
 
     def GetCameraDistanceToFocus(self) -> float:
-        """Return how far the point is that the mouse turns the camera about [m]; 0 before one was set."""
+        """Return the distance of the focus, which the mouse orbits [m]; 0 before it was set."""
         return self.interaction.view.distance
 
     def GetCameraIntrinsics(self) -> CameraIntrinsics:
@@ -295,7 +295,7 @@ class Viewer(Interactive):
         return CameraIntrinsics(np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]))
 
     def GetCameraImage(self, width: int, height: int, transform: ArrayLike, K: ArrayLike) -> Frame:
-        """Draw what a camera sees, anywhere; the viewer's own camera stays as it is.
+        """Render a picture from a given camera; the viewer's own camera does not change.
 
         Drawings are left out, as in OpenRAVE, until ``SendCommand('SetFiguresInCamera 1')``.
 
@@ -309,9 +309,9 @@ class Viewer(Interactive):
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
-            ArgumentError: the transform is not rigid, K is not four numbers with positive focal lengths, or nothing has
-                such a size.
-            RenderingError: nothing can draw here.
+            ArgumentError: the transform is not rigid, K is not four numbers with positive focal lengths, or the size
+                is out of range.
+            RenderingError: no renderer works on this machine.
 
         Example:
             >>> T = viewer.GetCameraTransform()
@@ -327,29 +327,29 @@ class Viewer(Interactive):
         )
 
     def SetBkgndColor(self, color: ArrayLike) -> None:
-        """Set the colour behind everything, in place of the gradient and the floor of pictures without one.
+        """Set a uniform background colour; it replaces the default gradient and floor.
 
         Args:
             color: Red, green, blue from 0 to 1.
 
         Raises:
-            ArgumentError: this is no colour.
+            ArgumentError: ``color`` is not three numbers from 0 to 1.
         """
         self._background = checked_colour(color)
 
-    def take_over(self, view: View | None = None) -> None:
-        """Take note that bodies were added.
+    def apply_loaded(self, view: View | None = None) -> None:
+        """Update camera and background after bodies were loaded.
 
         Args:
-            view: What their file says about background and camera. Where it has no camera, the first bodies in an
-                empty environment are looked at from above, unless somebody has chosen another view before.
+            view: Background and camera of the file. If it has no camera, the first bodies of an empty environment
+                are shown from above, unless a camera was set before.
         """
         if view is not None:
             self._background = view.background
         if view is not None and view.T_world_camera is not None:
             self.SetCamera(view.T_world_camera.matrix())
         elif self.camera is self._camera_of_nothing and self._simulation.bodies:
-            with contextlib.suppress(RavemjError):  # bodies that MuJoCo refuses; whoever asks for them next is told
+            with contextlib.suppress(RavemjError):  # the next call that needs the bodies raises it
                 self.SetCamera(self._renderer.camera_from_above().T_world_camera)
 
     @property
@@ -359,21 +359,21 @@ class Viewer(Interactive):
 
     @property
     def background(self) -> tuple[float, float, float]:
-        """The colour behind everything: red, green, blue from 0 to 1; white where nobody has set one."""
+        """The background colour: red, green, blue from 0 to 1; white if none was set."""
         return self._background or WHITE
 
     @property
     def own_background(self) -> tuple[float, float, float] | None:
-        """The colour behind everything that a script or a file has set, or None."""
+        """The background colour that a script or a file has set, or None."""
         return self._background
 
     @property
     def look(self) -> Look:
-        """Background, floor and lights of what the viewer shows."""
+        """Background, floor and lights of the view."""
         return self._choices.look(self._background)
 
     def choose_look(self, choices: LookChoices) -> None:
-        """Set floor, lights and shadows of what the viewer shows; before a window has drawn."""
+        """Set floor, lights and shadows of the view; only before a window has drawn."""
         self._choices = choices
 
     def render(
@@ -385,21 +385,21 @@ class Viewer(Interactive):
         floor: str = "auto",
         lights: Literal["studio", "model", "both"] = "both",
     ) -> Frame:
-        """Draw what the viewer sees, the cube or cylinder of what is selected included.
+        """Render the view, including the handle of the selection.
 
         Args:
-            width: Columns [pixels]; None: as ``SetSize`` says, at first 640.
-            height: Rows [pixels]; None: as ``SetSize`` says, at first 480.
-            shadows: Whether lights cast shadows; None: if OpenGL draws.
-            floor: ``on`` draws a floor with a grid, ``off`` none, ``auto`` one where nothing sets a background.
+            width: Columns [pixels]; None: the size of ``SetSize``, by default 640.
+            height: Rows [pixels]; None: the size of ``SetSize``, by default 480.
+            shadows: Whether lights cast shadows; None: only with OpenGL.
+            floor: ``on`` draws a floor with a grid, ``off`` none, ``auto`` one unless a background was set.
             lights: ``studio``, ``model`` (the model's own lights) or ``both``.
 
         Returns:
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
-            ArgumentError: no picture has such a size, or there is no such floor, or there are no such lights.
-            RenderingError: nothing can draw here.
+            ArgumentError: the size is out of range, or ``floor`` or ``lights`` is none of these.
+            RenderingError: no renderer works on this machine.
         """
         form = self._format(width, height, "render")._replace(shadows=shadows is not False)
         look = LookChoices(shadows, floor, lights).look(self._background)
@@ -409,7 +409,7 @@ class Viewer(Interactive):
         return picture
 
     def _format(self, width: int | None, height: int | None, caller: str) -> Format:
-        """Return the size of a picture; for what is left open or 0, the viewer's."""
+        """Return the format of a picture; a side of None or 0 is that of the viewer."""
         return Format(*_checked_size(width or self._size[0], height or self._size[1], caller))
 
     def close(self) -> None:
@@ -422,7 +422,7 @@ class Viewer(Interactive):
 
 
 def _checked_size(width: float, height: float, caller: str) -> tuple[int, int]:
-    """Return a size as whole pixels; raise ``ArgumentError`` where nothing has such a size."""
+    """Return a size in whole pixels; raise ``ArgumentError`` if it is out of range."""
     size = checked_vector([width, height], 2, f"{caller}: size")
     if size.min() < 1 or size.max() > _LARGEST:
         limits = f"1 x 1 to {_LARGEST} x {_LARGEST}"

@@ -1,4 +1,4 @@
-"""A viewer with a window, drawn by a thread of its own while the script goes on."""
+"""The viewer in a window, with its own thread beside the script."""
 
 import logging
 import re
@@ -22,26 +22,26 @@ from ravemj.gui.viewers.glfw_window import GlfwWindow
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.sharpness import period
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE, Viewer
-from ravemj.gui.viewers.window_renderer import Surface, WindowRenderer
+from ravemj.gui.viewers.window_renderer import DrawTarget, WindowRenderer
 
 _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
 _SLOW = 1.5 * _PERIOD
-"""From this long on drawing takes the processor and not only the wait for the screen; then the script has its turn."""
+"""A frame that takes longer [s] is limited by the processor and not by the screen; then the script gets a turn."""
 
 _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
 """Largest coordinate on an X screen."""
 
 _running: dict[threading.Thread, tuple[Flag, Flag]] = {}
-"""The threads of windows; for each an event that closes it, and one that tells its end: Ctrl-C breaks ``join``."""
+"""For each window thread the flag that closes it, and the flag of its end, since Ctrl-C can break ``join``."""
 
 
 class WindowViewer(Viewer):
-    """A viewer in a window; it shows every change at once and stays until it is closed or forgotten."""
+    """A viewer in a window; it shows changes immediately, until it is closed or collected."""
 
-    _internal = ("open_window", "period", "turn")
+    _internal = ("open_window", "period", "run_once")
 
     def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
         super().__init__(simulation, renderer, name)
@@ -56,7 +56,7 @@ class WindowViewer(Viewer):
         self._ended = Flag()
         thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
         _running[thread] = self._closing, self._ended
-        self._end = weakref.finalize(self, _end, thread)  # before Ctrl-C can end this here
+        self._end = weakref.finalize(self, _end, thread)  # before Ctrl-C can interrupt this
         thread.start()
         self._opened.wait()
         if self._failure:
@@ -70,11 +70,11 @@ class WindowViewer(Viewer):
         """Move the window.
 
         Args:
-            x: Where its left edge goes on the screen [pixels].
-            y: Where its upper edge goes on the screen [pixels].
+            x: New column of its left edge on the screen [pixels].
+            y: New row of its upper edge on the screen [pixels].
 
         Raises:
-            ArgumentError: these are no numbers that a screen could have.
+            ArgumentError: a coordinate is out of range.
         """
         place = checked_vector([x, y], 2, "Move")
         if np.abs(place).max() > _FARTHEST:
@@ -87,7 +87,7 @@ class WindowViewer(Viewer):
         self._closing.set()
 
     def EnvironmentSync(self) -> None:
-        """Wait until the window shows the environment as it is now; at most a second, in which others may hold it."""
+        """Block until the window shows the present state of the environment, at most a second."""
         drawn = Flag()
         self._awaited.put(drawn)
         drawn.wait(_LONGEST_SYNC if self.is_open else 0.0)
@@ -98,7 +98,7 @@ class WindowViewer(Viewer):
         super().close()
 
     def open_window(self) -> GlfwWindow | None:
-        """Open the window, in the thread that it belongs to; None where that fails."""
+        """Open the window, in its own thread; return None if that fails."""
         try:
             return GlfwWindow("ravemj", *self._size)
         except RenderingError as error:
@@ -107,10 +107,10 @@ class WindowViewer(Viewer):
         finally:
             self._opened.set()
 
-    def turn(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
-        """Do what was asked for, and draw if anything has changed; return False once the window should close."""
+    def run_once(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
+        """Handle requests and events, and draw if anything changed; return False if the window should close."""
         if self._closing.is_set() or window.is_broken or window.is_closed:
-            self.interaction.let_go()
+            self.interaction.cancel_drag()
             return False
         for _ in range(self._requests.qsize()):
             window.call(*self._requests.get())
@@ -118,13 +118,13 @@ class WindowViewer(Viewer):
         self._size = window.size
         self._thread_callbacks.call()
         now = time.monotonic()
-        with self._simulation.lock.attempt(_PERIOD) as is_free:  # who holds it may wait for this thread to end
+        with self._simulation.lock.attempt(_PERIOD) as is_free:  # not longer: its holder may wait for this thread
             self._simulation.published.is_wanted = not is_free
-            is_changed = is_free and self._take_in(window, painter)
+            is_changed = is_free and self._handle_events(window, painter)
         if is_free:
             self._free_at = now
         else:
-            is_changed = self._take_in_view(window, painter, now)
+            is_changed = self._handle_view_events(window, painter, now)
             for drawn in waiting:
                 self._awaited.put(drawn)
             waiting = []
@@ -139,40 +139,42 @@ class WindowViewer(Viewer):
 
     @property
     def period(self) -> float:
-        """After how long the next turn should come [s], if people do nothing before."""
+        """Time until the next iteration [s], unless there is input before."""
         return period(time.monotonic() - self._changed_at)
 
-    def _take_in_view(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
-        """Do what changes only the view, while others have the simulation; return whether to draw the window."""
+    def _handle_view_events(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
+        """Handle the events of the view while others hold the lock; return whether to draw."""
         size = [Resize(*window.points)] if self.interaction.view.size != window.points else []
-        window.events = self.interaction.steer([*size, *window.events])
-        self.interaction.pass_time_without_bodies(now)
+        window.events = self.interaction.handle_view_events([*size, *window.events])
+        self.interaction.advance_view(now)
         line = LOCKED if now - self._free_at > PATIENCE else ""
         surface = self._surface(window)
         if surface is None:
             return window.is_lost
-        return painter.look_again(self.interaction, surface, line, self._simulation.published) or window.is_lost
+        return painter.update_view(self.interaction, surface, line, self._simulation.published) or window.is_lost
 
-    def _surface(self, window: GlfwWindow) -> Surface | None:
-        """Return what is drawn on; None while it is minimised."""
+    def _surface(self, window: GlfwWindow) -> DrawTarget | None:
+        """Return the drawing target; None while the window is minimised."""
         width, height = window.pixels
         return (
-            Surface(self.look, self._choices.shadows, (width, height), window.pixel_ratio) if width and height else None
+            DrawTarget(self.look, self._choices.shadows, (width, height), window.pixel_ratio)
+            if width and height
+            else None
         )
 
-    def _take_in(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
-        """Do what people did, and return whether the window has to be drawn."""
+    def _handle_events(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
+        """Handle the events; return whether to draw."""
         try:
             if self.interaction.view.size != window.points:
                 self.interaction.handle(Resize(*window.points))
-            self.interaction.pass_time(time.monotonic())
+            self.interaction.advance(time.monotonic())
             events, window.events = window.events, []
             for event in events:
                 self.interaction.handle(event)
             surface = self._surface(window)
             if surface is None:
                 return False
-            return painter.look(self._simulation, self.interaction, surface) or window.is_lost
+            return painter.update(self._simulation, self.interaction, surface) or window.is_lost
         except RavemjError as error:
             if error.message != self._complaint:
                 _LOG.error("the window cannot show the environment: %s", error)
@@ -193,15 +195,15 @@ class WindowViewer(Viewer):
         window.swap()
 
     def _serve(self, window: GlfwWindow) -> None:
-        """Do what buttons asked for, and add files that were dropped."""
-        for request in self.interaction.controls.take_requests():
+        """Perform requested actions, and add dropped files."""
+        for request in self.interaction.controls.pop_requests():
             self._grant(request, window)
         if window.dropped:
-            add_files(self.GetEnv(), window.dropped, self.interaction.controls.notices)
+            add_files(self.host(), window.dropped, self.interaction.controls.notices)
             window.dropped = []
 
     def _grant(self, request: Request | str, window: GlfwWindow) -> None:
-        """Do what a button asked for that needs the window."""
+        """Perform a requested action that needs the window."""
         source = FrameSource(self.interaction, self._renderer, self.look, window.pixel_ratio)
         if request is Request.PICTURE:
             self._recorder.save_picture(source)
@@ -215,7 +217,7 @@ class WindowViewer(Viewer):
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:
-    """Show a viewer's window, and tell that it has ended."""
+    """Run a viewer's window, and set the flag of its end."""
     try:
         _show(reference)
     finally:
@@ -224,7 +226,7 @@ def _run(reference: "weakref.ref[WindowViewer]") -> None:
 
 
 def _show(reference: "weakref.ref[WindowViewer]") -> None:
-    """Open a viewer's window and draw it until it is closed, or the viewer is gone, which waiting does not keep."""
+    """Run a viewer's window until it is closed or the viewer is collected; waiting keeps no reference to the viewer."""
     viewer = reference()
     window = None if viewer is None else viewer.open_window()
     if window is None:
@@ -232,13 +234,13 @@ def _show(reference: "weakref.ref[WindowViewer]") -> None:
     painter = WindowRenderer()
     try:
         begin = time.monotonic()
-        while viewer is not None and viewer.turn(window, painter):
+        while viewer is not None and viewer.run_once(window, painter):
             pause, viewer = viewer.period, None
             taken = time.monotonic() - begin
             window.wait(max(pause - taken, 0.0) if taken < _SLOW else pause)
             begin = time.monotonic()
             viewer = reference()
-    except Exception as error:  # of OpenGL, say; the script goes on without the window
+    except Exception as error:  # for instance of OpenGL; the script continues without the window
         _LOG.error("the window closes: %s", error, exc_info=_LOG.isEnabledFor(logging.DEBUG))
     if window.is_broken:
         _LOG.error("the window is gone, as the connection to the display broke")
@@ -248,7 +250,7 @@ def _show(reference: "weakref.ref[WindowViewer]") -> None:
 
 
 def _end(thread: threading.Thread) -> None:
-    """Close a window and wait for the end of its thread."""
+    """Close a window and wait for its thread."""
     closing, ended = _running.get(thread, (None, None))
     if closing is not None and ended is not None and thread.ident is not None:
         closing.set()
@@ -258,7 +260,7 @@ def _end(thread: threading.Thread) -> None:
 
 @before_end
 def _end_all() -> None:
-    """Wait for windows whose viewers went in their own threads: Python must not end while OpenGL draws."""
+    """Wait for the threads of windows: Python must not exit while OpenGL draws."""
     for thread in list(_running):
         _end(thread)
 

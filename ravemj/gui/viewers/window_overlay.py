@@ -1,4 +1,4 @@
-"""Text and buttons over a window, with the letters of a real font."""
+"""Overlay of a window: text and buttons, with a real font."""
 
 import ctypes
 import functools
@@ -9,26 +9,26 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj.gui.interaction import Overlay, Panel, Rect, View
+from ravemj.gui.interaction import Overlay, Panel, Rect, Viewpoint
 
 _SIZE = 13.0
-"""Height of letters [points]."""
+"""Default height of letters [points]."""
 
 _MARGIN, _LINE, _PADDING = 8.0, 18.0, 6.0
 _GLASS = (0.09, 0.1, 0.12, 0.82)
 _WHITE, _DARK = (255, 255, 255), (32, 36, 44)
 _HALO = (255, 255, 255)
 _BUTTONS = 60.0
-"""What the buttons of the modes take at the right."""
+"""Width that the mode buttons occupy at the right [points]."""
 
 _Rgb = tuple[int, int, int]
 
 
 @functools.lru_cache(maxsize=512)
 def text_image(text: str, size: int, rgb: _Rgb, halo: bool = False) -> NDArray[np.uint8]:
-    """Return a line of text as an image, (height, width, 4), top row first.
+    """Render a line of text as an RGBA image, shape (height, width, 4), top row first.
 
-    All texts of a size [pixels] have one height. The colour is in 0..255; a halo is a light edge of the letters.
+    All texts of a size [pixels] have the same height. The colour is in 0..255; ``halo`` adds a light outline.
     """
     from PIL import Image, ImageDraw  # noqa: PLC0415 - slow to import
 
@@ -49,13 +49,13 @@ def _font(size: int) -> Any:  # noqa: ANN401 - of Pillow, which is slow to impor
 
 
 class OverlayPainter:
-    """Paints into the current window; rows are counted from the top."""
+    """Draws the overlay into the current window; rows are counted from the top."""
 
     def __init__(self) -> None:
         self._pixels, self._ratio = (1, 1), 1.0
 
-    def paint(self, overlay: Overlay, view: View, pixels: tuple[int, int], ratio: float) -> None:
-        """Paint everything on a window of so many pixels, of which a point has ``ratio``."""
+    def paint(self, overlay: Overlay, view: Viewpoint, pixels: tuple[int, int], ratio: float) -> None:
+        """Draw an overlay on a window of a size in pixels; ``ratio`` is the number of pixels per point."""
         self._pixels, self._ratio = pixels, ratio
         for x, y, text in overlay.labels_on(view):
             self._text(text, x, y, _DARK, halo=True)
@@ -102,13 +102,13 @@ class OverlayPainter:
         return float(_font(self._letters(size)).getlength(text)) / self._ratio
 
     def _text(self, text: str, x: float, y: float, rgb: _Rgb, *, halo: bool = False) -> None:
-        """Write a text about a point."""
+        """Draw a text centred at a point."""
         image = text_image(text, self._letters(_SIZE), rgb, halo)
         rows, columns = image.shape[:2]
         self._image(image, round(x * self._ratio - columns / 2), round(y * self._ratio - rows / 2))
 
     def _line(self, text: str, x: float, y: float, rgb: _Rgb, size: float = _SIZE) -> None:
-        """Write a text that begins at a point."""
+        """Draw a text that starts at a point."""
         self._image(text_image(text, self._letters(size), rgb), round(x * self._ratio), round(y * self._ratio))
 
     def _rectangle(self, rect: Rect, rgba: tuple[float, float, float, float]) -> None:
@@ -117,7 +117,7 @@ class OverlayPainter:
         mujoco.mjr_rectangle(mujoco.MjrRect(left, self._pixels[1] - bottom, right - left, bottom - top), *rgba)
 
     def _image(self, image: NDArray[np.uint8], left: int, top: int) -> None:
-        """Blend an image over what is there; what is beside the window is left out."""
+        """Blend an image over the window, clipped to it."""
         width, height = self._pixels
         part = image[max(-top, 0) : height - top, max(-left, 0) : width - left]
         if part.size:
@@ -147,7 +147,7 @@ def blend(image: NDArray[np.uint8], x: int, y: int) -> None:
 
 @functools.cache
 def _gl() -> Callable[..., None]:
-    """Return what calls OpenGL's functions by their names, in the current context of GLFW."""
+    """Return a function that calls OpenGL by function name, in the current context of GLFW."""
     import glfw  # noqa: PLC0415 - loads the libraries of the display
 
     glfw_module: Any = glfw

@@ -1,1 +1,1 @@
-"""Families of arms that can be solved in closed form."""
+"""Families of arms with closed-form inverse kinematics."""

@@ -1,7 +1,7 @@
-"""Three neighbouring joints that form a group of motions: rotations about a point, or motions of a plane.
+"""Blocks of three adjacent joints that form a group of motions: rotations about a point, or planar motions.
 
-What the group keeps (the point, or the plane) gives equations without its three joints. When the other joints are
-known, so is the motion that the block has to make; it comes here as a function that moves directions and points.
+The invariant of the group (the point, or the plane) gives equations without its three joints. Once the other joints are
+known, so is the required motion of the block, which is passed as functions that move directions and points.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,8 +14,8 @@ from ravemj.ik.subproblems import turn_between
 from ravemj.ik.vectors import Floats, Screw, constant, cross, dot, perpendicular, skew, tile
 
 
-class Motion(NamedTuple):
-    """A rigid motion that is applied, not stored: functions of vectors (3, B, N)."""
+class RigidMotion(NamedTuple):
+    """Rigid motion as functions of vectors (3, B, N) that apply it."""
 
     turned: Callable[[Floats], Floats]
     moved: Callable[[Floats], Floats]
@@ -24,15 +24,15 @@ class Motion(NamedTuple):
 class Wrist:
     """Three revolute joints whose axes meet in a point: R_a R_b R_c = R.
 
-    The middle one follows from the angle between the outer axes (subproblem 4), the first one from where the third axis
-    points (subproblem 1), the last one from what is left, so that only their sum counts where the outer axes fall
-    together; there the first one is put to 0.
+    The middle one follows from the angle between the outer axes (subproblem 4), the first one from the direction of the
+    third axis (subproblem 1), the last one from the remaining rotation. If the outer axes coincide, only the sum of
+    their joints matters, and the first one is set to 0.
 
     Attributes:
         centre: The point, shape (3, 1, 1).
-        side: A direction across the last axis, shape (3, 1, 1); where it has to point says how far that joint turns.
-        phase: Cosine and sine of the middle joint where the outer axes are as near to each other as they come.
-        gaps: 1 - cos of the least angle between them, and 1 + cos of the greatest one.
+        side: A direction perpendicular to the last axis, shape (3, 1, 1), whose goal determines the last joint.
+        phase: Cosine and sine of the middle joint at the smallest angle between the outer axes.
+        gaps: 1 - cos of the smallest angle between them, and 1 + cos of the largest.
     """
 
     names = ((1, 2),)
@@ -48,11 +48,11 @@ class Wrist:
         self.side = constant(perpendicular(c))
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return what the family is called, and why, for joints of these indices."""
+        """Return the name of the family and its reason, for joints of these indices."""
         return "spherical wrist", f"the axes of joints {_numbers(joints)} meet in a point"
 
-    def solve(self, needed: Motion) -> list[Floats]:
-        """Return the turns of the three joints with two branches."""
+    def solve(self, needed: RigidMotion) -> list[Floats]:
+        """Return the turns of the three joints, with two branches."""
         first, middle, last = self.screws
         tip = needed.turned(last.axis)
         two = self._middle(tip)
@@ -63,8 +63,8 @@ class Wrist:
     def _middle(self, tip: Floats) -> Floats:
         """Return both turns of the middle joint for a direction of the last axis.
 
-        They come from the distances of unit vectors, not from the cosine of their angle, which would lose half of the
-        digits where the outer axes fall together.
+        They are computed from distances of unit vectors, since the cosine of their angle would lose half of the digits
+        if the outer axes nearly coincide.
         """
         axis = self.screws[0].axis
         least, most = (dot(away, away) / 2 for away in (axis - tip, axis + tip))
@@ -77,15 +77,15 @@ class Wrist:
 
 
 class Planar:
-    """Three joints that move a plane in itself: revolute ones with parallel axes, prismatic ones across them.
+    """Three joints of a planar motion: revolute ones with parallel axes, prismatic ones perpendicular to them.
 
-    The last revolute joint is set aside: the two before it carry a point of its axis, then it turns the rest. Where the
-    last joint is prismatic, the block is solved from its other end.
+    The two joints before the last revolute one carry a point of its axis; the last one gives the remaining rotation. If
+    the last joint is prismatic, the block is solved from its other end.
 
     Attributes:
         normal: The direction of the revolute axes, shape (3, 1, 1).
         centre: A point, shape (3, 1, 1).
-        backward: Whether the inverse of the motion is asked for.
+        backward: Whether to solve for the inverse of the motion.
     """
 
     def __init__(self, screws: Sequence[Screw]) -> None:
@@ -112,16 +112,16 @@ class Planar:
 
     @property
     def names(self) -> tuple[tuple[int, int], ...]:
-        """For each choice between solutions the joint, 0 to 2, and the number of solutions."""
+        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
         names = self._carry.names if self._carry is not None else []
         return tuple((2 - joint if self.backward else joint, count) for joint, count in names)
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return what the family is called, and why, for joints of these indices."""
+        """Return the name of the family and its reason, for joints of these indices."""
         return "parallel axes", f"joints {_numbers(joints)} move a plane in itself"
 
-    def solve(self, motion: Motion) -> list[Floats]:
-        """Return the values of the three joints for the motion that they have to make, or its inverse if backward."""
+    def solve(self, motion: RigidMotion) -> list[Floats]:
+        """Return the joint values for a required motion, or its inverse if ``backward``."""
         if self._carry is None:
             return self._solve_between(motion)
         first, middle, last = self._order
@@ -131,8 +131,8 @@ class Planar:
         three = turn_between(last, self._side, middle.turned_back(two, first.turned_back(one, side)))
         return [three, two, one] if self.backward else [one, two, three]
 
-    def _solve_between(self, motion: Motion) -> list[Floats]:
-        """Solve for a revolute joint between two prismatic ones: its turn is that of the motion, the rest is linear."""
+    def _solve_between(self, motion: RigidMotion) -> list[Floats]:
+        """Solve for a revolute joint between two prismatic ones: it gives the rotation, and the rest is linear."""
         first, middle, last = self._order
         turn = turn_between(middle, self._side, motion.turned(self._side))
         way = motion.moved(middle.point) - middle.point
@@ -150,7 +150,7 @@ def _numbers(joints: Sequence[int]) -> str:
 
 
 def common_point(screws: Sequence[Screw], tolerance: float) -> Floats | None:
-    """Return the point, shape (3,), in which the axes of revolute joints meet; None if they miss it."""
+    """Return the point, shape (3,), where the axes of revolute joints intersect; None if they do not."""
     if any(screw.prismatic for screw in screws):
         return None
     across = [np.eye(3) - np.outer(screw.axis, screw.axis) for screw in screws]
@@ -165,7 +165,7 @@ def common_point(screws: Sequence[Screw], tolerance: float) -> Floats | None:
 
 
 def is_planar(screws: Sequence[Screw], tolerance: float) -> bool:
-    """Return whether joints move a plane in itself, with two directions at least."""
+    """Return whether joints move in a plane, in at least two directions."""
     turning = [screw.axis.ravel() for screw in screws if not screw.prismatic]
     sliding = [screw.axis.ravel() for screw in screws if screw.prismatic]
     if not turning or any(np.linalg.norm(np.cross(turning[0], axis)) > tolerance for axis in turning):

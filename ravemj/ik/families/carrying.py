@@ -11,12 +11,12 @@ from ravemj.ik.vectors import Floats, Screw, cross, dot, tile
 
 Screws = Sequence[Screw]
 _NEAR = 1e-9
-"""Lengths, in units of the reach, and sines of angles below this are 0 by the arm's geometry."""
+"""Length, in units of the reach, and sine of an angle below which these are 0 by the arm's geometry."""
 
 
 @dataclass(frozen=True)
 class Plane:
-    """Planes, as something that joints carry: a normal and a point on it, both of shape (3, B, N)."""
+    """Planes carried by joints: a normal and a point, both of shape (3, B, N)."""
 
     normal: Floats
     point: Floats
@@ -26,16 +26,16 @@ class CarryPoint:
     """Three joints that carry a point to a point: the position part of arms with a spherical wrist or shoulder.
 
     Attributes:
-        pair: How the first and the third joint are found.
-        foot: The joint, 0 or 2, that the axis of the revolute middle joint meets; 1 if none.
-        measure: What the middle joint keeps, where that is the same for all poses.
+        pair: Solution method for the first and the third joint.
+        foot: The joint, 0 or 2, whose axis intersects that of the revolute middle joint; 1 if none.
+        measure: Invariants of the middle joint if they are the same for all poses, else None.
     """
 
     def __init__(self, screws: Screws, start: Floats, goal: Floats) -> None:
-        """Find the way of solution from examples.
+        """Find the solution method from examples.
 
         Raises:
-            NoFamilyError: the joints cannot carry points to any place around.
+            NoFamilyError: the joints cannot carry points to arbitrary positions.
         """
         self.middle = screws[1]
         self.foot = 1 if self.middle.prismatic else _foot(screws)
@@ -44,7 +44,7 @@ class CarryPoint:
         self._cached: dict[int, Side] = {}
         sides = self._sides(screws, start, goal)
         sphere = not self.middle.prismatic
-        pair = Pair.of(sides, (screws[0].prismatic, screws[2].prismatic), sphere=sphere)
+        pair = Pair.detect(sides, (screws[0].prismatic, screws[2].prismatic), sphere=sphere)
         if pair is None:
             raise NoFamilyError
         self.pair = pair
@@ -77,13 +77,13 @@ class CarryPoint:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """For each choice between solutions the joint, 0 to 2, and the number of solutions."""
+        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
         return _names(self.pair)
 
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
         """Return the values of the joints, turns (2, B, N) or distances (1, B, N), that carry points (3, B, N).
 
-        Joints that are shared by all poses are the ones of the examples.
+        Joints shared by all poses are those of the examples.
         """
         first, middle, third = screws
         one, three = self.pair.solve(*self._sides(screws, start, goal))
@@ -97,16 +97,16 @@ class CarryPoint:
 
 
 class CarryPlane:
-    """Three joints that carry a plane to a plane: what is left of an arm with three parallel axes.
+    """Three joints that carry a plane to a plane: the remaining joints of an arm with three parallel axes.
 
-    With a prismatic joint among the three, the other two have to turn the normal, and the distance follows.
+    With a prismatic joint among the three, the other two turn the normal, and the distance follows.
     """
 
     def __init__(self, screws: Screws, start: Plane, goal: Plane) -> None:
-        """Find the way of solution from examples.
+        """Find the solution method from examples.
 
         Raises:
-            NoFamilyError: the joints cannot carry planes to any place around.
+            NoFamilyError: the joints cannot carry planes to arbitrary positions.
         """
         self.slider = next((index for index, screw in enumerate(screws) if screw.prismatic), None)
         self.pair: Pair | None = None
@@ -118,7 +118,7 @@ class CarryPlane:
                 raise NoFamilyError
             return
         self.foot = _foot(screws)
-        pair = Pair.of(self._sides(screws, start, goal), (False, False), sphere=False)
+        pair = Pair.detect(self._sides(screws, start, goal), (False, False), sphere=False)
         if pair is None:
             raise NoFamilyError
         self.pair = pair
@@ -133,7 +133,7 @@ class CarryPlane:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """For each choice between solutions the joint, 0 to 2, and the number of solutions."""
+        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
         if self.pair is not None:
             return _names(self.pair)
         return [(2 if self.slider != 2 else 1, 2)]
@@ -168,11 +168,11 @@ class CarryPlane:
 
 
 class NoFamilyError(Exception):
-    """The geometry is not of this family."""
+    """The geometry does not belong to this family."""
 
 
 def _plane_side(joint: Screw, middle: Screw, foot: Floats, plane: Plane, sign: float) -> Side:
-    """Return what the middle joint keeps of a plane: the tilt against its axis, and the offset from a point on it."""
+    """Return a plane's invariants of the middle joint: the tilt against its axis, and the offset from a point on it."""
     direction = Screw(joint.axis, np.zeros((3, 1, 1)))
     side = Measure(middle.axis, joint.point - foot, sphere=False).side(direction, plane.normal, sign)
     offset = dot(plane.normal, plane.point - joint.point)
@@ -188,12 +188,12 @@ def _names(pair: Pair) -> list[tuple[int, int]]:
 
 
 def _foot(screws: Screws) -> int:
-    """Return the joint, 0 or 2, whose axis meets that of the middle joint; 1 if none does."""
+    """Return the joint, 0 or 2, whose axis intersects that of the middle joint; 1 if none does."""
     return next((side for side in (0, 2) if not screws[side].prismatic and _meet(screws[1], screws[side])), 1)
 
 
 def _meet(one: Screw, other: Screw) -> bool:
-    """Return whether two axes meet, and are not parallel, in all examples."""
+    """Return whether two axes intersect without being parallel, in all examples."""
     normal = cross(*np.broadcast_arrays(one.axis, other.axis))
     if np.sqrt(dot(normal, normal)).min() < _NEAR:
         return False
@@ -201,16 +201,16 @@ def _meet(one: Screw, other: Screw) -> bool:
 
 
 def _nearest(one: Screw, other: Screw) -> Floats:
-    """Return the point of an axis that is nearest to another axis."""
+    """Return the point of an axis nearest to another axis."""
     away, cosine = other.point - one.point, dot(one.axis, other.axis)
     distance = (dot(away, one.axis) - cosine * dot(away, other.axis)) / (1 - cosine * cosine)
     return one.point + distance * one.axis
 
 
 def _crossing(screws: Screws) -> tuple[int | None, str]:
-    """Choose directions across a prismatic middle joint in which another joint does not matter.
+    """Choose directions perpendicular to a prismatic middle joint along which another joint has no effect.
 
-    A revolute joint does not move points along its own axis, a prismatic one only along it.
+    A revolute joint does not move points along its own axis; a prismatic one moves them only along it.
     """
     middle = screws[1]
     for index in (0, 2):

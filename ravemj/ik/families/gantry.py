@@ -1,23 +1,23 @@
-"""Arms with three prismatic joints anywhere among three revolute ones."""
+"""Arms with three prismatic joints in any order among three revolute ones."""
 
 import numpy as np
 
-from ravemj.ik.families.blocks import Motion, Wrist
+from ravemj.ik.families.blocks import RigidMotion, Wrist
 from ravemj.ik.families.carrying import NoFamilyError
 from ravemj.ik.families.loops import Arm, Locked
 from ravemj.ik.vectors import Floats, Transform, cross, dot
 
 
 class Gantry:
-    """Three revolute joints, which give the orientation, and three prismatic ones anywhere, which then are linear."""
+    """Arm whose three revolute joints give the orientation, after which its three prismatic joints are linear."""
 
     coupled, equations = False, "a quadratic equation"
 
     def __init__(self, arm: Arm) -> None:
-        """Find out whether the arm is one.
+        """Check that the arm belongs to the family.
 
         Raises:
-            NoFamilyError: it is none.
+            NoFamilyError: it does not.
         """
         self.arm, self.order = arm, arm.inner
         screws = [arm.screws[place] for place in self.order]
@@ -31,12 +31,12 @@ class Gantry:
         self.why = "three other joints give the orientation, and the place is linear in their values"
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        """Return for each choice between solutions the joint's position and their number, the fastest first."""
         return [(self.order[self.turning[joint]], count) for joint, count in self.wrist.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the values of the joints of ``order``."""
-        turns = self.wrist.solve(Motion(motion.turned, motion.moved))
+        """Return the values of the joints in ``order``."""
+        turns = self.wrist.solve(RigidMotion(motion.turned, motion.moved))
         values: list[Floats] = [np.zeros((1, 1, 1))] * 6
         for index, turn in zip(self.turning, turns, strict=True):
             values[index] = turn

@@ -1,4 +1,4 @@
-"""Six revolute joints without any special geometry: up to sixteen solutions by an eigenvalue problem.
+"""Six revolute joints of general geometry: up to sixteen solutions by an eigenvalue problem.
 
 M. Raghavan and B. Roth ("Inverse kinematics of the general 6R manipulator and related linkages", 1993) write
 E3 E4 E5 = E2⁻¹ E1⁻¹ X E6⁻¹ for a direction l and a point p of the sixth axis. Both sides of l, p, p·p, p·l, p x l and
@@ -8,8 +8,8 @@ tangents they are polynomials in those of joints 4 and 5; with each multiplied b
 twelve equations in twelve monomials, and D. Manocha and J. F. Canny (1994) find the tangent of joint 3 as an eigenvalue
 of a matrix of 24 rows, and the others in its eigenvector.
 
-The coefficients are taken from values at three angles of each joint, so no symbolic algebra is needed, and no frames of
-Denavit and Hartenberg. Half angles are counted from angles that are in no way special.
+The coefficients are fitted to values at three angles of each joint, which needs neither symbolic algebra nor
+Denavit-Hartenberg frames. Half angles are measured from generic angles.
 """
 
 from collections.abc import Sequence
@@ -24,29 +24,29 @@ from ravemj.ik.vectors import Floats, Screw, Transform, constant, cross, dot, pe
 
 _GRID: Floats = np.array([0.0, 2 * np.pi / 3, 4 * np.pi / 3])
 _FIT = np.linalg.inv(np.stack([np.ones(3), np.cos(_GRID), np.sin(_GRID)], axis=1))
-"""From values at three angles to factors of 1, cos and sin."""
+"""Matrix from values at three angles to coefficients of 1, cos and sin."""
 _HALF = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]])
-"""Rows 1, cos and sin as polynomials of a half-angle tangent, times 1 + t²."""
+"""Rows 1, cos and sin as polynomials of a half-angle tangent, multiplied by 1 + t²."""
 _ORIGINS = (0.731, -1.173, 2.517)
-"""Angles of joints 3, 4 and 5 where their half-angle tangents are 0."""
+"""Generic angles of joints 3, 4 and 5 at which their half-angle tangents are 0."""
 _BRANCHES = 16
 _UNIT = np.einsum("x,y,z->xyz", *[_HALF[0]] * 3).reshape(3, 9)
 
 
 class General:
-    """Six revolute joints in a circle that the motion closes; any of them can be the first, in either direction.
+    """General six-revolute arm as a closed loop; any joint can be the first, in either direction.
 
-    Where axes meet or are parallel, the elimination fails for some of these choices, so all are worth a trial.
+    If axes intersect or are parallel, the elimination fails for some of these choices, so all are tried.
     """
 
     name, why = "general 6R", "the arm has six revolute joints, with added ones, whatever their axes"
     coupled, shared, equations = True, False, "an eigenvalue problem of 24 rows"
 
     def __init__(self, arm: Arm, shift: int, *, backward: bool) -> None:
-        """Take the joints in a circle from one of them on, backward from the tool to the base.
+        """Arrange the joints in a loop that starts at one of them, backward from the tool to the base.
 
         Raises:
-            NoFamilyError: other joints than six revolute ones, or locked ones between them.
+            NoFamilyError: the joints are not six revolute ones, or there are locked ones between them.
         """
         self.arm, self.shift, self.backward = arm, shift, backward
         places = arm.inner
@@ -59,11 +59,11 @@ class General:
         self._shared_left = None if shift else _left(self._screws)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the place of the joint and their number."""
+        """Return for each choice between solutions the joint's position and the number of solutions."""
         return [(self.order[2], _BRANCHES)]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the turns of the joints of ``order`` with 16 branches."""
+        """Return the turns of the joints in ``order``, with 16 branches."""
         needed, back = (motion.inverse(), motion) if self.backward else (motion, motion.inverse())
         count = 6 - self.shift
         screws = [*self._screws[:count], *(screw.carried(back) for screw in self._screws[count:])]
@@ -87,7 +87,7 @@ class General:
 
 
 def _left(screws: Sequence[Screw]) -> Floats:
-    """Return the factors of the left sides, shape (N, 14, 27): of powers of three half-angle tangents, up to 2 each."""
+    """Return the coefficients of the left sides, shape (N, 14, 27), for powers up to 2 of three half-angle tangents."""
     turns = [turn_of((_GRID + origin).reshape(3, 1)) for origin in _ORIGINS]
     places = np.indices((3, 3, 3)).reshape(3, 27)
     values = _carried(screws, [turn[:, place] for turn, place in zip(turns, places, strict=True)])
@@ -97,7 +97,7 @@ def _left(screws: Sequence[Screw]) -> Floats:
 
 
 def _carried(screws: Sequence[Screw], turns: Sequence[Floats]) -> Floats:
-    """Return the fourteen numbers of E3 E4 E5 for turns (2, B, N) of these joints, shape (14, B, N)."""
+    """Return the fourteen quantities of the elimination after joints 3, 4 and 5, for turns (2, B, N); (14, B, N)."""
     line, point = screws[5].axis, screws[5].point
     for screw, turn in zip(screws[4:1:-1], turns[::-1], strict=True):
         line, point = screw.turned(turn, line), screw.moved(turn, point)
@@ -105,7 +105,7 @@ def _carried(screws: Sequence[Screw], turns: Sequence[Floats]) -> Floats:
 
 
 def _right(screws: Sequence[Screw], motion: Transform) -> Floats:
-    """Return the factors of the right sides, shape (N, 14, 9): of 1, c2, s2, c1, c1 c2, c1 s2, s1, s1 c2, s1 s2."""
+    """Return the right sides' coefficients of 1, c2, s2, c1, c1 c2, c1 s2, s1, s1 c2, s1 s2, shape (N, 14, 9)."""
     first, second = (turn_of(_GRID.reshape(3, 1))[:, place] for place in np.indices((3, 3)).reshape(2, 9))
     line, point = motion.turned(screws[5].axis), motion.moved(screws[5].point)
     line = screws[1].turned_back(second, screws[0].turned_back(first, line))
@@ -126,8 +126,8 @@ def _numbers(line: Floats, point: Floats) -> Floats:
 def _eigen(matrix: Floats) -> list[Floats]:
     """Return the half-angle tangents of joints 3, 4 and 5, each (16, N), for which M(t3) times monomials is 0.
 
-    ``matrix`` has for powers 0, 1, 2 of the first tangent six equations in monomials x^i y^j, i and j up to 2, shape
-    (N, 3, 6, 9).
+    ``matrix`` contains, for powers 0, 1, 2 of the first tangent, six equations in monomials x^i y^j, i and j up to 2,
+    shape (N, 3, 6, 9).
     """
     count = len(matrix)
     whole = np.zeros((count, 3, 12, 12))
@@ -136,7 +136,7 @@ def _eigen(matrix: Floats) -> list[Floats]:
     companion[:, :12, 12:] = np.eye(12)
     try:
         companion[:, 12:] = -np.linalg.solve(whole[:, 2], np.concatenate([whole[:, 0], whole[:, 1]], axis=2))
-    except np.linalg.LinAlgError:  # some roots are at infinity, or nearly so
+    except np.linalg.LinAlgError:  # some roots are infinite, or nearly so
         noise = np.random.default_rng(12).normal(size=(12, 12))
         lead = whole[:, 2] + 1e-13 * np.abs(whole[:, 2]).max() * noise
         companion[:, 12:] = -np.linalg.solve(lead, np.concatenate([whole[:, 0], whole[:, 1]], axis=2))
@@ -151,7 +151,7 @@ def _eigen(matrix: Floats) -> list[Floats]:
 
 
 def _ratio(low: NDArray[np.complex128], high: NDArray[np.complex128]) -> Floats:
-    """Return the ratio of monomials that differ by one power, shape (16, N), where their product with it is largest."""
+    """Return the ratio of monomials that differ by one power, shape (16, N), at the largest pair for accuracy."""
     low, high = (part.reshape(len(part), -1, part.shape[-1]) for part in (low, high))
     best = np.argmax(np.abs(low) + np.abs(high), axis=1)[:, None]
     below, above = np.take_along_axis(low, best, axis=1)[:, 0], np.take_along_axis(high, best, axis=1)[:, 0]

@@ -1,32 +1,32 @@
 """Arms as closed loops: three joints that form a block, and three others around it.
 
-An arm E1 … E6 has to make a motion X. With the block B anywhere among its joints, A B C = X, so B⁻¹ = C X⁻¹ A: the
-joints behind the block, the motion that is asked for, and the joints before it, in a circle. Moving X⁻¹ to the end of
-the circle leaves three joints, some of them seen from elsewhere (E(axis) X = X E(X⁻¹ axis)), that have to keep the
-block's point or plane. Joints that are locked at a value are constant motions in that circle.
+The motion of an arm E1 … E6 must equal X. With the block B anywhere among its joints, A B C = X, so B⁻¹ = C X⁻¹ A: the
+joints after the block, the inverse goal, and the joints before it, in a loop. Moving X⁻¹ to the end of the loop leaves
+three joints, some of them transformed (E(axis) X = X E(X⁻¹ axis)), that must keep the block's point or plane fixed.
+Locked joints are constant motions in the loop.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from ravemj.ik.families.blocks import Motion, Planar, Wrist
+from ravemj.ik.families.blocks import Planar, RigidMotion, Wrist
 from ravemj.ik.families.carrying import CarryPlane, CarryPoint, NoFamilyError, Plane
 from ravemj.ik.families.pairs import Pair
 from ravemj.ik.vectors import Floats, Screw, Transform, tile
 
 Locked = Mapping[int, Floats]
-"""Values of locked joints, turns (2, 1, N) or distances (1, 1, N), by their place in the arm."""
+"""Values of locked joints by their position in the arm, turns (2, 1, N) or distances (1, 1, N)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arm:
-    """An arm as a family sees it, lengths in units of its reach.
+    """Arm as input of a family, with lengths in units of its reach.
 
     Attributes:
-        screws: Its joints.
-        joints: For each of them its index in the chain; -1 for joints that were added, and have to stay at 0.
-        locked: Places of joints whose values are given.
+        screws: The joints.
+        joints: Index of each in the chain; -1 for added joints, which must be 0.
+        locked: Positions of joints whose values are given.
     """
 
     screws: tuple[Screw, ...]
@@ -34,7 +34,7 @@ class Arm:
     locked: frozenset[int] = field(default_factory=frozenset[int])
 
     def trimmed(self, motion: Transform, locked: Locked) -> Transform:
-        """Return the motion that is left when locked joints at both ends are taken off."""
+        """Return the motion without the locked joints at both ends."""
         for place in self._ends(range(len(self.screws))):
             motion = self.screws[place].transform(locked[place]).inverse() @ motion
         for place in self._ends(range(len(self.screws) - 1, -1, -1)):
@@ -51,26 +51,26 @@ class Arm:
 
     @property
     def inner(self) -> list[int]:
-        """Places from the first joint that is not locked to the last one."""
+        """Positions from the first to the last joint that is not locked."""
         free = [place for place in range(len(self.screws)) if place not in self.locked]
         return list(range(free[0], free[-1] + 1))
 
     def free(self, places: Sequence[int]) -> list[int]:
-        """Return those places whose joints are not locked."""
+        """Return those positions whose joints are not locked."""
         return [place for place in places if place not in self.locked]
 
 
 class Family(Protocol):
-    """A way to all solutions of an arm.
+    """Method that finds all solutions of a kind of arm.
 
     Attributes:
         arm: The arm.
-        name: What it is called.
-        why: What makes the arm one of its kind.
-        order: Places of the joints that it solves for, in the order of its answers.
-        coupled: Whether a quartic or a larger equation has to be solved.
-        equations: What has to be solved.
-        shared: Whether the geometry that counts is the same for all poses, which is faster.
+        name: The name of the family.
+        why: The property that makes the arm a member.
+        order: Positions of the joints to solve for, in the order of the results.
+        coupled: Whether it solves a quartic or an equation of higher degree.
+        equations: Description of the equations.
+        shared: Whether the relevant geometry is the same for all poses, which is faster.
     """
 
     arm: Arm
@@ -82,16 +82,16 @@ class Family(Protocol):
     shared: bool
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        """Return for each choice between solutions the joint's position and their number, the fastest first."""
         ...
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the values of the joints of ``order``, turns (2, B, N) or distances (1, B, N); B may be 1 for all."""
+        """Return the values of the joints in ``order``, turns (2, B, N) or distances (1, B, N); B may be 1."""
         ...
 
 
 class Circle:
-    """The joints around a block, and what they become when the motion is moved out from between them."""
+    """Joints around a block, transformed so that the goal motion is moved to the end of the loop."""
 
     def __init__(self, arm: Arm, block: int) -> None:
         inner = arm.inner
@@ -102,7 +102,7 @@ class Circle:
         self.motion_first = len(arm.free(self.before)) > len(arm.free(self.behind))
 
     def around(self, motion: Transform, locked: Locked) -> tuple[list[Screw], Transform | None, Transform | None]:
-        """Return the joints F1, F2, F3 and constants W, K with B⁻¹ = W⁻¹ F1 F2 F3 K; None stands for no motion."""
+        """Return the joints F1, F2, F3 and constants W, K with B⁻¹ = W⁻¹ F1 F2 F3 K; None means the identity."""
         seen: Transform | None = motion if self.motion_first else None
         goal = seen
         screws: list[Screw] = []
@@ -134,11 +134,11 @@ def _moved(transform: Transform | None, points: Floats) -> Floats:
 
 
 Step = Callable[[Screw, Floats, Floats], Floats]
-"""A method of ``Screw`` that moves vectors by a joint value."""
+"""Method of ``Screw`` that moves vectors by a joint value."""
 
 
 class _Around:
-    """The joints around a block with their values: B⁻¹ = W⁻¹ F1 F2 F3 K."""
+    """Joints around a block with their values: B⁻¹ = W⁻¹ F1 F2 F3 K."""
 
     def __init__(
         self, screws: Sequence[Screw], values: Sequence[Floats], goal: Transform | None, rest: Transform | None
@@ -146,12 +146,12 @@ class _Around:
         self._pairs, self._count = list(zip(screws, values, strict=True)), values[0].shape[-2]
         self._goal, self._rest = goal, rest
 
-    def needed(self) -> Motion:
-        """Return B = K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W."""
+    def needed(self) -> RigidMotion:
+        """Return the required block motion B = K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W."""
         return self._motion(self._goal, self._rest, self._pairs, Screw.turned_back, Screw.moved_back)
 
-    def opposite(self) -> Motion:
-        """Return B⁻¹."""
+    def opposite(self) -> RigidMotion:
+        """Return the inverse block motion B⁻¹."""
         return self._motion(self._rest, self._goal, self._pairs[::-1], Screw.turned, Screw.moved)
 
     def _motion(
@@ -161,8 +161,8 @@ class _Around:
         pairs: Sequence[tuple[Screw, Floats]],
         turn: Step,
         move: Step,
-    ) -> Motion:
-        """Return the motion by a transform, then by joints, then by the inverse of another transform."""
+    ) -> RigidMotion:
+        """Return the composition of a transform, joint motions, and the inverse of another transform."""
         back = None if last is None else last.inverse()
 
         def turned(vectors: Floats) -> Floats:
@@ -177,17 +177,17 @@ class _Around:
                 points = move(screw, value, points)
             return _moved(back, points)
 
-        return Motion(turned, moved)
+        return RigidMotion(turned, moved)
 
 
 class BlockFamily:
-    """An arm with a block of three joints: a spherical wrist or shoulder, or three parallel axes."""
+    """Arm with a block of three joints: a spherical wrist or shoulder, or three parallel axes."""
 
     def __init__(self, arm: Arm, block: int, inside: Wrist | Planar, examples: tuple[Transform, Locked]) -> None:
-        """Find the way of solution from examples of motions.
+        """Find the solution method from examples of motions.
 
         Raises:
-            NoFamilyError: the geometry is not of this family.
+            NoFamilyError: the geometry does not belong to this family.
         """
         self.arm, self.inside = arm, inside
         self.circle = Circle(arm, block)
@@ -213,12 +213,12 @@ class BlockFamily:
         return points, (Plane(normals[0], points[0]), Plane(normals[1], points[1]))
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        """Return for each choice between solutions the joint's position and their number, the fastest first."""
         around = [(self.circle.places[joint], count) for joint, count in self.carry.names]
         return around + [(self.circle.block[joint], count) for joint, count in self.inside.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the values of the joints of ``order``."""
+        """Return the values of the joints in ``order``."""
         screws, goal, rest = self.circle.around(motion, locked)
         points, planes = self._kept(goal, rest)
         if isinstance(self.carry, CarryPoint):
@@ -236,13 +236,13 @@ def _degree(pair: Pair | None) -> tuple[bool, str]:
 
 
 class PointFamily:
-    """Three joints that carry the tool to a place, in whatever orientation."""
+    """Three joints that carry the tool to a position, in any orientation."""
 
     def __init__(self, arm: Arm, tool: Floats, examples: tuple[Transform, Locked]) -> None:
-        """Find the way of solution from examples; of the motions only the translation counts, the place of the tool.
+        """Find the solution method from examples of motions, of which only the translation matters.
 
         Raises:
-            NoFamilyError: the joints cannot carry it to any place around.
+            NoFamilyError: the joints cannot carry it to arbitrary positions.
         """
         self.arm, self.tool = arm, tool
         self.order = arm.free(range(len(arm.screws)))
@@ -267,10 +267,10 @@ class PointFamily:
         return screws, _moved(seen, self.tool)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        """Return for each choice between solutions the joint's position and their number, the fastest first."""
         return [(self.order[joint], count) for joint, count in self.carry.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the values of the joints of ``order``."""
+        """Return the values of the joints in ``order``."""
         screws, start = self._seen(locked)
         return self.carry.solve(screws, start, motion.translation)

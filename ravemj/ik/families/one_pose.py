@@ -1,7 +1,7 @@
-"""One pose at a time, in plain floats: six revolute joints, three of which meet in a spherical wrist or shoulder.
+"""Solver of a single pose in plain floats, for six revolute joints with a spherical wrist or shoulder.
 
-The equations are those of ``BlockFamily`` with a ``Wrist``. For one pose, a call of numpy costs fifty times what its
-arithmetic does; floats are twice as fast then.
+The equations are those of ``BlockFamily`` with a ``Wrist``. For one pose, the overhead of a numpy call is fifty times
+its arithmetic, so plain floats are twice as fast.
 """
 
 from math import sqrt
@@ -16,11 +16,11 @@ Vector = tuple[float, float, float]
 Turn = tuple[float, float]
 """Cosine and sine."""
 Motion = tuple[Vector, Vector, Vector, Vector]
-"""The rows of a rotation, and a translation."""
+"""Rows of a rotation, and a translation."""
 
 
 class OnePose:
-    """The turns of the joints for one pose, in the order of the family's answers and branches. Made by ``of``."""
+    """Solver of one pose, with the order of the family's joints and branches. ``for_family`` makes it."""
 
     def __init__(self, family: BlockFamily, wrist: Wrist, carry: CarryPoint, alone: tuple[int, int]) -> None:
         places, block = family.circle.places, family.circle.block
@@ -34,8 +34,8 @@ class OnePose:
         self._measure = _vector(carry.measure.first), _vector(carry.measure.second)
 
     @classmethod
-    def of(cls, family: Family) -> "OnePose | None":
-        """Return such a solver for a family; None where its equations are others."""
+    def for_family(cls, family: Family) -> "OnePose | None":
+        """Return a solver for a family; None if its equations differ."""
         if not isinstance(family, BlockFamily) or not isinstance(family.inside, Wrist) or family.arm.locked:
             return None
         turning = not any(screw.prismatic for screw in family.arm.screws)
@@ -45,7 +45,7 @@ class OnePose:
         return cls(family, family.inside, carry, carry.pair.alone)
 
     def solve(self, motion: Motion) -> list[list[Turn]]:
-        """Return for each branch the turns of the six joints."""
+        """Return the turns of the six joints for each branch."""
         first, middle, third = self._arm
         start, goal = self._centre, self._centre
         tip, side = self._wrist[2], self._side
@@ -77,7 +77,7 @@ class OnePose:
         ]
 
     def _outer(self, start: Vector, goal: Vector) -> list[tuple[Turn, Turn]]:
-        """Return the turns of the first and the third of the joints that carry the centre from a start to a goal."""
+        """Return the turns of the first and the third joint of those that carry the centre from a start to a goal."""
         sides = self._numbers(self._arm[0], goal, -1.0), self._numbers(self._arm[2], start, 1.0)
         rest = sides[1][0][0] - sides[0][0][0], sides[1][0][1] - sides[0][0][1]
         side, equation = self._alone
@@ -100,7 +100,7 @@ class OnePose:
         return found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
-        """Return what the middle joint keeps of a point that another joint moves: constants and factors (``Side``)."""
+        """Return the invariants of the middle joint for a point moved by another joint: constants and factors."""
         axis, at = line
         one, centre = self._measure
         arm = _minus(point, at)
@@ -129,7 +129,7 @@ class OnePose:
         return (c * cosine - s * sine, s * cosine + c * sine), (c * cosine + s * sine, s * cosine - c * sine)
 
     def _ends(self, two: Turn, tip: Vector, side: Vector) -> tuple[Turn, Turn, Turn]:
-        """Return the turns of the wrist, of which the middle one is known."""
+        """Return the turns of the wrist joints, given the middle one."""
         first, middle, last = self._wrist
         (along, across, later), (cosine, sine) = self._tips, two
         start = (
@@ -196,7 +196,6 @@ def _rotated(axis: Vector, cosine: float, sine: float, v: Vector) -> Vector:
 
 
 def _about(line: tuple[Vector, Vector], cosine: float, sine: float, point: Vector) -> Vector:
-    """Rotate a point about a line."""
     axis, at = line
     return _plus(_rotated(axis, cosine, sine, _minus(point, at)), at)
 

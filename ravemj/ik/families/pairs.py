@@ -1,10 +1,10 @@
-"""Two equations in the values of two joints, which three joints leave when the middle one is eliminated.
+"""Two equations in the values of two joints, after elimination of the middle one of three joints.
 
-Let three joints in series have to carry something (a point, or a plane) from a start to a goal: F1 F2 F3 s = g.
-Whatever F2 does, it keeps two numbers of F3 s; F1⁻¹ g must have the same two. Each side depends on one joint only,
-linearly in the cosine and sine of a revolute one and as a polynomial of degree two in the value of a prismatic one.
-Where axes are parallel, meet, or are at right angles, an equation has one unknown only, and all is linear or quadratic;
-else what is left is a quartic (D. L. Pieper, 1968; subproblems 5 and 6 of IK-Geo).
+Three joints in series must carry a point or a plane from a start to a goal: F1 F2 F3 s = g. F2 has two invariants,
+which must be equal for F3 s and F1⁻¹ g. Each side depends on one joint only, linearly in the cosine and sine of a
+revolute one and as a polynomial of degree two in the value of a prismatic one. If axes are parallel, intersect, or are
+perpendicular, an equation has only one unknown, and all equations are linear or quadratic; otherwise the result is a
+quartic (D. L. Pieper, 1968; subproblems 5 and 6 of IK-Geo).
 """
 
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ from ravemj.ik.subproblems import normalized, solve_linear, solve_parabola, solv
 from ravemj.ik.vectors import Floats, Screw, dot, tile
 
 NEGLIGIBLE = 1e-9
-"""A coefficient that stays below this in all examples, of those of its equation, is 0 by the arm's geometry."""
+"""Relative size below which a coefficient, in all examples, is 0 by the arm's geometry."""
 
 
 class Side(NamedTuple):
-    """The two numbers of one side: constant + factors · (cos, sin), or (value, value²), of its joint.
+    """Two invariants of one side: constant + factors · (cos, sin), or (value, value²), of its joint.
 
     Attributes:
         constant: For both equations, shape (2, B, N).
@@ -33,12 +33,12 @@ class Side(NamedTuple):
 
 @dataclass(frozen=True)
 class Measure:
-    """What the middle joint keeps of a point, or of a plane given by its normal and an offset.
+    """Invariants of the middle joint for a point, or for a plane given by its normal and an offset.
 
     Attributes:
-        first: The first number is this vector's product with the point or normal, shape (3, B, N).
-        second: The second one, too; for spheres it is the place that squared distances are taken from.
-        sphere: Whether the second number is a squared distance.
+        first: The first invariant is the dot product of this vector with the point or normal, shape (3, B, N).
+        second: The same for the second invariant; for spheres the centre of squared distances.
+        sphere: Whether the second invariant is a squared distance.
     """
 
     first: Floats
@@ -46,9 +46,9 @@ class Measure:
     sphere: bool
 
     def side(self, joint: Screw, point: Floats, sign: float) -> Side:
-        """Return the numbers of points that a joint has moved, or moved back where the sign is -1.
+        """Return the invariants of points moved by a joint, or moved backwards if the sign is -1.
 
-        For a normal, the joint's point and its distance are left out by the caller.
+        For a normal, the caller omits the joint's point and its distance.
         """
         if joint.prismatic:
             return self._sliding(joint, point, sign)
@@ -90,11 +90,11 @@ def _side(constants: list[Floats], factors: list[list[Floats]]) -> Side:
 
 @dataclass(frozen=True)
 class Pair:
-    """How to solve the two equations of an arm, found by ``Pair.of`` from examples.
+    """Solution method of two equations in two joints, detected from examples by ``Pair.detect``.
 
     Attributes:
         sliding: Whether the joints of the two sides are prismatic.
-        alone: A side and an equation that has no other unknown; None where both equations have both.
+        alone: A side and an equation that contains only its unknown; None if both equations contain both.
         sphere: Whether the second equation is of degree two in the value of a prismatic joint.
         branches: The number of solutions.
     """
@@ -104,8 +104,8 @@ class Pair:
     sphere: bool
 
     @classmethod
-    def of(cls, sides: tuple[Side, Side], sliding: tuple[bool, bool], *, sphere: bool) -> "Pair | None":
-        """Find out which unknown is in which equation; None where a joint is in neither of them."""
+    def detect(cls, sides: tuple[Side, Side], sliding: tuple[bool, bool], *, sphere: bool) -> "Pair | None":
+        """Detect the unknowns of each equation from examples; None if a joint is in neither."""
         sizes = np.array([np.abs(side.factors).max(axis=(1, 2, 3)) for side in sides])  # side, equation
         present = sizes > NEGLIGIBLE * np.maximum(sizes.max(axis=0), sizes.max(axis=0).max() * 1e-3)
         if not present.any(axis=1).all() or not present.any(axis=0).all():
@@ -118,7 +118,7 @@ class Pair:
 
     @property
     def choices(self) -> tuple[int, int]:
-        """Number of solutions for the side that is solved first, and for the other one."""
+        """Number of solutions of the side solved first, and of the other side."""
         if self.alone is None:
             return (2 if all(self.sliding) else 4), 1
         side, equation = self.alone
@@ -149,7 +149,7 @@ class Pair:
     def _one_by_one(
         self, factors: tuple[Floats, Floats], rest: Floats, side: int, equation: int
     ) -> tuple[Floats, Floats]:
-        """Solve the equation with one unknown, put it into the other equation, and solve that."""
+        """Solve the equation with one unknown, substitute its solutions into the other equation, and solve that."""
         first = self._single(side, equation, factors[side][equation], rest[equation])
         known = factors[side][1 - equation]
         left = rest[1 - equation] - (known[0] * first[0] + known[1] * (first[1] if len(first) > 1 else first[0] ** 2))
@@ -164,7 +164,7 @@ class Pair:
         return solve_parabola(factors[0], factors[1], rest)
 
     def _both_sliding(self, factors: tuple[Floats, Floats], rest: Floats) -> tuple[Floats, Floats]:
-        """Solve for two distances: x from the first equation, which is linear, into the second."""
+        """Solve for two distances: eliminate x by the first equation, which is linear."""
         slope, start = -factors[1][0, 0] / factors[0][0, 0], rest[0] / factors[0][0, 0]
         (a1, b1), (a3, b3) = factors[0][1], factors[1][1]
         linear, square = a3 + a1 * slope + 2 * b1 * start * slope, b3 + b1 * slope * slope

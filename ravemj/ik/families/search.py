@@ -1,8 +1,8 @@
-"""Which families an arm is of.
+"""Search for the families that an arm belongs to.
 
-An arm of fewer than six joints is completed with joints that have to stay at 0: a pair of axes that meet gets a third
-one through their point, and becomes a spherical wrist. What solves the completed arm gives all solutions of the arm, as
-those with other values of the added joints do not pass the check by forward kinematics.
+An arm with fewer than six joints is completed by joints that must be 0: two intersecting axes get a third one through
+their intersection, and become a spherical wrist. The solutions of the completed arm include all solutions of the arm;
+those with other values of the added joints fail the check by forward kinematics.
 """
 
 import contextlib
@@ -26,9 +26,9 @@ _SEED = 20
 
 
 def families(nominal: Chain, task: Task, locked: Sequence[int]) -> Iterator[Family]:
-    """Return ways to solve an arm whose geometry is exact, in units of its reach.
+    """Yield methods that solve an arm of exact geometry, in units of its reach.
 
-    The fastest come first where several are known without trying.
+    The fastest come first if several are known without trials.
     """
     arm = _arm(nominal, locked)
     free = nominal.dof - len(locked)
@@ -46,7 +46,7 @@ def families(nominal: Chain, task: Task, locked: Sequence[int]) -> Iterator[Fami
 
 
 def general_families(nominal: Chain, locked: Sequence[int]) -> Iterator[Family]:
-    """Return ways to solve an arm of revolute joints by an eigenvalue problem, a hundred times slower."""
+    """Yield methods that solve an arm of revolute joints by an eigenvalue problem, a hundred times slower."""
     whole = next(_complete(_arm(nominal, locked), 6 - nominal.dof + len(locked)), None)
     for backward in (False, True):
         for shift in range(6):
@@ -66,7 +66,7 @@ def _arm(nominal: Chain, locked: Sequence[int]) -> Arm:
 
 
 def _of(arm: Arm) -> Iterator[Family]:
-    """Return the families of an arm of six joints."""
+    """Return the families that an arm of six joints belongs to."""
     for ordered in _orders(arm):
         examples = _examples(ordered, np.zeros((3, 1, 1)))
         with contextlib.suppress(NoFamilyError):
@@ -91,7 +91,7 @@ def _block(arm: Arm, block: int, examples: tuple[Transform, Locked]) -> Iterator
 
 
 def _orders(arm: Arm) -> Iterator[Arm]:
-    """Return an arm with its joints in all useful orders: a slide along an axis can as well come before the turn."""
+    """Return equivalent joint orders; a prismatic and a revolute joint on one axis commute."""
     yield arm
     for toward_tool in (True, False):
         order = list(range(len(arm.screws)))
@@ -130,7 +130,7 @@ def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
 
 
 def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
-    """Return arms with as many joints more as are missing, those that add the least to a block first."""
+    """Yield the arm completed by missing joints, those that add the fewest to a block first."""
     if missing < 0:
         return
     if missing == 0:
@@ -144,7 +144,7 @@ def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
 
 
 def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
-    """Return arms in which some joints and added ones behind them form a block."""
+    """Return arms in which existing joints and joints added after them form a block."""
     size = 3 - added
     for place in range(len(arm.screws) - size + 1):
         around = range(place, place + size)
@@ -154,7 +154,7 @@ def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
 
 
 def _third(screws: Sequence[Screw], added: int) -> Iterator[list[Screw]]:
-    """Return the joints that complete two, one or no joints to a block."""
+    """Yield the joints that complete two, one or no joints to a block."""
     turning = [screw for screw in screws if not screw.prismatic]
     if not turning:
         if not screws:
@@ -179,7 +179,7 @@ def _around(centre: Floats, axes: Floats) -> list[Screw]:
 
 
 def _behind(arm: Arm, count: int) -> Arm:
-    """Add joints behind an arm whose axes are in no way special."""
+    """Append joints with generic axes to an arm."""
     rng = np.random.default_rng(_SEED + count)
     axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     places = rng.normal(size=(3, 3)) / 2
@@ -196,4 +196,5 @@ def _inserted(arm: Arm, place: int, screws: Sequence[Screw]) -> Arm:
 
 
 def _generic(count: int) -> Floats:
+    """Return vectors without special directions, so that added axes are neither parallel nor intersecting by chance."""
     return np.array([[0.37, -0.29, 0.41], [-0.23, 0.43, 0.31]])[:count]

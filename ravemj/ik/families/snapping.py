@@ -1,7 +1,7 @@
-"""Nominal geometry: axes that nearly meet do meet, axes that nearly are parallel or at right angles are.
+"""Nominal geometry: snap nearly intersecting, parallel or perpendicular axes.
 
-Files give four to six digits, so that what was designed to meet misses by micrometres. A family is derived from the
-nominal geometry; its solutions start Newton's method on the true one where the two differ.
+Files have four to six digits, so that axes designed to intersect miss by micrometres. A family is derived from the
+nominal geometry; its solutions are the starts of Newton's method on the true geometry if the two differ.
 """
 
 from dataclasses import replace
@@ -13,7 +13,7 @@ from ravemj.ik.families.blocks import common_point
 from ravemj.ik.vectors import Bools, Floats, Screw, constant
 
 TOLERANCE = 1e-5
-"""Lengths, in units of the reach, and sines of angles up to this are taken for 0."""
+"""Lengths, in units of the reach, and sines of angles up to this are snapped to 0."""
 
 
 def nominal(chain: Chain) -> Chain:
@@ -26,7 +26,7 @@ def nominal(chain: Chain) -> Chain:
 
 
 def _aligned(axes: Floats) -> Floats:
-    """Turn each axis onto an earlier one that is parallel, or into the plane at right angles to its neighbour."""
+    """Turn each axis to be parallel to an earlier one, or perpendicular to its neighbour, if it nearly is."""
     done = np.eye(3)[:0]
     for axis in axes:
         parallel = [other for other in done if np.linalg.norm(np.cross(axis, other)) < TOLERANCE]
@@ -42,7 +42,7 @@ def _aligned(axes: Floats) -> Floats:
 
 
 def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
-    """Move each revolute axis sideways to where it meets those before it."""
+    """Move each revolute axis sideways to intersect the earlier axes that it nearly intersects."""
     points = points.copy()
     screws: list[Screw] = []
     for index, axis in enumerate(axes):
@@ -60,7 +60,7 @@ def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
 
 
 def _nearest(one: Screw, other: Screw) -> Floats | None:
-    """Return the point of one axis that is nearest to another; None if they are parallel and apart."""
+    """Return the point of an axis nearest to another; None if they are parallel and apart."""
     a, b, away = one.axis.ravel(), other.axis.ravel(), (other.point - one.point).ravel()
     square = 1 - (a @ b) ** 2
     if square < TOLERANCE**2:

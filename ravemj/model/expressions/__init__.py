@@ -1,7 +1,7 @@
 """The language of mimic equations.
 
-OpenRAVE reads such equations with the library fparser 4.5; this package has the same language and its own
-implementation, which runs nothing of what it reads: text becomes a tree, and only the tree is evaluated.
+OpenRAVE parses mimic equations with the library fparser 4.5. This package implements the same language without
+executing code: text is parsed to a tree, and only the tree is evaluated.
 
 >>> follower = parse(substitute("JF1/3+0.8727", joint_variables(["JF1"])), {"joint0"})
 >>> follower.evaluate({"joint0": 0.3})
@@ -11,8 +11,8 @@ implementation, which runs nothing of what it reads: text becomes a tree, and on
 >>> follower.polynomial("joint0")
 (0.8727, 0.3333333333333333)
 
-Hostile text cannot do more than raise ``ExpressionError``: its length, the depth of its nesting and the number of
-values it can have are bounded, and evaluation takes time in proportion to the length.
+Malicious text can only raise ``ExpressionError``: the length, the nesting depth and the number of values are bounded,
+and evaluation time is proportional to the length.
 """
 
 from ravemj.model.expressions.attributes import before_substitution, joint_variables, linear_mimic, partials, substitute

@@ -1,4 +1,4 @@
-"""How OpenRAVE's XML writes mimic equations: joint names in the text, and partial derivatives in one attribute."""
+"""Mimic equations in OpenRAVE's XML: joint names in the text, and partial derivatives in one attribute."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -7,7 +7,7 @@ from ravemj.model.expressions.nodes import ExpressionError
 
 
 class Replacements(dict[str, str]):
-    """What is put in the place of each name.
+    """Replacement of each name.
 
     Attributes:
         lengths: The lengths of the names, the largest first.
@@ -18,7 +18,7 @@ class Replacements(dict[str, str]):
         self.lengths = sorted({len(name) for name in names if name}, reverse=True)
 
     def found_in(self, text: str) -> Iterator[tuple[int, str]]:
-        """Yield the names in a text with their places, the longest of several that begin at one place."""
+        """Yield the positions and names found in a text, the longest of several names at one position."""
         at = 0
         while at < len(text):
             parts = (text[at : at + length] for length in self.lengths)
@@ -29,17 +29,17 @@ class Replacements(dict[str, str]):
 
 
 def joint_variables(names: Sequence[str]) -> Replacements:
-    """Return the variable that stands for each joint: ``joint0``, ``joint1``, ...; passive joints come last."""
+    """Return the variable for each joint: ``joint0``, ``joint1``, ...; passive joints come last."""
     return Replacements({name: f"joint{index}" for index, name in reversed(list(enumerate(names)))})
 
 
 def substitute(text: str, names: Mapping[str, str]) -> str:
-    """Replace joint names in an equation by their variables, as blindly as OpenRAVE does it.
+    """Replace joint names in an equation by their variables, with OpenRAVE's textual substitution.
 
-    From left to right, wherever the text goes on with a name, the longest such name is replaced; what was put in is
-    not looked at again. Neither words nor functions are respected: a joint called ``s`` turns ``sin(x)`` into
-    ``joint0in(x)``, and the equation is lost. Names may have any characters (``/arm/j01``). What is no name stays,
-    so equations may also say ``joint0``, and the second axis of joint ``u`` is ``u_1``.
+    From left to right, the longest joint name at each position is replaced; replacements are not scanned again. Word
+    boundaries and functions are ignored: a joint called ``s`` turns ``sin(x)`` into ``joint0in(x)``, and the equation
+    is invalid. Names may have any characters (``/arm/j01``). Other text stays, so equations may also say ``joint0``,
+    and the second axis of joint ``u`` is ``u_1``.
     """
     names = names if isinstance(names, Replacements) else Replacements(names)
     parts: list[str] = []
@@ -51,7 +51,7 @@ def substitute(text: str, names: Mapping[str, str]) -> str:
 
 
 def before_substitution(error: ExpressionError, text: str, names: Replacements) -> ExpressionError:
-    """Return a mistake in a substituted equation as one in the text that ``substitute`` was given."""
+    """Convert an error in a substituted equation to one in the original text of ``substitute``."""
     problem, grown = error.problem, 0
     position = error.position
     for at, name in names.found_in(text):
@@ -68,8 +68,8 @@ def before_substitution(error: ExpressionError, text: str, names: Replacements) 
 def partials(text: str) -> dict[str, str]:
     """Return the expressions in ``mimic_vel`` or ``mimic_accel``, ``|name expression |name expression``, by name.
 
-    Every ``|`` starts a partial derivative, so they cannot use the logical operator. What stands before the first
-    one are inline variables for all of them. Of a name given twice the last counts.
+    Every ``|`` starts a partial derivative, so they cannot use the logical operator. Text before the first one defines
+    inline variables for all of them. If a name is repeated, the last one is used.
 
     Raises:
         ExpressionError: If a name or an expression is missing.

@@ -1,6 +1,6 @@
 """Derivatives of expressions, by the chain rule over the nodes in order.
 
-One new node or a few for each old one, so that the derivative of a long equation stays in proportion to it.
+Each node adds a few new ones, so the size of a derivative is proportional to that of the equation.
 """
 
 import math
@@ -13,7 +13,7 @@ Rule = Callable[["Algebra", Call, Sequence[Node]], Node]
 
 
 class Algebra:
-    """Arithmetic on nodes that leaves out what 0 and 1 make superfluous."""
+    """Arithmetic on nodes that simplifies operations with 0 and 1."""
 
     def __init__(self, graph: Graph) -> None:
         self.call = graph.call
@@ -32,7 +32,7 @@ class Algebra:
         return x if is_number(y, 0.0) else self.call("sub", x, y)
 
     def mul(self, x: Node, y: Node) -> Node:
-        """Return x * y; 0 wins also over what has no value."""
+        """Return x * y; a factor 0 gives 0 even if the other is undefined."""
         if is_number(x, 0.0) or is_number(y, 0.0):
             return self.number(0.0)
         if is_number(x, 1.0):
@@ -40,7 +40,7 @@ class Algebra:
         return x if is_number(y, 1.0) else self.call("mul", x, y)
 
     def div(self, x: Node, y: Node) -> Node:
-        """Return x / y; 0 wins also over what has no value."""
+        """Return x / y; a numerator 0 gives 0 even if y is undefined."""
         if is_number(x, 0.0) or is_number(y, 1.0):
             return x
         return self.call("div", x, y)
@@ -60,7 +60,7 @@ class Algebra:
         return self.div(self.number(1.0), x)
 
     def choose(self, condition: Node, x: Node, y: Node) -> Node:
-        """Return x where the condition holds, else y."""
+        """Return x if the condition holds, else y."""
         return x if x is y else self.call("if", condition, x, y)
 
     def one_minus_square(self, x: Node) -> Node:
@@ -78,7 +78,7 @@ def is_number(node: Node, value: float) -> bool:
 
 
 def derivative(nodes: list[Node], variable: str) -> Node:
-    """Return the derivative by a variable of the last of ``nodes``, in which each node comes after its arguments."""
+    """Return the derivative with respect to a variable of the last of the topologically ordered ``nodes``."""
     algebra = Algebra(Graph(nodes))
     slopes: dict[Node, Node] = {}
     for node in nodes:
@@ -91,7 +91,7 @@ def derivative(nodes: list[Node], variable: str) -> Node:
 
 
 def _slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
-    """Return the derivative of a call, given those of its arguments."""
+    """Return the derivative of a call, given the derivatives of its arguments."""
     if node.function in _STEPS or all(is_number(slope, 0.0) for slope in slopes):
         return algebra.number(0.0)
     if node.function in _OUTER:
@@ -133,7 +133,7 @@ def _direction(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _turn(algebra: Algebra, y: Node, x: Node, dy: Node, dx: Node) -> Node:
-    """Return how fast the direction of the point (x, y) turns."""
+    """Return the derivative of the direction angle of the point (x, y)."""
     square = algebra.add(algebra.square(x), algebra.square(y))
     return algebra.div(algebra.sub(algebra.mul(dy, x), algebra.mul(y, dx)), square)
 
@@ -156,7 +156,7 @@ def _smaller(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
-    """Move a root with its polynomial: the value of the changed polynomial, over the slope of the old one."""
+    """Return the derivative of a root: the negative differentiated polynomial over the slope of the original."""
     change, steepness = slopes[0], algebra.number(0.0)
     value = node.arguments[0]
     for coefficient, slope in zip(node.arguments[1:], slopes[1:], strict=True):
@@ -169,7 +169,7 @@ def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 def _law_of_cosines(algebra: Algebra, a: Node, b: Node, gamma: Node, slopes: Sequence[Node]) -> tuple[Node, Node]:
     """Differentiate c^2 = a^2 + b^2 - 2 a b cos(gamma), and return half of both sides.
 
-    They are c c' less the part of gamma', and the factor of gamma'; ``slopes`` are the derivatives of a and b.
+    The result is c c' without the term of gamma', and the factor of gamma'; ``slopes`` are the derivatives of a and b.
     """
     da, db = slopes
     lengths = algebra.add(algebra.mul(a, da), algebra.mul(b, db))
@@ -178,10 +178,11 @@ def _law_of_cosines(algebra: Algebra, a: Node, b: Node, gamma: Node, slopes: Seq
     return algebra.sub(lengths, shadow), factor
 
 
-def _enclosed_angle(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
+def _opposite_angle(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
     (a, b, c), (da, db, dc) = node.arguments, slopes
-    rest, factor = _law_of_cosines(algebra, a, b, node, (da, db))
-    return algebra.div(algebra.sub(algebra.mul(c, dc), rest), factor)
+    d_length = algebra.choose(algebra.call("lt", c, algebra.number(0.0)), algebra.neg(dc), dc)
+    rest, factor = _law_of_cosines(algebra, b, algebra.call("abs", c), node, (db, d_length))
+    return algebra.div(algebra.sub(algebra.mul(a, da), rest), factor)
 
 
 def _third_side(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
@@ -201,7 +202,7 @@ def _next_angle(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 _STEPS = {"or", "and", "not", "eq", "ne", "lt", "le", "gt", "ge", "ceil", "floor", "int", "trunc"}
 
-_OUTER: dict[str, Outer] = {  # of functions f of one argument x: f'(x)
+_OUTER: dict[str, Outer] = {  # derivatives f'(x) of functions f of one argument
     "neg": lambda g, x, f: g.number(-1.0),
     "abs": lambda g, x, f: g.choose(g.call("lt", x, g.number(0.0)), g.number(-1.0), g.number(1.0)),
     "acos": lambda g, x, f: g.neg(g.inverse_root(g.one_minus_square(x))),
@@ -240,7 +241,7 @@ _RULES: dict[str, Rule] = {
     "if": _choice,
     "max": _larger,
     "min": _smaller,
-    "SSSA": _enclosed_angle,
+    "SSSA": _opposite_angle,
     "SASA": _next_angle,
     "SASS": _third_side,
 }

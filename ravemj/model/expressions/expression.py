@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Self
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from ravemj.core.caching import cached_property
 from ravemj.core.transforms import Floats
 from ravemj.model.expressions.calculus import Algebra, derivative
 from ravemj.model.expressions.functions import FUNCTIONS, nth
-from ravemj.model.expressions.nodes import Call, Graph, Node, Number, Variable, ordered, steps
+from ravemj.model.expressions.nodes import Call, Graph, Node, Number, Variable, contents, ordered, steps
 from ravemj.model.expressions.parser import parse_nodes
 from ravemj.model.expressions.polynomials import Affine, affine, coefficients
 from ravemj.model.expressions.writer import text_of
@@ -19,15 +20,16 @@ Compiled = Callable[[Sequence[float]], float]
 MOST_NESTED = 40
 
 _MOST_NODES = 20_000
-"""Of an equation with all its values: more than any robot needs, and few enough for hostile text."""
+"""Maximum number of nodes of an equation with all its values: more than any robot needs, few enough for malicious text.
+"""
 
 
 def parse(text: str, variables: Collection[str]) -> "Expression":
-    """Read an equation in fparser's syntax.
+    """Parse an equation in fparser's syntax.
 
     Args:
-        text: The equation; joint names were replaced before (see ``substitute``).
-        variables: The names that have a value. Any other name that is not a function is an error.
+        text: The equation, with joint names replaced (see ``substitute``).
+        variables: The names of variables. Any other name that is not a function is an error.
 
     Raises:
         ExpressionError: If the text is not an equation of these variables, or too long or too deeply nested.
@@ -37,10 +39,10 @@ def parse(text: str, variables: Collection[str]) -> "Expression":
 
 @dataclass(frozen=True, eq=False)
 class Expression:
-    """A function of named variables that never raises: where it has no value, it gives nan.
+    """Function of named variables; undefined values are nan, never exceptions.
 
-    Some functions have several values, as ``polyroots2`` has two. ``within`` gives the expression that has the first
-    one within limits; everything else takes the first.
+    Some functions have several values, for instance the two of ``polyroots2``. ``within`` gives the expression with the
+    first value within limits; all other methods use the first value.
 
     Attributes:
         root: The last of the nodes.
@@ -50,7 +52,7 @@ class Expression:
 
     @cached_property
     def nodes(self) -> list[Node]:
-        """All nodes, each once and after its arguments."""
+        """All nodes in topological order."""
         return ordered(self.root)
 
     @cached_property
@@ -64,8 +66,22 @@ class Expression:
 
     @cached_property
     def affine(self) -> Affine | None:
-        """A constant plus multiples of the variables, if the expression is that, else None."""
+        """A constant plus multiples of the variables, if the expression is affine, else None."""
         return affine(self.nodes)
+
+    @cached_property
+    def _content(self) -> tuple[object, ...]:
+        """Nodes with the indices of their arguments, for comparison by value."""
+        return contents(self.nodes)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Expression) and (self.root is other.root or self._content == other._content)
+
+    def __hash__(self) -> int:
+        return hash(self._content)
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Node]]:
+        return type(self), (self.root,)  # without the closures
 
     def __str__(self) -> str:
         return text_of(self.nodes)
@@ -75,7 +91,7 @@ class Expression:
         return f"Expression({text if len(text) <= 80 else text[:77] + '...'!r})"
 
     def evaluate(self, values: Mapping[str, float] | Sequence[float]) -> float:
-        """Return the value, of several the first; variables are given by name, or in the order of ``variables``."""
+        """Return the (first) value; variables are given by name, or in the order of ``variables``."""
         if isinstance(values, Mapping):
             values = [values[name] for name in self.variables]
         return self._evaluate(values)
@@ -83,8 +99,8 @@ class Expression:
     def compiled(self, order: Sequence[str] | None = None) -> Compiled:
         """Return a fast form of ``evaluate``: a function of a list, tuple or one-dimensional array.
 
-        It is made of nested closures: nothing is looked up at evaluation but the values. They come in the given order,
-        which may have more variables than occur; by default in that of ``variables``.
+        It consists of nested closures without look-ups. Values are in the given order, which may include unused
+        variables; by default in that of ``variables``.
         """
         names = self.variables if order is None else tuple(order)
         places: dict[Node, int] = {node: names.index(node.name) for node in self.nodes if isinstance(node, Variable)}
@@ -107,7 +123,7 @@ class Expression:
     def evaluate_many(self, values: Mapping[str, Floats]) -> Floats:
         """Return the values for many configurations at once, an array of the common shape.
 
-        The arrays, by the names of variables, have shapes that broadcast, most often all (N,).
+        The arrays, by variable name, must broadcast; mostly all have shape (N,).
         """
         shape = np.broadcast_shapes(*(np.shape(array) for array in values.values()))
         found: dict[Node, Floats] = {}
@@ -125,13 +141,13 @@ class Expression:
     def derivative(self, variable: str) -> "Expression":
         """Return the partial derivative with respect to a variable.
 
-        Corners and jumps of ``abs``, ``min``, ``if``, ``floor`` and the like are passed over: the derivative is that
-        of the piece on which the point lies.
+        Corners and jumps of ``abs``, ``min``, ``if``, ``floor`` and so on are ignored: the derivative is that of the
+        piece at the point.
         """
         return Expression(derivative(self.nodes, variable))
 
     def with_values(self, values: Mapping[str, float]) -> "Expression":
-        """Return the expression with numbers in place of some variables."""
+        """Return the expression with numbers substituted for some variables."""
         replaced: dict[Node, Node] = {}
         for node in self.nodes:
             match node:
@@ -144,23 +160,23 @@ class Expression:
         return Expression(replaced[self.root])
 
     def within(self, lower: float, upper: float) -> "Expression":
-        """Return the expression that has the first value within limits, else the first, for the caller to clamp.
+        """Return the expression that selects the first value within limits, else the first, which the caller clamps.
 
-        Of an equation that is enormous with all its values only the first one counts.
+        If the equation with all its values is too large, only the first value is considered.
         """
         found = _first_within(self.nodes, lower, upper)
         return self if found is self.root else Expression(found)
 
     def polynomial(self, variable: str, max_degree: int = 4) -> tuple[float, ...] | None:
-        """Return the coefficients, in ascending order, if this is a polynomial in one variable alone, else None.
+        """Return the coefficients, in ascending order, of a polynomial in a single variable, else None.
 
-        There is one more than the degree, which is ``max_degree`` at most; the last is not 0 unless it is the only one.
+        The degree is at most ``max_degree``; the last coefficient is not 0 unless it is the only one.
         """
         return coefficients(self.nodes, variable, max_degree)
 
 
 def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
-    """Return a function that evaluates ``node`` from the values of the nodes that have places."""
+    """Return a function that evaluates ``node`` from the values of nodes with indices."""
     if node in places:
         place = places[node]
         return lambda values: float(values[place])
@@ -180,9 +196,9 @@ def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
 
 
 def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
-    """Return a node for the first value of an equation within limits, else for its first value, as ``within`` says.
+    """Return a node for the first value of an equation within limits, else for its first value; see ``within``.
 
-    A root that the equation uses twice is the same root in both places.
+    A root used twice has the same value in both uses.
     """
     several = [node for node in nodes if isinstance(node, Call) and FUNCTIONS[node.function].most_roots > 1]
     choices = list(product(*(range(FUNCTIONS[node.function].most_roots) for node in several)))
@@ -199,7 +215,7 @@ def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
 
 
 def _chosen(nodes: list[Node], choice: dict[Node, int], algebra: Algebra) -> Node:
-    """Return the equation with one value of each function that has several."""
+    """Return the equation with one value chosen for each multivalued function."""
     found: dict[Node, Node] = {}
     for node in nodes:
         found[node] = node

@@ -1,8 +1,8 @@
-"""OpenRAVE's functions that can have several values: roots of polynomials, and triangles for linkages.
+"""OpenRAVE's multivalued functions: roots of polynomials, and triangle functions for linkages.
 
-The values of each come best first; where there is none the tuple is empty. In the names of the triangle functions
-S is a side and A an angle, in the order in which one meets them on a walk around the triangle; the last letter is
-what the function finds. Only their names are known for certain; arguments and order follow from the geometry.
+Their values are sorted best first; the tuple is empty if there is none. In the names of the triangle functions, S is a
+side and A an angle, in the order around the triangle; the last letter is the result. Only their names are known for
+certain; arguments and order follow from the geometry.
 """
 
 import functools
@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
 
-IMAGINARY_NOISE = 1e-6  # double roots come back with a small imaginary part
+IMAGINARY_NOISE = 1e-6  # imaginary part of double roots due to rounding
 
 
-@functools.lru_cache(maxsize=4096)  # each root is asked for by itself
+@functools.lru_cache(maxsize=4096)  # each root is requested separately
 def real_roots(*coefficients: float) -> tuple[float, ...]:
     """Return the real roots of a polynomial in ascending order.
 
@@ -32,14 +32,14 @@ def real_roots(*coefficients: float) -> tuple[float, ...]:
         try:
             roots = np.roots(coefficients)
         except np.linalg.LinAlgError:
-            return ()  # the leading coefficient is too small beside the others
+            return ()  # the leading coefficient is relatively too small
         is_real = np.abs(roots.imag) <= IMAGINARY_NOISE * np.maximum(1.0, np.abs(roots))
         found = _polished(np.array(coefficients), roots.real[is_real])
     return tuple(sorted(found))
 
 
 def _polished(coefficients: np.ndarray[tuple[int], np.dtype[np.float64]], roots: object) -> list[float]:
-    """Improve roots by two of Newton's steps, which repairs what the eigenvalues behind ``np.roots`` lost."""
+    """Refine roots by two Newton steps, since the eigenvalues in ``np.roots`` are less accurate."""
     slope = np.polyder(coefficients)
     found: list[float] = []
     for root in np.asarray(roots, dtype=np.float64).tolist():
@@ -51,10 +51,11 @@ def _polished(coefficients: np.ndarray[tuple[int], np.dtype[np.float64]], roots:
     return found
 
 
-def enclosed_angle(a: float, b: float, c: float) -> tuple[float, ...]:
-    """Return the angle between the sides a and b, opposite to c, turned both ways [rad] (``SSSA``)."""
+def opposite_angle(a: float, b: float, c: float) -> tuple[float, ...]:
+    """Return the angle opposite to side a, between the sides b and c, with both signs [rad] (``SSSA``)."""
     try:
-        angle = math.acos((a * a + b * b - c * c) / (2 * a * b))
+        foot = (a * a + b * b - c * c) / (2 * b)  # the projection of a on b
+        angle = math.atan2(math.sqrt((a - foot) * (a + foot)), b - foot)
     except (ValueError, ZeroDivisionError):
         return ()
     return () if math.isnan(angle) else (angle, -angle)
@@ -75,7 +76,7 @@ def third_side(a: float, gamma: float, b: float) -> tuple[float, ...]:
     return () if math.isnan(square) else (math.sqrt(max(square, 0.0)),)
 
 
-EPSILON = 1e-12  # of comparisons; fparser's default for doubles
+EPSILON = 1e-12  # tolerance of comparisons; fparser's default for doubles
 NAN, INFINITY = math.nan, math.inf
 Bools = NDArray[np.bool_]
 Scalar = Callable[..., float]
@@ -85,14 +86,14 @@ Roots = Callable[..., tuple[float, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """One function or operator.
+    """Function or operator.
 
     Attributes:
         arity: Number of arguments.
         scalar: From floats to a float.
         array: From arrays of one shape to an array of that shape; may warn, so call it within ``np.errstate``.
-        roots: For functions with several values: from floats to all of them, best first. Else None.
-        most_roots: How many values there can be.
+        roots: For multivalued functions, from floats to all values, best first; else None.
+        most_roots: Maximum number of values.
     """
 
     arity: int
@@ -103,7 +104,7 @@ class Function:
 
 
 def _total(function: Callable[[float], float]) -> Callable[[float], float]:
-    """Make a function of Python's ``math`` return nan or infinity where it raises."""
+    """Wrap a function of ``math`` to return nan or infinity instead of raising an exception."""
 
     def guarded(x: float) -> float:
         try:
@@ -117,7 +118,7 @@ def _total(function: Callable[[float], float]) -> Callable[[float], float]:
 
 
 def _rounding(function: Callable[[float], float]) -> Callable[[float], float]:
-    """Make a rounding function return what cannot be rounded: infinity and nan."""
+    """Wrap a rounding function to return infinity and nan unchanged."""
 
     def rounded(x: float) -> float:
         return float(function(x)) if math.isfinite(x) else x
@@ -157,7 +158,7 @@ def _power_arrays(x: Floats, y: Floats) -> Floats:
 
 
 def _nearest(x: float) -> float:
-    return math.copysign(math.floor(abs(x) + 0.5), x)  # halves go away from zero
+    return math.copysign(math.floor(abs(x) + 0.5), x)  # halves are rounded away from zero
 
 
 def _nearest_arrays(x: Floats) -> Floats:
@@ -190,12 +191,12 @@ def _binary(scalar: Callable[[float, float], float], array: Callable[[Floats, Fl
 
 
 def _test(scalar: Callable[[float, float], bool], array: Callable[[Floats, Floats], Bools]) -> Function:
-    """Build an operator whose result is 1 or 0."""
+    """Make an operator whose result is 1 or 0."""
     return _binary(lambda x, y: 1.0 if scalar(x, y) else 0.0, lambda x, y: array(x, y).astype(np.float64))
 
 
 def _inverse(scalar: Callable[[float], float], array: Callable[[Floats], Floats]) -> Function:
-    """Build one over a function."""
+    """Make the reciprocal of a function."""
     return _unary(lambda x: _divide(1.0, scalar(x)), lambda x: _divide_arrays(np.ones_like(x), array(x)))
 
 
@@ -212,12 +213,12 @@ def _if_arrays(condition: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _several(arity: int, roots: Roots, most_roots: int) -> Function:
-    """Build a function with several values, of which the scalar and the array form take the first."""
+    """Make a multivalued function, whose scalar and array forms return the first value."""
     return replace(_root(arity, roots, 0), roots=roots, most_roots=most_roots)
 
 
 def _root(arity: int, roots: Roots, index: int) -> Function:
-    """Build a function that has one of several values, or nan where there are fewer."""
+    """Make a function that returns one of several values, or nan if there are fewer."""
 
     def root(*arguments: float) -> float:
         values = roots(*arguments)
@@ -227,7 +228,7 @@ def _root(arity: int, roots: Roots, index: int) -> Function:
 
 
 def nth(function: str, index: int) -> str:
-    """Return the name of the function that has one of the values of a function with several; no text can have it."""
+    """Return the internal name of the function for one value of a multivalued function."""
     return f"{function}#{index}"
 
 
@@ -285,7 +286,7 @@ NAMED: dict[str, Function] = {
     "tan": _unary(_tan, np.tan),
     "tanh": _unary(math.tanh, np.tanh),
     "trunc": _unary(_rounding(int), np.trunc),
-    "SSSA": _several(3, enclosed_angle, 2),
+    "SSSA": _several(3, opposite_angle, 2),
     "SASA": _several(3, next_angle, 1),
     "SASS": _several(3, third_side, 1),
 } | {f"polyroots{degree}": _several(degree + 1, real_roots, degree) for degree in range(2, 9)}

@@ -1,6 +1,6 @@
-"""Nodes of expressions, the graph in which they are evaluated, and the error of a wrong one."""
+"""Nodes of expressions, their evaluation graph, and expression errors."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from ravemj.errors import ArgumentError
@@ -10,12 +10,12 @@ EXCERPT = 20
 
 
 class ExpressionError(ArgumentError):
-    """An equation that cannot be read; one line that names the place.
+    """Invalid equation; a one-line message with the position.
 
     Attributes:
         problem: The error, without the place.
-        position: Index of the character in the text, from 0; where the text ends too early, its length.
-        expected: What could have stood there; may be empty.
+        position: Index of the character in the text, from 0; its length if the text ends too early.
+        expected: The expected text; may be empty.
     """
 
     def __init__(self, problem: str, text: str, position: int, expected: str = "") -> None:
@@ -37,14 +37,14 @@ class Number:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Variable:
-    """A value that is given at evaluation."""
+    """Value given at evaluation."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Call:
-    """A function or operator and what it is applied to.
+    """Function or operator with its arguments.
 
     Attributes:
         function: Key in ``FUNCTIONS``.
@@ -59,7 +59,7 @@ Node = Number | Variable | Call
 
 
 class Graph:
-    """A factory of nodes: it makes no two alike (hash consing), and folds constants."""
+    """Factory of nodes with hash consing and constant folding."""
 
     def __init__(self, nodes: Iterable[Node] = ()) -> None:
         """Start with the nodes of an expression, each after its arguments."""
@@ -74,7 +74,7 @@ class Graph:
         return self._only(Variable(name))
 
     def call(self, function: str, *arguments: Node) -> Node:
-        """Return the call, or the number that it comes to if its arguments are numbers."""
+        """Return a call, or its value if all arguments are numbers."""
         definition = FUNCTIONS[function]
         if definition.roots is None:
             numbers = [node.value for node in arguments if isinstance(node, Number)]
@@ -87,18 +87,29 @@ class Graph:
 
 
 def _key(node: Node) -> tuple[object, ...]:
-    """Return what makes two nodes alike, given that their arguments are the same objects."""
+    """Return a key that is equal for equal nodes, given that their arguments are the same objects."""
     match node:
         case Number(value):
-            return (Number, repr(value))  # tells -0.0 from 0.0 and takes every nan for the same
+            return (Number, repr(value))  # distinguishes -0.0 from 0.0, and treats all nan as equal
         case Variable(name):
             return (Variable, name)
         case Call(function, arguments):
             return (function, *map(id, arguments))
 
 
+def contents(nodes: Sequence[Node]) -> tuple[object, ...]:
+    """Return a key that is equal for equal expressions: for each node its key and the indices of its arguments."""
+    places: dict[Node, int] = {}
+    found: list[object] = []
+    for node in nodes:
+        places[node] = len(found)
+        is_call = isinstance(node, Call)
+        found.append((node.function, *(places[one] for one in node.arguments)) if is_call else _key(node))
+    return tuple(found)
+
+
 def ordered(root: Node) -> list[Node]:
-    """Return the nodes of an expression in topological order: each once and after its arguments."""
+    """Return the nodes of an expression in topological order, each once."""
     found: list[Node] = []
     seen: set[Node] = set()
     waiting: list[tuple[Node, bool]] = [(root, False)]
@@ -115,10 +126,10 @@ def ordered(root: Node) -> list[Node]:
 
 
 def steps(nodes: list[Node], most_nested: int) -> list[Node]:
-    """Choose the calls to evaluate one after the other, so that no node is evaluated twice; the last is the root.
+    """Choose the calls to evaluate in sequence, so that no node is evaluated twice; the last is the root.
 
-    The steps are the calls with several users, and every so often one within deep nesting. What lies between two steps
-    is a tree of at most ``most_nested`` levels, so that recursion is safe. ``nodes`` is the result of ``ordered``.
+    The steps are calls with several users, and some within deep nesting. Trees between steps have at most
+    ``most_nested`` levels, so that recursion is safe. ``nodes`` is the result of ``ordered``.
     """
     users = dict.fromkeys(nodes, 0)
     for node in nodes:

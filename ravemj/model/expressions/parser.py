@@ -46,7 +46,7 @@ _OPERAND = "a number, a joint, a function or '('"
 
 
 class Token(NamedTuple):
-    """A piece of the text; at the end its text is empty."""
+    """Token of the text; empty at the end."""
 
     kind: str
     text: str
@@ -54,12 +54,12 @@ class Token(NamedTuple):
 
 
 def parse_nodes(text: str, variables: Collection[str]) -> Node:
-    """Read an equation of some variables; return the root of its nodes. Errors are those of ``expression.parse``."""
+    """Parse an equation of some variables; return the root node. Errors are those of ``expression.parse``."""
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"the equation has {len(text)} characters, more than {MAX_LENGTH}", text, MAX_LENGTH)
     try:
-        root = _Parser(text, variables).equation()
-    except RecursionError:  # the caller is itself deep in its stack
+        root = _EquationParser(text, variables).equation()
+    except RecursionError:  # the caller's stack may be deep
         raise ExpressionError("the equation is nested too deep", text, 0) from None
     candidates = 1
     for node in ordered(root):
@@ -69,8 +69,8 @@ def parse_nodes(text: str, variables: Collection[str]) -> Node:
     return root
 
 
-class _Parser:
-    """One reading of one text, by recursive descent."""
+class _EquationParser:
+    """Recursive-descent parser of one text."""
 
     def __init__(self, text: str, variables: Collection[str]) -> None:
         self._text = text
@@ -82,7 +82,7 @@ class _Parser:
         self._index = 0
 
     def equation(self) -> Node:
-        """Read inline variables and the expression after them."""
+        """Parse inline variables and the expression after them."""
         while self._is_definition():
             self._define()
         root = self._expression(1)
@@ -103,7 +103,7 @@ class _Parser:
         self._inline[name.text] = value
 
     def _expression(self, lowest: int) -> Node:
-        """Read operands and the operators between them that bind at least as tightly as ``lowest``."""
+        """Parse operands and operators between them with at least the precedence ``lowest``."""
         left = self._operand()
         while True:
             precedence, function = _BINARY.get(self._next.text, (0, ""))
@@ -113,7 +113,7 @@ class _Parser:
             left = self._graph.call(function, left, self._expression(precedence + 1))
 
     def _operand(self) -> Node:
-        """Read an element, its power and the unary operators before them."""
+        """Parse an element, its power and the unary operators before them."""
         signs: list[str] = []
         while self._next.text in _UNARY:
             signs.append(_UNARY[self._next.text])
@@ -149,7 +149,6 @@ class _Parser:
         raise ExpressionError(f"unknown name {_short(token.text)}", self._text, token.position, _OPERAND)
 
     def _arguments(self, arity: int, owner: str) -> list[Node]:
-        """Read what stands in parentheses."""
         self._take("(")
         self._descend()
         found = [self._expression(1)]
@@ -184,7 +183,7 @@ class _Parser:
 
 
 def _tokens(text: str) -> list[Token]:
-    """Cut the text into pieces; the last one is the end."""
+    """Split the text into tokens; the last one marks the end."""
     found: list[Token] = []
     position = 0
     while not found or found[-1].kind != "end":

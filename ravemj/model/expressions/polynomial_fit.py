@@ -1,4 +1,4 @@
-"""Polynomials fitted to an expression in one variable, for MuJoCo's ``<joint polycoef>``."""
+"""Polynomial approximation of an expression in one variable, for MuJoCo's ``<joint polycoef>``."""
 
 import math
 
@@ -15,12 +15,11 @@ def fit_polynomial(
 ) -> tuple[Coefficients, float]:
     """Approximate an expression in one variable by a polynomial, from ``lower`` to ``upper``.
 
-    The fit is by least squares at Chebyshev points, which lie closer together towards the limits; that keeps the
-    largest error near the smallest possible.
+    The fit is by least squares at Chebyshev points, which nearly minimizes the largest error.
 
     Returns:
         ``degree + 1`` coefficients in ascending order, and the largest error at evenly spaced points of the range;
-        infinite if the expression has no value at some of them.
+        infinite if the expression is undefined at some of them.
 
     Raises:
         ValueError: If there are other variables, or the range is not finite.
@@ -38,7 +37,7 @@ def fit_polynomial(
         fitted = np.array([constant] + [0.0] * degree)
     else:
         basis = np.polynomial.Chebyshev.fit(points[usable], values[usable], degree, domain=[lower, upper])
-        found = basis.convert(kind=np.polynomial.Polynomial).coef  # without zeros at its end
+        found = basis.convert(kind=np.polynomial.Polynomial).coef  # trailing zeros are omitted
         fitted = np.pad(found, (0, degree + 1 - len(found)))
     checks = np.linspace(lower, upper, CHECK_POINTS)
     errors = np.abs(np.polynomial.polynomial.polyval(checks, fitted) - expression.evaluate_many({variable: checks}))

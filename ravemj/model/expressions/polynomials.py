@@ -7,13 +7,13 @@ from typing import NamedTuple
 from ravemj.model.expressions.functions import FUNCTIONS
 from ravemj.model.expressions.nodes import Call, Node, Number, Variable
 
-MAX_INNER_DEGREE = 16  # of intermediate results: terms of higher degree may cancel
-MAX_PRODUCTS = 1000  # of terms in one multiplication, against hostile text
+MAX_INNER_DEGREE = 16  # maximum degree of intermediate results: terms of higher degree may cancel
+MAX_PRODUCTS = 1000  # maximum number of terms in one multiplication, against malicious text
 
 Coefficients = tuple[float, ...]  # ascending
 
 _Polynomial = dict[tuple[str, ...], float]
-"""The coefficient, not 0, of each product of variables: that of x^2 y is at ("x", "x", "y"), the constant at ()."""
+"""Nonzero coefficients by product of variables: that of x^2 y is at ("x", "x", "y"), the constant at ()."""
 
 
 def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficients | None:
@@ -26,11 +26,11 @@ def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficie
 
 
 class Affine(NamedTuple):
-    """A constant plus multiples of variables.
+    """Constant plus multiples of variables.
 
     Attributes:
         offset: The constant.
-        slopes: What each variable is multiplied by.
+        slopes: Factor of each variable.
     """
 
     offset: float
@@ -38,7 +38,7 @@ class Affine(NamedTuple):
 
 
 def affine(nodes: list[Node]) -> Affine | None:
-    """Return the last of ``nodes`` as a constant plus multiples of variables, or None if it is something else."""
+    """Return the last of ``nodes`` as a constant plus multiples of variables, or None if it is not affine."""
     terms = _polynomial(nodes)
     if terms is None or any(len(variables) > 1 for variables in terms):
         return None
@@ -46,7 +46,7 @@ def affine(nodes: list[Node]) -> Affine | None:
 
 
 def _polynomial(nodes: list[Node]) -> _Polynomial | None:
-    """Return the last of ``nodes`` as a polynomial, or None if it is not written as one."""
+    """Return the last of ``nodes`` as a polynomial, or None if it is not one syntactically."""
     found: dict[Node, _Polynomial | None] = {}
     for node in nodes:
         match node:
@@ -57,7 +57,7 @@ def _polynomial(nodes: list[Node]) -> _Polynomial | None:
             case Call(function, arguments):
                 known = [one for one in map(found.__getitem__, arguments) if one is not None]
                 terms = _combined(function, known) if len(known) == len(arguments) else None
-        if terms is not None and all(map(math.isfinite, terms.values())):  # else 0 times them may be no 0
+        if terms is not None and all(map(math.isfinite, terms.values())):  # otherwise 0 times them may be nan
             found[node] = {variables: factor for variables, factor in terms.items() if factor}
         else:
             found[node] = None
@@ -65,7 +65,7 @@ def _polynomial(nodes: list[Node]) -> _Polynomial | None:
 
 
 def _combined(function: str, known: list[_Polynomial]) -> _Polynomial | None:
-    """Return the polynomial that a function makes of polynomials, or None."""
+    """Return the polynomial that results from a function of polynomials, or None."""
     definition = FUNCTIONS[function]
     if all(terms.keys() <= {()} for terms in known) and definition.roots is None:
         return {(): definition.scalar(*(terms.get((), 0.0) for terms in known))}

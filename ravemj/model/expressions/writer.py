@@ -1,4 +1,4 @@
-"""The text of expressions, with no more parentheses than needed."""
+"""Text form of expressions, with a minimum of parentheses."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ _OPERATORS = operators()
 
 
 def text_of(nodes: list[Node]) -> str:
-    """Return text that reads as the same nodes; what is used twice becomes an inline variable."""
+    """Return text that parses to the same nodes; shared nodes become inline variables."""
     names = {node.name for node in nodes if isinstance(node, Variable)} | set(NAMED)
     prefix = "t"
     while any(name.startswith(prefix) for name in names if name not in NAMED):

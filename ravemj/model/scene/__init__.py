@@ -1,4 +1,4 @@
-"""The scene: frozen dataclasses with what OpenRAVE has in memory after loading, without XML and without MuJoCo.
+"""The scene: frozen dataclasses with OpenRAVE's in-memory content after loading, independent of XML and MuJoCo.
 
 Readers make a ``Scene`` (through ``ravemj.model.builder``), writers and the runtime read it. Lengths are metres,
 angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.

@@ -11,20 +11,21 @@ from ravemj.model.scene.sensors import SENSOR_COLOR, Device, Intrinsics, sensor_
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Manipulator(Record):
-    """An arm of a robot.
+    """Arm of a robot.
 
     Attributes:
         name: Its name.
-        base: Index of the link that it starts from, or None.
+        base: Index of the base link, or None.
         effector: Index of the link that carries the tool, or None.
         T_effector_tool: Pose of the tool in the effector.
-        direction: Unit vector that the tool points along, in its own frame.
+        direction: Direction of the tool, a unit vector in its own frame.
         arm_dofs: DOFs of the joints from base to effector.
         gripper_joints: Indices of the active joints of the gripper.
         gripper_dofs: Their DOFs.
-        chucking_direction: For each of these DOFs the sign of closing: 1, 0 or -1.
+        chucking_direction: Closing sign of each of these DOFs: 1, 0 or -1.
         source: The element that it comes from.
         gripper_name: Name of what describes the gripper; empty where nobody says.
+        ik_solver: Name of the solver of inverse kinematics that the file asks for, and numbers for it; else empty.
     """
 
     name: str
@@ -38,18 +39,19 @@ class Manipulator(Record):
     chucking_direction: tuple[float, ...]
     source: Source
     gripper_name: str = ""
+    ik_solver: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class AttachedSensor(Record):
-    """A sensor on a link.
+    """Sensor on a link.
 
     Attributes:
         name: Its name.
         link: Index of the link that carries it, or None.
         T_link_sensor: Its pose in the link.
         type: OpenRAVE's name of the kind of sensor, or None for a frame without a device.
-        device: What is fixed about it; None for a frame, and where the kind is not known.
+        device: Its constant properties; None for a frame or an unknown type.
         source: The element that it comes from.
         is_on: Whether it measures from the start.
         color: Colour in which viewers draw it.
@@ -66,11 +68,11 @@ class AttachedSensor(Record):
 
     @property
     def camera(self) -> Intrinsics | None:
-        """The camera that it is, or None."""
+        """Camera parameters if the sensor is a camera, else None."""
         return self.device if isinstance(self.device, Intrinsics) else None
 
     def problem(self) -> str | None:
-        """Return why it cannot measure with what is said about its device, or None; nothing may be said."""
+        """Return the reason why the device's properties do not allow measurements, or None."""
         kind = sensor_kind(self.type or "")
         if kind is None or self.device is None or self.device == kind.device:
             return None
@@ -79,13 +81,13 @@ class AttachedSensor(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Grab(Record):
-    """A body that a link of another one holds.
+    """Grabbed body.
 
     Attributes:
-        body: Name of the held body, which stands in the same scene.
-        link: Index of the link that holds it.
+        body: Name of the grabbed body in the same scene.
+        link: Index of the grabbing link.
         T_link_body: Its pose in the link.
-        ignored: Indices of the holder's links that it does not collide with.
+        ignored: Indices of the holder's links whose collisions with it are ignored.
     """
 
     body: str
@@ -96,11 +98,11 @@ class Grab(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class NamedConfiguration(Record):
-    """A configuration to which a file gives a name.
+    """Named configuration from a file.
 
     Attributes:
         name: Its name.
-        values: Values by the names of joints [rad or m]; joints that it does not name stay where they are.
+        values: Values by the names of joints [rad or m]; other joints do not change.
     """
 
     name: str
@@ -109,7 +111,7 @@ class NamedConfiguration(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class KinBody(Record):
-    """A body: links and the joints between them.
+    """Body: links connected by joints.
 
     Attributes:
         name: Its name, unique in an environment.
@@ -124,6 +126,7 @@ class KinBody(Record):
         sensors: Sensors on links.
         grabs: The bodies that it holds after loading.
         description: A text for people.
+        element: Id of the body in a COLLADA file that has several; else empty.
         configurations: Named configurations: the group states of an SRDF.
         source: The element that it comes from.
     """
@@ -140,17 +143,18 @@ class KinBody(Record):
     sensors: tuple[AttachedSensor, ...] = ()
     grabs: tuple[Grab, ...] = ()
     description: str = ""
+    element: str = ""
     configurations: tuple[NamedConfiguration, ...] = ()
     source: Source
 
     @property
     def all_joints(self) -> tuple[Joint, ...]:
-        """The active joints in DOF order, then the passive ones; joints are counted in this order."""
+        """Active joints in DOF order, then passive ones: the order of joint indices."""
         return (*self.joints, *self.passive_joints)
 
     @property
     def referenced_links(self) -> set[int]:
-        """The indices of the links that joints, pairs of adjacent links, manipulators, sensors or grabs refer to."""
+        """Indices of the links referred to by joints, adjacent pairs, manipulators, sensors or grabs."""
         links = {link for joint in self.all_joints for link in (joint.parent, joint.child)}
         links |= {link for pair in self.adjacent for link in pair}
         links |= {link for one in self.manipulators for link in (one.base, one.effector) if link is not None}

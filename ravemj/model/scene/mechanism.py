@@ -22,10 +22,10 @@ AXES: dict[JointKind, str] = {
     "pr": "RP",
     "pp": "PP",
 }
-"""For each kind of joint its axes, the carrying one first: R turns, P slides; names have them the other way round."""
+"""Axes of each joint kind, the carrying one first: R revolute, P prismatic; the names are in reverse order."""
 
 OWN_SHAPES = "self"
-"""Name of the group of a link's own shapes, which is kept while another group replaces them."""
+"""Name of the group of a link's own shapes, stored while another group replaces them."""
 
 UNLIMITED = 10000.0
 """The limit [rad] that OpenRAVE reports for a circular joint."""
@@ -39,9 +39,9 @@ class Inertial(Record):
         mass: Mass [kg].
         com: Centre of mass in the link frame [m].
         inertia: Inertia tensor about the centre of mass, in axes parallel to the link's [kg m^2].
-        axes: Orientation in the link of the principal axes that a script chose; None: any that fit the tensor.
-        undefined: True where OpenRAVE finds no number (random-xml-132: a total over shapes without a volume). Who asks
-            for mass, centre or inertia is answered NaN; what is computed takes the finite values that stand here.
+        axes: Orientation of principal axes chosen by a script, in the link frame; None means any that fit the tensor.
+        undefined: Whether OpenRAVE's result is undefined (random-xml-132: a total mass over shapes without volume). API
+            getters then return NaN; computations use the finite values stored here.
     """
 
     mass: float
@@ -53,7 +53,7 @@ class Inertial(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Parameters(Record):
-    """Named values that scripts attach to a link or a joint."""
+    """Named values attached by scripts to a link or joint."""
 
     floats: tuple[tuple[str, tuple[float, ...]], ...] = ()
     integers: tuple[tuple[str, tuple[int, ...]], ...] = ()
@@ -65,7 +65,7 @@ NO_PARAMETERS = Parameters()
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Link(Record):
-    """A rigid part of a body.
+    """Rigid part of a body.
 
     Attributes:
         name: Its name.
@@ -73,10 +73,10 @@ class Link(Record):
         inertial: Its mass properties, as the file gives them.
         geometries: Its shapes, in document order.
         static: True for ``type="static"``.
-        enabled: False where collision checking leaves it out.
-        groups: Other sets of shapes that scripts can swap in, by name.
-        parameters: What scripts attach to it.
-        self_collision_ignored: True where it is not tested against other links of its body.
+        enabled: Whether it takes part in collision checks.
+        groups: Alternative sets of shapes by name.
+        parameters: Named values attached by scripts.
+        self_collision_ignored: Whether self-collision checks ignore it.
         source: The element that it comes from.
     """
 
@@ -94,7 +94,7 @@ class Link(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Axis(Record):
-    """One degree of freedom of a joint.
+    """Degree of freedom of a joint.
 
     Attributes:
         direction: Unit vector in the frame of the joint's parent link.
@@ -102,15 +102,15 @@ class Axis(Record):
         value: The value after loading.
         lower: Lower limit [rad or m].
         upper: Upper limit [rad or m].
-        circular: True for a joint that turns without end; its limits are ±``UNLIMITED``.
+        circular: Whether it rotates without limits, which are then ±``UNLIMITED``.
         weight: Weight in distances between configurations.
         resolution: Step of planners [rad or m].
         max_velocity: Velocity limit [rad/s or m/s].
         max_acceleration: Acceleration limit [rad/s^2 or m/s^2].
         max_jerk: Jerk limit [rad/s^3 or m/s^3].
-        max_torque: Torque or force limit [N m or N]; 0 where the file says nothing.
-        max_inertia: Limit of the inertia that it moves [kg m^2 or kg]; 0 where nobody says.
-        hard_max_velocity: Velocity that planners never exceed [rad/s or m/s]; 0 where nobody says.
+        max_torque: Torque or force limit [N m or N]; 0 if unknown.
+        max_inertia: Limit of the inertia that it moves [kg m^2 or kg]; 0 if unknown.
+        hard_max_velocity: Velocity that planners never exceed [rad/s or m/s]; 0 if unknown.
         hard_max_acceleration: Acceleration that they never exceed.
         hard_max_jerk: Jerk that they never exceed.
         armature: Inertia of a motor behind its gear [kg m^2].
@@ -149,20 +149,20 @@ RARE_NUMBERS = (
     "hard_max_jerk",
     "wrap_offset",
 )
-"""Fields of axes that few files have, and COLLADA not at all: attributes of our own there are called like them."""
+"""Fields of axes that few files have, and COLLADA lacks: names of ravemj's own attributes there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Mimic(Record):
-    """The equations of a mimic joint.
+    """Equations of a mimic joint.
 
     Attributes:
         position: The equation as written; it has the names of the joints.
         velocity: The partial derivatives as written.
         acceleration: The second derivatives as written.
-        expression: The equation over ``joint0``, ``joint1``, … (active joints, then passive ones); None where joints
-            follow each other in a circle, and none of them moves.
-        dofs: Indices of the DOFs that it depends on, directly or through other followers.
+        expression: The equation over ``joint0``, ``joint1``, … (active joints, then passive ones); None if mimic joints
+            depend on each other in a cycle, so that none moves.
+        dofs: Indices of the DOFs that it depends on, directly or through other mimic joints.
     """
 
     position: str
@@ -174,18 +174,19 @@ class Mimic(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Joint(Record):
-    """A joint between two links; a positive value moves the child right-handed about or along the axis.
+    """Joint between two links; a positive value moves the child right-handed about or along the axis.
 
     Attributes:
         name: Its name.
         kind: ``hinge``, ``slider``, ``spherical`` (a rotation vector in the parent's axes), or two axes, of which the
-            first carries the second: ``hinge2``, and those that slide, too: ``rp``, ``pr`` and ``pp``; see ``AXES``.
+            first carries the second: ``hinge2``, or with prismatic axes ``rp``, ``pr`` and ``pp``; see ``AXES``.
         parent: Index of the link nearer to link 0.
         child: Index of the link farther from link 0.
         T_parent_child: Relative pose of the two at ``Axis.reference``.
         anchor: A point on the axis, in the parent's frame.
         axes: Its degrees of freedom.
         places_child: False for a joint that closes a loop: another joint places its child.
+        keeps_moving: True if a script set limits that leave no room: as in OpenRAVE, only files make welds.
         mimic: How it follows other joints, or None.
         parameters: What scripts attach to it.
         source: The element that it comes from.
@@ -199,19 +200,20 @@ class Joint(Record):
     anchor: Vec3
     axes: tuple[Axis, ...]
     places_child: bool
+    keeps_moving: bool = False
     mimic: Mimic | None = None
     parameters: Parameters = NO_PARAMETERS
     source: Source
 
     def slides(self, axis: int = 0) -> bool:
-        """Tell whether an axis slides; else it turns."""
+        """Return whether an axis is prismatic, else revolute."""
         return AXES[self.kind][axis] == "P"
 
     @property
     def equation(self) -> "Expression | None":
-        """What the joint follows; of several values the equation has the first within the joint's limits.
+        """Mimic equation, whose value is the first within the joint's limits if there are several.
 
-        None for a joint that follows none, and for a weld.
+        None for welds and joints that are not mimic joints.
         """
         if self.mimic is None or self.mimic.expression is None or self.static:
             return None
@@ -221,10 +223,15 @@ class Joint(Record):
 
     @property
     def is_ball(self) -> bool:
-        """True for a spherical joint with three free values; one that follows others turns about x of its parent."""
+        """Whether it is a spherical joint with three free values; spherical mimic joints turn about the parent's x."""
         return self.kind == "spherical" and self.equation is None
 
     @property
     def static(self) -> bool:
-        """True for a weld: a joint whose limits leave no room."""
-        return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
+        """True for a weld: a joint whose limits left no room when its body was made."""
+        return not (self.has_room or self.keeps_moving)
+
+    @property
+    def has_room(self) -> bool:
+        """True if an axis can move within its limits."""
+        return any(axis.lower < axis.upper or axis.circular for axis in self.axes)

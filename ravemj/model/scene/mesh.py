@@ -12,7 +12,7 @@ from ravemj.core.transforms import Floats, Ints
 
 
 class Bounds(NamedTuple):
-    """An axis-aligned bounding box: the least and the greatest x, y and z [m], each of shape (3,)."""
+    """Axis-aligned bounding box: minimum and maximum of x, y and z [m], each of shape (3,)."""
 
     low: Floats
     high: Floats
@@ -20,13 +20,13 @@ class Bounds(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles; two meshes are equal if their numbers are.
+    """Triangle mesh; meshes compare by value.
 
     Attributes:
         vertices: Shape (n, 3) [m]; read-only.
         triangles: Indices of the corners of each triangle, counter-clockwise seen from outside, shape (m, 3);
             read-only.
-        known_digest: The ``digest`` where it was computed before, else empty: hashing a large mesh takes time.
+        known_digest: A cached ``digest``, else empty, since hashing a large mesh is slow.
     """
 
     vertices: Floats
@@ -53,11 +53,11 @@ class Mesh:
         return content.hexdigest()
 
     def moved(self, T_a_mesh: Floats) -> "Mesh":
-        """Return the mesh in frame a; the transform has shape (4, 4)."""
+        """Return the mesh transformed to frame a by a matrix of shape (4, 4)."""
         return Mesh(self.vertices @ T_a_mesh[:3, :3].T + T_a_mesh[:3, 3], self.triangles)
 
     def bounds(self, T_a_mesh: Floats) -> Bounds:
-        """Return the bounding box of the vertices in frame a; without any, the origin of the mesh's frame."""
+        """Return the bounding box of the vertices in frame a; without vertices, the origin of the mesh frame."""
         if not len(self.vertices):
             return Bounds(T_a_mesh[:3, 3], T_a_mesh[:3, 3])
         vertices = self.vertices @ T_a_mesh[:3, :3].T + T_a_mesh[:3, 3]
@@ -65,7 +65,7 @@ class Mesh:
 
     @staticmethod
     def merged(meshes: "Iterable[Mesh]") -> "Mesh":
-        """Return all triangles of some meshes as one mesh."""
+        """Concatenate meshes."""
         vertices, triangles = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int_)]
         count = 0
         for mesh in meshes:
@@ -82,7 +82,7 @@ class Mesh:
 
 
 def _is_settled(numbers: NDArray[Any], kind: type) -> bool:
-    """Return whether a mesh can keep an array without a copy: its form is right, its memory its own and read-only."""
+    """Return whether a mesh can use an array without a copy: correct type, own memory, read-only."""
     return (
         numbers.dtype == kind
         and numbers.shape[1:] == (3,)

@@ -1,6 +1,6 @@
-"""Sensors: what is fixed about each kind, and whether it can measure with that."""
+"""Sensors: constant properties of each type, and their validation."""
 
-# ruff: noqa: D102 - ``problem`` always returns why a sensor cannot measure, or None
+# ruff: noqa: D102 - ``problem`` always returns the reason why a sensor cannot measure, or None
 
 import math
 from collections.abc import Iterable, Mapping
@@ -12,20 +12,20 @@ from ravemj.core.transforms import ZERO, Vec3
 from ravemj.model.scene.record import Record
 
 MOST_RAYS = 1_000_000
-"""Rays of one measurement; more are a mistake in a unit."""
+"""Maximum number of rays per measurement; more indicate a wrong unit."""
 
 _WIDEST = 16_384
-"""Pixels along a side of a picture; OpenGL takes no more."""
+"""Maximum number of pixels along a side of an image; OpenGL's limit."""
 
 SENSOR_COLOR: Vec3 = (0.5, 0.5, 1.0)
-"""Colour of what viewers draw of a sensor, where nothing is said about it."""
+"""Default colour of a sensor in viewers."""
 
 NO_COVARIANCE = (0.0,) * 9
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Intrinsics(Record):
-    """A pinhole camera: u = fx x / z + cx, v = fy y / z + cy [pixels], z forward and y down."""
+    """Pinhole camera: u = fx x / z + cx, v = fy y / z + cy [pixels], z forward and y down."""
 
     fx: float = 0.0
     fy: float = 0.0
@@ -44,20 +44,20 @@ class Intrinsics(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Laser(Record):
-    """A laser that scans the x-y plane of its frame, angles counted from x towards y.
+    """Laser that scans the xy plane of its frame, with angles from x towards y.
 
     Attributes:
-        min_angle: Where a scan begins [rad].
-        max_angle: Where it ends at the latest [rad].
+        min_angle: First angle of a scan [rad].
+        max_angle: Maximum angle of a scan [rad].
         resolution: Step between rays [rad].
-        min_range: Distance at which a ray begins [m].
-        max_range: Distance at which it ends [m].
+        min_range: Start distance of a ray [m].
+        max_range: End distance of a ray [m].
         scan_time: Time between scans [s].
-        time_increment: Time between the rays of a real scanner [s]; here all of a scan are of one moment.
-        spins: Whether the plane turns as time passes.
-        spin_axis: Axis about which it does, of any length.
+        time_increment: Time between the rays of a real scanner [s]; here all rays of a scan have the same time.
+        spins: Whether the scan plane rotates.
+        spin_axis: Rotation axis, of any length.
         spin_position: A point on that axis [m].
-        spin_speed: How fast it turns [rad/s].
+        spin_speed: Rotation speed [rad/s].
     """
 
     min_angle: float = -math.pi / 2
@@ -93,7 +93,7 @@ class Laser(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class FlashLidar(Record):
-    """A camera that measures distances: a ray through each pixel (u, v), whole numbers from 0.
+    """Camera that measures distances: a ray through each integer pixel (u, v), from 0.
 
     Attributes:
         fx: Focal length along the columns [pixels].
@@ -102,8 +102,8 @@ class FlashLidar(Record):
         cy: Row of the principal point [pixels].
         width: Columns.
         height: Rows.
-        min_range: Distance at which a ray begins [m].
-        max_range: Distance at which it ends [m].
+        min_range: Start distance of a ray [m].
+        max_range: End distance of a ray [m].
         scan_time: Time between scans [s].
     """
 
@@ -128,11 +128,11 @@ class FlashLidar(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ForceTorque(Record):
-    """A sensor of forces and torques.
+    """Force-torque sensor.
 
     Attributes:
-        polarity: Sign of what it measures: 1 or -1.
-        correction: What multiplies force and torque, a matrix of 6 x 6 by rows; empty: nothing does.
+        polarity: Sign of the measurements: 1 or -1.
+        correction: Matrix that multiplies force and torque, 6 x 6 by rows; empty for none.
     """
 
     polarity: int = 1
@@ -148,7 +148,7 @@ class ForceTorque(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Imu(Record):
-    """An inertial measurement unit; covariances are matrices of 3 x 3 by rows, which are only handed on.
+    """Inertial measurement unit; covariances are 3 x 3 matrices by rows, which are only passed on.
 
     Attributes:
         scan_time: Time between measurements [s].
@@ -168,11 +168,11 @@ class Imu(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Odometry(Record):
-    """What tells where something is and how it moves.
+    """Odometry sensor.
 
     Attributes:
         scan_time: Time between measurements [s].
-        target: Name of the body that is followed; empty: the sensor itself.
+        target: Name of the tracked body; empty for the sensor itself.
     """
 
     scan_time: float = 0.0
@@ -184,10 +184,10 @@ class Odometry(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class JointEncoder(Record):
-    """What reads the values of a robot's joints.
+    """Joint encoder: measures the values of a robot's joints.
 
     Attributes:
-        resolution: Step of the encoders [rad or m]: one for each DOF, or one for all; 0 or nothing: exact.
+        resolution: Step of the encoders [rad or m]: one for each DOF, or one for all; 0 or empty means exact.
     """
 
     resolution: tuple[float, ...] = ()
@@ -200,7 +200,7 @@ class JointEncoder(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Tactile(Record):
-    """A skin on a link.
+    """Tactile skin on a link.
 
     Attributes:
         thickness: Its thickness [m].
@@ -217,11 +217,11 @@ Device = Intrinsics | Laser | FlashLidar | ForceTorque | Imu | Odometry | JointE
 
 
 class SensorKind(NamedTuple):
-    """A kind of sensor.
+    """Type of sensor.
 
     Attributes:
         name: OpenRAVE's name of it in XML.
-        device: It as it is where nothing is said about it.
+        device: The default properties.
     """
 
     name: str
@@ -231,7 +231,7 @@ class SensorKind(NamedTuple):
 _SPELLINGS: Mapping[str, str] = MappingProxyType(
     {"baselaser1d": "baselaser2d", "baseflashlaser": "baseflashlidar3d", "baseencoder": "basejointencoder"}
 )
-"""Names that only COLLADA has, without underscores."""
+"""Names that only COLLADA uses, without underscores."""
 
 SENSOR_KINDS: Mapping[str, SensorKind] = MappingProxyType(
     {
@@ -249,17 +249,17 @@ SENSOR_KINDS: Mapping[str, SensorKind] = MappingProxyType(
         )
     }
 )
-"""The kinds of sensors, by their names in lower case."""
+"""Sensor types by lower-case name."""
 
 
 def sensor_kind(name: str) -> SensorKind | None:
-    """Return the kind of sensor of a name, in OpenRAVE's or in COLLADA's spelling and any letter case, or None."""
+    """Return the sensor type of a name in OpenRAVE's or COLLADA's spelling and any letter case, or None."""
     plain = name.lower().replace("_", "").replace("pinhole", "")
     return SENSOR_KINDS.get(_SPELLINGS.get(plain, plain))
 
 
 def needs_link(device: Device) -> bool:
-    """Return whether a sensor measures what its link feels, and so measures nothing without a robot."""
+    """Return whether a sensor measures quantities of its link, and so requires a robot."""
     return not isinstance(device, Intrinsics | Laser | FlashLidar)
 
 

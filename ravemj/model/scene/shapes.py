@@ -1,10 +1,10 @@
-"""Shapes, and geometries: shapes with a pose and colours.
+"""Shapes, and geometries: shapes with pose and colours.
 
-A shape knows what it consists of. Everything else asks it, so a new type of geometry is a class here with its row in
-``SHAPE_TYPES``, and a member of the API's ``GeometryType``; getters of its own go to the API's ``Geometry``.
+All properties of a shape type are in its class. A new type is a class here with its row in ``SHAPE_TYPES``, and a
+member of the API's ``GeometryType``; its getters belong to the API's ``Geometry``.
 """
 
-# ruff: noqa: D102 - the base class says what the methods return
+# ruff: noqa: D102 - the docstrings are in the base class
 
 import functools
 import math
@@ -23,11 +23,11 @@ from ravemj.model.scene.tessellation import solid_mesh
 Rgb = tuple[float, float, float]
 
 CrossSection = tuple[tuple[float, float], ...]
-"""Corners x y of a polygon [m]; the last is joined to the first."""
+"""Vertices x y of a polygon [m]; the last is connected to the first."""
 
 
 class Solid(NamedTuple):
-    """A solid that MuJoCo has as a geom.
+    """Solid that is a geom type of MuJoCo.
 
     Attributes:
         kind: MuJoCo's type of geom: ``box``, ``sphere``, ``cylinder`` or ``capsule``.
@@ -41,7 +41,7 @@ class Solid(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """How far a shape reaches in any direction: as far as a box, a disk in the xy-plane and a ball together.
+    """Support function of a shape: Minkowski sum of a box, a disk in the xy plane and a ball.
 
     Attributes:
         box: Half the edge lengths of the box.
@@ -57,12 +57,12 @@ class Extent(NamedTuple):
 
 
 class Size(NamedTuple):
-    """A size of a shape.
+    """Size parameter of a shape.
 
     Attributes:
-        name: Its name; readers of files and the API use it as well.
+        name: The name; also used by file readers and the API.
         type: ``float``, ``Vec3``, ``CrossSection`` or ``Mesh``.
-        optional: Whether a shape can be made without it.
+        optional: Whether it may be omitted.
     """
 
     name: str
@@ -71,36 +71,36 @@ class Size(NamedTuple):
 
 
 class Shape(Record):
-    """The base class of shapes. By default a shape has no volume: it consists of nothing."""
+    """Base class of shapes. By default a shape has no volume."""
 
     __slots__ = ()
 
     @classmethod
     @functools.cache
     def sizes(cls) -> tuple[Size, ...]:
-        """Return the sizes that make the shape, in the order of its fields."""
-        own: Any = cls  # ``fields`` wants a dataclass, which every shape is
+        """Return the size parameters of the shape, in the order of its fields."""
+        own: Any = cls  # ``fields`` requires a dataclass, as every shape is
         return tuple(Size(field.name, field.type, field.default is not MISSING) for field in fields(own))
 
     @classmethod
     def of_sizes(cls, values: Mapping[str, Any]) -> Self:
-        """Return the shape with the sizes among some values; other values are passed over."""
+        """Return the shape with sizes from a mapping; other entries are ignored."""
         return cls(**{size.name: values[size.name] for size in cls.sizes() if size.name in values})
 
     def solids(self) -> list[Solid]:
-        """Return the solids that the shape consists of; none for one that only triangles can describe."""
+        """Return the solids that the shape consists of; empty for shapes described only by triangles."""
         return []
 
     def triangulated(self) -> Mesh:
         """Return the surface as triangles, counter-clockwise seen from outside, in the frame of the shape.
 
-        Round shapes have their vertices on the surface. Several solids keep the walls between them.
+        Round shapes have their vertices on the surface. Walls between several solids are kept.
         """
         solids = self.solids()
         return Mesh.merged(solid_mesh(kind, size).moved(Pose(centre).matrix()) for kind, size, centre in solids)
 
     def extent(self) -> Extent | None:
-        """Return how far the shape reaches; None if only its triangles say it."""
+        """Return the support function of the shape; None if only its triangles define it."""
         return None
 
     def bounds(self, T_a_shape: Floats) -> Bounds:
@@ -116,7 +116,7 @@ class Shape(Record):
     def mass_moments(self, density: float) -> tuple[float, Vec3]:
         """Return mass [kg] and principal moments of inertia about the origin of the shape's frame [kg m^2].
 
-        OpenRAVE's rules: it knows no mass of capsules, prisms and meshes, and takes it for 0.
+        As in OpenRAVE, capsules, prisms and meshes have no mass.
         """
         del density
         return 0.0, ZERO
@@ -124,7 +124,7 @@ class Shape(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Box(Shape):
-    """A box; ``half_extents`` are half its edge lengths."""
+    """Box with ``half_extents``."""
 
     half_extents: Vec3
 
@@ -142,7 +142,7 @@ class Box(Shape):
 
 @dataclass(frozen=True, slots=True)
 class CalibrationBoard(Box):
-    """A box with a pattern that cameras are calibrated by; the pattern is not kept."""
+    """Box with a pattern for camera calibration; the pattern is not stored."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -165,7 +165,7 @@ class Sphere(Shape):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Cylinder(Shape):
-    """A cylinder along z, centred; ``height`` is the full height."""
+    """Cylinder along z, centred; ``height`` is the full height."""
 
     radius: float
     height: float
@@ -184,7 +184,7 @@ class Cylinder(Shape):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Capsule(Shape):
-    """A capsule along z, centred; ``height`` is that of the cylindrical part."""
+    """Capsule along z, centred; ``height`` is that of the cylindrical part."""
 
     radius: float
     height: float
@@ -198,7 +198,7 @@ class Capsule(Shape):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Container(Shape):
-    """An open box that stands on the origin and opens along z; all sizes are full edge lengths.
+    """Open box that stands on the origin and opens along z; all sizes are full edge lengths.
 
     Attributes:
         outer_extents: Its outer size.
@@ -213,10 +213,10 @@ class Container(Shape):
     bottom: Vec3 = ZERO
 
     def solids(self) -> list[Solid]:
-        """Return floor, four walls, and what stands on the floor."""
+        """Return the floor, four walls, cross and plate."""
         outer, inner = self.outer_extents, self.inner_extents
         wall_x, wall_y, floor = ((o - i) / 2 for o, i in zip(outer, inner, strict=True))
-        floor *= 2  # there is no lid
+        floor *= 2  # no lid
         solids = [Solid("box", (outer[0] / 2, outer[1] / 2, floor / 2), (0.0, 0.0, floor / 2))]
         middle: Vec3 = (0.0, 0.0, outer[2] / 2)
         for sign in (-1.0, 1.0):
@@ -234,7 +234,7 @@ class Container(Shape):
         return Extent(half, centre=(0.0, 0.0, half[2]))
 
     def mass_moments(self, density: float) -> tuple[float, Vec3]:
-        """Return those of a solid box about the origin, as OpenRAVE does."""
+        """Return the moments of a solid box about the origin, as OpenRAVE does."""
         return Box(scale(self.outer_extents, 0.5)).mass_moments(density)
 
 
@@ -262,7 +262,7 @@ class Prism(Shape):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class TriMesh(Shape):
-    """Triangles; none where their file is missing."""
+    """Triangle mesh; empty if its file is missing."""
 
     mesh: Mesh
 
@@ -272,17 +272,17 @@ class TriMesh(Shape):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class NoShape(Shape):
-    """A geometry without a shape."""
+    """Geometry without a shape."""
 
 
 class ShapeType(NamedTuple):
-    """What OpenRAVE calls a shape.
+    """OpenRAVE's names of a shape type.
 
     Attributes:
         shape: The class.
         name: Its name in ``GeometryType``.
-        xml: The ``type`` of a ``<Geom>``; None where XML has none.
-        collada: Elements of a ``geometry_info`` in COLLADA; those of capsules, prisms and no shape are ours.
+        xml: The ``type`` of a ``<Geom>``; None if XML has none.
+        collada: Elements of a ``geometry_info`` in COLLADA; those of capsules, prisms and empty shapes are ravemj's.
     """
 
     shape: type[Shape]
@@ -307,7 +307,7 @@ SHAPE_TYPES = (
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Surface(Record):
-    """Triangles that are only drawn, in the frame of their geometry."""
+    """Visual triangles in the frame of their geometry."""
 
     mesh: Mesh
     diffuse: Rgb
@@ -315,7 +315,7 @@ class Surface(Record):
 
 
 class MeshFile(NamedTuple):
-    """A mesh file, and factors along x, y and z."""
+    """Mesh file with scale factors along x, y and z."""
 
     name: str
     scale: Vec3 = (1.0, 1.0, 1.0)
@@ -323,21 +323,21 @@ class MeshFile(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class Geometry(Record):
-    """A shape fixed to a link.
+    """Shape fixed to a link.
 
     Attributes:
         shape: Its kind and sizes.
         T_link_geometry: Its pose in the link.
         name: Its name; often empty.
         diffuse: Colour, each part from 0 to 1.
-        ambient: Colour in the shade, each part from 0 to 1.
+        ambient: Ambient colour, each component from 0 to 1.
         transparency: 0 is opaque, 1 invisible.
-        visible: False where it only collides.
+        visible: Whether it is drawn.
         modifiable: Whether planners may change it.
-        display: What is drawn in place of the shape; None: the shape itself.
-        render_file: Where this comes from, or None.
-        collision_file: Where the triangles of the shape come from, or None.
-        collision_mesh: The triangles that scripts get of a shape that is no mesh; None: its own.
+        display: Surfaces drawn instead of the shape; None draws the shape itself.
+        render_file: The file of ``display``, or None.
+        collision_file: The file of the shape's triangles, or None.
+        collision_mesh: Triangles returned to scripts for a shape that is not a mesh; None means its own.
         source: The element that it comes from.
     """
 
@@ -356,5 +356,5 @@ class Geometry(Record):
     source: Source
 
     def triangulated(self) -> Mesh:
-        """Return what scripts get as triangles, in the geometry's frame: those that were set, else of its shape."""
+        """Return the triangles for scripts in the geometry frame: those that were set, else those of the shape."""
         return self.shape.triangulated() if self.collision_mesh is None else self.collision_mesh

@@ -9,9 +9,9 @@ from ravemj.geometry_functions.solids import refined
 from ravemj.model.scene.mesh import Mesh
 
 SUBDIVISIONS = 3
-"""How often the triangles of an icosahedron are divided to make a sphere."""
+"""Number of subdivisions of an icosahedron to approximate a sphere."""
 
-# Corners and faces in OpenRAVE's order, which scripts see in meshes (random api-5000-118); 2: the golden ratio.
+# Vertices and faces in OpenRAVE's order, which scripts see in meshes (random api-5000-118); 2: the golden ratio.
 _ICOSAHEDRON = np.array(
     [
         *((0, 2, -1), (2, 1, 0), (1, 0, -2), (1, 0, 2), (2, -1, 0), (0, 2, 1)),
@@ -24,7 +24,7 @@ _FACES = (
     (0, 2, 9),
 )
 SIDES = 51
-"""Sides of a cylinder."""
+"""Number of sides of a cylinder."""
 
 
 def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
@@ -49,14 +49,15 @@ def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
 
 @functools.cache
 def _cube() -> tuple[Floats, Ints]:
-    corners = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
+    """Return the corners and triangles in OpenRAVE's order (random api-91001-79, api-5000-95)."""
+    corners = np.array([[x, y, z] for x in (1.0, -1.0) for y in (1.0, -1.0) for z in (1.0, -1.0)])
     triangles = "021 123 456 576 014 154 263 367 042 246 135 375"
     return corners, np.array([[int(corner) for corner in three] for three in triangles.split()])
 
 
 @functools.cache
 def _unit_cylinder() -> tuple[Floats, Ints]:
-    """Return the middles of the two ends, the upper one first, and the corners around them in turn, as OpenRAVE."""
+    """Return the centres of both ends, the upper one first, and the vertices around them in turn, as in OpenRAVE."""
     angles = 2 * np.pi * np.arange(SIDES) / SIDES
     ring = np.repeat(np.column_stack([np.cos(angles), np.sin(angles), np.ones(SIDES)]), 2, axis=0)
     ring[1::2, 2] = -1.0

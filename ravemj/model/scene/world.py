@@ -1,4 +1,4 @@
-"""A scene: bodies, loose sensors, gravity, and the view."""
+"""Scenes: bodies, sensors without robots, gravity, and the view."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ from ravemj.model.scene.shapes import Rgb
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class View(Record):
-    """The view that a file asks for.
+    """View defined in a file.
 
     Attributes:
-        background: Colour behind everything, or None where the file sets none.
-        T_world_camera: Pose of the camera (z forward, y down), or None where the file has no camera.
+        background: Background colour, or None if the file has none.
+        T_world_camera: Pose of the camera (z forward, y down), or None if the file has no camera.
     """
 
     background: Rgb | None = None
@@ -23,13 +23,13 @@ class View(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Scene(Record):
-    """The content of a file.
+    """Content of a file.
 
     Attributes:
         bodies: Bodies in document order.
-        view: Background and camera, or None where the file has no ``<Environment>``.
-        gravity: Acceleration of free fall [m/s^2], or None where the file has no physics engine.
-        sensors: Sensors that no robot carries; they are on no link, and ``T_link_sensor`` is their pose in the world.
+        view: Background and camera, or None if the file has no ``<Environment>``.
+        gravity: Gravitational acceleration [m/s^2], or None if the file has no physics engine.
+        sensors: Sensors without a robot and link; ``T_link_sensor`` is their pose in the world.
         description: A text for people.
     """
 

@@ -1,5 +1,5 @@
-"""Times for paths: each kind of retimer says how long a segment takes, and how it is driven.
+"""Timing of paths: each retimer determines the duration of a segment, and the motion on it.
 
-``segments.retime`` goes from waypoint to waypoint; ``polynomials`` has the kinds (lines, parabolas, cubic and quintic
-polynomials, limited jerk), with OpenRAVE's times. ``topp_ra`` goes through the waypoints without a stop.
+``segments.retime`` times segment by segment; ``polynomials`` contains the retimers (lines, parabolas, cubic and quintic
+polynomials, limited jerk), with OpenRAVE's times. ``topp_ra`` passes the waypoints without stops.
 """

@@ -1,4 +1,4 @@
-"""Retimers with polynomials for each segment: linear, parabolic, cubic, quintic, and limited jerk."""
+"""Retimers with a polynomial for each segment: linear, parabolic, cubic, quintic, and limited jerk."""
 
 import math
 from typing import Any
@@ -7,29 +7,29 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
-from ravemj.planning.retiming.segments import LONGER, MOST_ATTEMPTS, Limits, Rows, Segment
+from ravemj.planning.retiming.segments import LONGER, MOST_ATTEMPTS, PathLimits, Segment, SegmentRows
 
 _SLACK = 1e-12
-"""Relative: rounding."""
+"""Relative rounding tolerance."""
 
 
 class Polynomial:
-    """Drives each segment by the polynomial through values and derivatives at its ends."""
+    """Retimer with the polynomial through values and derivatives at the ends of each segment."""
 
     interpolation: str
     order: int
     merges: bool
 
-    def _first_time(self, way: Floats, limits: Limits) -> float:
-        """Return the first time to try [s], for joints that all move: the least from rest to rest."""
+    def _first_time(self, way: Floats, limits: PathLimits) -> float:
+        """Return the initial time to try [s], if all joints move: the minimum from rest to rest."""
         return self._from_rest_to_rest(way, limits)
 
-    def _from_rest_to_rest(self, way: Floats, limits: Limits) -> float:
-        """Return the least time from rest to rest [s]."""
+    def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
+        """Return the minimum time from rest to rest [s]."""
         raise NotImplementedError
 
-    def shortest(self, segment: Segment, limits: Limits) -> float:
-        """Return the time of a segment [s]."""
+    def shortest(self, segment: Segment, limits: PathLimits) -> float:
+        """Return the duration of a segment [s]."""
         moving = segment.step != 0
         moving |= (segment.start_velocity != 0) | (segment.end_velocity != 0)
         if not moving.any():
@@ -51,32 +51,35 @@ class Polynomial:
             duration *= LONGER
         return np.inf
 
-    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows:
-        """Return the one row of a segment."""
+    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows:
+        """Return the single row of a segment."""
         del limits
         rest = np.zeros_like(segment.step)[None]
         rows = (segment.step[None], segment.end_velocity[None], *[rest] * (self.order - 1))
-        return Rows(np.array([duration]), rows)
+        return SegmentRows(np.array([duration]), rows)
 
-    def _keeps_limits(self, segment: Segment, duration: float, limits: Limits) -> bool:
+    def _keeps_limits(self, segment: Segment, duration: float, limits: PathLimits) -> bool:
         raise NotImplementedError
 
 
 class Cubic(Polynomial):
-    """A cubic with the velocities at the ends; the time grows by 5 % from the bare way over speed until limits hold."""
+    """Cubic polynomial with given end velocities.
+
+    Its duration grows in steps of 5 % from displacement over speed until the limits hold.
+    """
 
     interpolation = "cubic"
     order = 1
     merges = False
 
-    def _first_time(self, way: Floats, limits: Limits) -> float:
+    def _first_time(self, way: Floats, limits: PathLimits) -> float:
         return float((way / limits.velocity).max())
 
-    def _from_rest_to_rest(self, way: Floats, limits: Limits) -> float:
+    def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
         by_speed, by_acceleration = 1.5 * way / limits.velocity, np.sqrt(6 * way / limits.acceleration)
         return float(max(by_speed.max(), by_acceleration.max()))
 
-    def _keeps_limits(self, segment: Segment, duration: float, limits: Limits) -> bool:
+    def _keeps_limits(self, segment: Segment, duration: float, limits: PathLimits) -> bool:
         step, start, end = segment
         square = 3 * step / duration**2 - (2 * start + end) / duration
         cube = (start + end) / duration**2 - 2 * step / duration**3
@@ -92,20 +95,20 @@ class Cubic(Polynomial):
 
 
 class Quintic(Polynomial):
-    """A quintic with the velocities and without acceleration at the ends."""
+    """Quintic polynomial with given end velocities and zero end accelerations."""
 
     interpolation = "quintic"
     order = 2
     merges = True
 
-    def _from_rest_to_rest(self, way: Floats, limits: Limits) -> float:
+    def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
         by_speed = 15 / 8 * way / limits.velocity
         by_acceleration = np.sqrt(10 / np.sqrt(3) * way / limits.acceleration)
         with np.errstate(divide="ignore"):
             by_jerk = np.cbrt(60 * way / limits.jerk)
         return float(max(by_speed.max(), by_acceleration.max(), by_jerk.max()))
 
-    def _keeps_limits(self, segment: Segment, duration: float, limits: Limits) -> bool:
+    def _keeps_limits(self, segment: Segment, duration: float, limits: PathLimits) -> bool:
         step, start, end = segment
         rest = step - start * duration
         change = (end - start) * duration
@@ -130,20 +133,20 @@ class Quintic(Polynomial):
         return True
 
 
-def _only(limits: Limits, chosen: Any) -> Limits:  # noqa: ANN401 - a mask
+def _only(limits: PathLimits, chosen: Any) -> PathLimits:  # noqa: ANN401 - a mask
     parts = (limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk)
-    return Limits(limits.coordinates, *(part[chosen] for part in parts))
+    return PathLimits(limits.coordinates, *(part[chosen] for part in parts))
 
 
 class Linear:
-    """Drives each segment at the greatest speed of its slowest joint, and jumps to that of the next."""
+    """Constant velocity on each segment, the maximum of its slowest joint, with jumps between segments."""
 
     interpolation = "linear"
     order = 1
     merges = False
 
-    def shortest(self, segment: Segment, limits: Limits) -> float:
-        """Return the time of a segment [s]; the translation of a base counts as one distance, its rotation as one."""
+    def shortest(self, segment: Segment, limits: PathLimits) -> float:
+        """Return the duration of a segment [s]; translation and rotation of a base count as one distance each."""
         parts = limits.coordinates
         ways, speeds = np.abs(segment.step), limits.velocity
         if parts.translation or len(parts.rotation) > 1:
@@ -152,15 +155,15 @@ class Linear:
         with np.errstate(divide="ignore"):
             return float((ways[moving] / speeds[moving]).max(initial=0.0))
 
-    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows:
-        """Return the one row of a segment."""
+    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows:
+        """Return the single row of a segment."""
         del limits
         velocity = segment.step / duration if duration > 0 else np.zeros_like(segment.step)
-        return Rows(np.array([duration]), (segment.step[None], velocity[None]))
+        return SegmentRows(np.array([duration]), (segment.step[None], velocity[None]))
 
 
-def _of_base(step: Floats, limits: Limits) -> tuple[Floats, Floats]:
-    """Return the ways and speeds of a segment that moves a base: straight through space, and turning."""
+def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
+    """Return distances and speeds of a base: translation along a straight line, and rotation."""
     parts = limits.coordinates
     translation, rotation = list(parts.translation), list(parts.rotation)
     rest = [column for column in range(len(step)) if column not in parts.translation + parts.rotation]
@@ -180,16 +183,16 @@ def _angle(step: Floats) -> float:
 
 
 _SAME_TIME = 1e-10
-"""Changes of acceleration or jerk this near [s] are at one time."""
+"""Tolerance of equal times of acceleration or jerk changes [s]."""
 
 
 class Parabolic:
-    """Stops at each waypoint; all joints take the time of the slowest.
+    """Retimer with constant accelerations that stops at each waypoint; all joints take the time of the slowest.
 
-    A joint that has more time than it needs moves with the least acceleration that does.
+    Faster joints use the minimal acceleration for this time.
 
     Args:
-        with_changes: Whether there are waypoints where joints change their acceleration.
+        with_changes: Whether to add waypoints at acceleration changes.
     """
 
     interpolation = "quadratic"
@@ -199,8 +202,8 @@ class Parabolic:
     def __init__(self, *, with_changes: bool = True) -> None:
         self._with_changes = with_changes
 
-    def shortest(self, segment: Segment, limits: Limits) -> float:
-        """Return the time of a segment [s]."""
+    def shortest(self, segment: Segment, limits: PathLimits) -> float:
+        """Return the duration of a segment [s]."""
         if not segment.is_from_rest_to_rest:
             ends = segment.start_velocity, segment.end_velocity
             return float(shortest_ramps(segment.step, *ends, limits.velocity, limits.acceleration).max(initial=0.0))
@@ -213,7 +216,7 @@ class Parabolic:
         times = np.where(cruises, way / speed + speed / acceleration, 2 * np.sqrt(way / acceleration))
         return float(times.max(initial=0.0))
 
-    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows | None:
+    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: one for each change of acceleration, and its end."""
         bounds = duration, limits.velocity, limits.acceleration
         if segment.is_from_rest_to_rest:
@@ -223,31 +226,31 @@ class Parabolic:
         if ramps is None:
             return None
         times = ramps.changes(_SAME_TIME) if self._with_changes else np.array([duration])
-        return Rows(times, ramps.states(times))
+        return SegmentRows(times, ramps.states(times))
 
 
 _SIGNS = (1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0)
-"""Of the jerk in the pieces of a motion."""
+"""Signs of the jerk in the pieces of a motion."""
 
 
 class JerkLimited:
-    """Stops at each waypoint; accelerations go up and down in straight lines.
+    """Retimer with limited jerk that stops at each waypoint; accelerations are piecewise linear.
 
-    From rest to rest each joint has up to seven pieces of constant jerk, mirrored in its middle. A joint with more time
-    than it needs does the same more slowly.
+    From rest to rest, each joint has up to seven pieces of constant jerk, symmetric in time. The profiles of faster
+    joints are stretched to the common duration.
     """
 
     interpolation = "cubic"
     order = 2
     merges = True
 
-    def shortest(self, segment: Segment, limits: Limits) -> float:
-        """Return the time of a segment [s]."""
+    def shortest(self, segment: Segment, limits: PathLimits) -> float:
+        """Return the duration of a segment [s]."""
         if not segment.is_from_rest_to_rest:
             return np.inf
         return max((_double_s(*one)[3] for one in _joints(segment.step, limits)), default=0.0)
 
-    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows | None:
+    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: one for each change of jerk, and its end."""
         joints = _joints(segment.step, limits)
         changes = [_changes(_double_s(*one), duration) for one in joints]
@@ -260,20 +263,20 @@ class JerkLimited:
                 order[:, column] = np.sign(segment.step[column]) * rows
         for order in orders[1:]:
             order[-1] = 0.0  # exactly at rest
-        return Rows(times, orders)
+        return SegmentRows(times, orders)
 
 
-def _joints(step: Floats, limits: Limits) -> list[tuple[float, float, float, float]]:
+def _joints(step: Floats, limits: PathLimits) -> list[tuple[float, float, float, float]]:
     rows = np.stack([np.abs(step), limits.velocity, limits.acceleration, limits.jerk], axis=1)
     return [(way, speed, acceleration, jerk) for way, speed, acceleration, jerk in rows.tolist() if way > 0]
 
 
 def _double_s(way: float, speed: float, acceleration: float, jerk: float) -> tuple[float, float, float, float]:
-    """Return the times of the fastest motion over a way from rest to rest.
+    """Return the times of the fastest motion over a distance from rest to rest.
 
     Returns:
-        How long the jerk lasts, the acceleration with its two flanks, and the whole motion up to where it slows down;
-        and the whole motion [s].
+        Durations [s] of the jerk, of the acceleration with its two flanks, of the motion up to the deceleration, and of
+        the whole motion.
     """
     if not (speed > 0 and acceleration > 0 and jerk > 0):
         return 0.0, 0.0, 0.0, np.inf
@@ -291,14 +294,14 @@ def _double_s(way: float, speed: float, acceleration: float, jerk: float) -> tup
 
 
 def _changes(profile: tuple[float, float, float, float], duration: float) -> Floats:
-    """Return when the jerk changes in the same motion over another time [s], from its start on."""
+    """Return the times of jerk changes if the motion is stretched to another duration [s]."""
     flank, ramp, slows, whole = profile
     changes = np.array([0.0, flank, ramp - flank, ramp, slows, slows + flank, slows + ramp - flank])
     return changes * (duration / whole)
 
 
 def _states(changes: Floats, way: float, duration: float, times: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return values, velocities and accelerations of a joint at some times, shape (len(times),) each."""
+    """Return values, velocities and accelerations of a joint at times, shape (len(times),) each."""
     ends = np.append(changes[1:], duration)
     states = [(0.0, 0.0, 0.0)]
     for jerk, elapsed in zip(_SIGNS, (ends - changes).tolist(), strict=True):

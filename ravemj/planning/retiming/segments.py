@@ -1,4 +1,4 @@
-"""Paths with times: from waypoint to waypoint by one kind of retimer."""
+"""Timing of paths segment by segment."""
 
 import math
 from collections.abc import Sequence
@@ -11,16 +11,16 @@ from ravemj.core.transforms import Floats
 from ravemj.planning.space import Coordinates
 
 ENOUGH = 1e-9
-"""How much shorter [s] than needed a given time may be: rounding."""
+"""Tolerance [s] of given times that are shorter than necessary, for rounding."""
 
 LONGER = 1.05
-"""Times that no formula gives are multiplied by this until the limits hold, as in OpenRAVE."""
+"""Growth factor of durations without formula until the limits hold, as in OpenRAVE."""
 
 MOST_ATTEMPTS = 500
 
 
 class RetimingError(Exception):
-    """There are no such times; the text says why."""
+    """The path cannot be timed; the text gives the reason."""
 
 
 class OutsideLimitsError(RetimingError):
@@ -28,16 +28,16 @@ class OutsideLimitsError(RetimingError):
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
-    """What a motion may do.
+class PathLimits:
+    """Limits of a motion.
 
     Attributes:
-        coordinates: What the numbers of a configuration are.
-        lower: Least values [rad or m], shape (n,).
-        upper: Greatest values, shape (n,).
-        velocity: Greatest speeds [rad/s or m/s], shape (n,).
-        acceleration: Greatest accelerations, shape (n,).
-        jerk: Greatest jerks, shape (n,).
+        coordinates: The coordinates of configurations.
+        lower: Lower limits [rad or m], shape (n,).
+        upper: Upper limits, shape (n,).
+        velocity: Maximum speeds [rad/s or m/s], shape (n,).
+        acceleration: Maximum accelerations, shape (n,).
+        jerk: Maximum jerks, shape (n,).
     """
 
     coordinates: Coordinates
@@ -51,7 +51,7 @@ class Limits:
         """Check that waypoints, shape (m, n), are within the limits.
 
         Raises:
-            OutsideLimitsError: one is not.
+            OutsideLimitsError: a waypoint is outside the limits.
         """
         for row, column in np.argwhere(self.coordinates.outside(points, self.lower, self.upper)):
             value, lower, upper = points[row, column], self.lower[column], self.upper[column]
@@ -60,12 +60,12 @@ class Limits:
 
 
 class Segment(NamedTuple):
-    """The way from one waypoint to the next.
+    """Segment between consecutive waypoints.
 
     Attributes:
         step: The difference of the values [rad or m], shape (n,).
-        start_velocity: At the first waypoint [rad/s or m/s], shape (n,).
-        end_velocity: At the second one, shape (n,).
+        start_velocity: Velocity at the first waypoint [rad/s or m/s], shape (n,).
+        end_velocity: Velocity at the second waypoint, shape (n,).
     """
 
     step: Floats
@@ -79,15 +79,15 @@ class Segment(NamedTuple):
 
     @property
     def from_rest(self) -> "Segment":
-        """The same way, started at rest."""
+        """The same segment with zero start velocity."""
         return Segment(self.step, np.zeros_like(self.step), self.end_velocity)
 
 
-class Rows(NamedTuple):
-    """A driven segment.
+class SegmentRows(NamedTuple):
+    """Timed rows of a segment.
 
     Attributes:
-        times: Of the rows, from the start of the segment on [s]; the last is its end. Shape (m,).
+        times: Times of the rows since the start of the segment [s], shape (m,); the last is its end.
         orders: Values relative to the first waypoint, velocities, accelerations, ...; shape (m, n) each.
     """
 
@@ -96,34 +96,34 @@ class Rows(NamedTuple):
 
 
 class Interpolated(Protocol):
-    """How results move between their rows: the interpolation of the values, and how many derivatives they have."""
+    """Interpolation of a result between its rows, and its number of derivatives."""
 
     interpolation: str
     order: int
 
 
 class Profile(Interpolated, Protocol):
-    """A kind of retimer that goes from waypoint to waypoint.
+    """Retimer that works segment by segment.
 
-    If it merges, equal neighbours become one waypoint, and time does not start before the first one.
+    If it merges, consecutive equal waypoints become one, and the first waypoint has time 0.
     """
 
     merges: bool
 
-    def shortest(self, segment: Segment, limits: Limits) -> float:
-        """Return the time that a segment takes at least [s]; infinite where the limits forbid it."""
+    def shortest(self, segment: Segment, limits: PathLimits) -> float:
+        """Return the minimum duration of a segment [s]; infinite if the limits do not allow it."""
         ...
 
-    def drive(self, segment: Segment, duration: float, limits: Limits) -> Rows | None:
-        """Return the motion of a segment in a given time, or None where none keeps the limits."""
+    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
+        """Return the motion of a segment in a given duration, or None if no motion keeps the limits."""
         ...
 
 
 class Timed(NamedTuple):
-    """A path with times.
+    """Timed path.
 
     Attributes:
-        deltas: Times since the waypoint before [s], shape (m,).
+        deltas: Times since the previous waypoint [s], shape (m,).
         orders: Values, velocities, ... at the waypoints, shape (m, n) each.
         is_point: For each row, whether it is a waypoint of the path, shape (m,).
     """
@@ -136,30 +136,30 @@ class Timed(NamedTuple):
 def retime(
     profile: Profile,
     points: Floats,
-    limits: Limits,
+    limits: PathLimits,
     *,
     deltas: Floats | None = None,
     velocities: Floats | None = None,
     time_step: float = 0.0,
 ) -> Timed:
-    """Give a path times.
+    """Time a path.
 
     Args:
-        profile: The kind of retimer.
+        profile: The retimer.
         points: The waypoints, shape (m, n).
-        limits: What the motion may do.
-        deltas: Given times since the waypoint before [s], shape (m,); None: the shortest.
-        velocities: Given velocities at the waypoints, shape (m, n); None: at rest, if the kind stops at waypoints.
-        time_step: Times are multiples of it [s]; 0: any.
+        limits: The limits of the motion.
+        deltas: Given times since the previous waypoint [s], shape (m,); None means the shortest.
+        velocities: Given velocities at the waypoints, shape (m, n); None means zero if the retimer stops at waypoints.
+        time_step: Times are multiples of it [s]; 0 means no rounding.
 
     Raises:
         OutsideLimitsError: a waypoint is outside the limits.
-        RetimingError: there are none.
+        RetimingError: the path cannot be timed.
     """
     limits.check(points)
     if not len(points):
         raise RetimingError("there are no waypoints")
-    path = _Path(profile, points[0], np.zeros_like(points[0]) if velocities is None else velocities[0])
+    path = _TimedRows(profile, points[0], np.zeros_like(points[0]) if velocities is None else velocities[0])
     if deltas is not None and not profile.merges:
         path.start_at(float(deltas[0]))
     for index in range(1, len(points)):
@@ -175,10 +175,12 @@ def retime(
     return path.timed()
 
 
-def _driven(profile: Profile, segment: Segment, limits: Limits, given: float | None, time_step: float) -> Rows:
+def _driven(
+    profile: Profile, segment: Segment, limits: PathLimits, given: float | None, time_step: float
+) -> SegmentRows:
     needed = profile.shortest(segment, limits)
     if not segment.is_from_rest_to_rest:
-        # OpenRAVE's times are those of a start at rest.
+        # OpenRAVE uses the times of a start at rest.
         needed = max(needed, profile.shortest(segment.from_rest, limits))
     if not math.isfinite(needed):
         raise RetimingError("a joint moves whose velocity or acceleration limit is 0")
@@ -189,7 +191,7 @@ def _driven(profile: Profile, segment: Segment, limits: Limits, given: float | N
     else:
         duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
     if duration <= 0 and profile.merges:
-        return Rows(np.zeros(1), ())
+        return SegmentRows(np.zeros(1), ())
     for _ in range(MOST_ATTEMPTS if given is None else 1):
         rows = profile.drive(segment, duration, limits)
         if rows is not None:
@@ -199,8 +201,8 @@ def _driven(profile: Profile, segment: Segment, limits: Limits, given: float | N
     raise RetimingError(f"no motion of {tried:.6g} s keeps the limits with the velocities at the waypoints")
 
 
-class _Path:
-    """The rows so far."""
+class _TimedRows:
+    """Rows collected so far."""
 
     def __init__(self, profile: Profile, first: Floats, velocity: Floats) -> None:
         self._profile = profile
@@ -211,11 +213,11 @@ class _Path:
         self._is_point = [np.ones(1, dtype=bool)]
 
     def start_at(self, time: float) -> None:
-        """Let time pass before the first waypoint [s]."""
+        """Start the path at a time [s] after 0."""
         self._deltas[0][0] = time
 
-    def append(self, rows: Rows, start: Floats, end: Floats) -> None:
-        """Append a segment; its last row is the waypoint itself."""
+    def append(self, rows: SegmentRows, start: Floats, end: Floats) -> None:
+        """Append a segment; its last row is the waypoint."""
         times = rows.times
         if self._profile.merges and times[-1] <= 0:
             return

@@ -1,1 +1,1 @@
-"""The methods of environments, one class for each topic. ``Environment`` inherits them."""
+"""Mixins of ``Environment``, one class for each topic."""

@@ -1,7 +1,7 @@
-"""What is in an environment: bodies, sensors, modules; collisions between them."""
+"""Bodies, sensors and modules of an environment, and collisions between them."""
 
 from collections.abc import Callable, Collection, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -26,7 +26,6 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
-    from ravemj.rave.environment import Environment
 
 
 _SELECTIONS: dict[SelectionOptions, Callable[[scene.KinBody, Collection[str]], bool]] = {
@@ -39,19 +38,19 @@ _SELECTIONS: dict[SelectionOptions, Callable[[scene.KinBody, Collection[str]], b
 
 
 def selects(options: int, names: Collection[str], body: scene.KinBody) -> bool:
-    """Return whether options select a body; ``names`` are for ``Body`` and ``AllExceptBody``."""
+    """Return whether options select a body; ``names`` are the arguments of ``Body`` and ``AllExceptBody``."""
     return _SELECTIONS[SelectionOptions(options)](body, names)
 
 
 BodyCallback = Callable[[KinBody, int], object]
-"""A function of a body, and 1 when it was added or 0 when it was removed."""
+"""Callback with a body, and 1 if it was added or 0 if it was removed."""
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
-"""A function of a report of one collision, and of whether physics has found it; it returns a ``CollisionAction``."""
+"""Callback with a one-collision report, and whether physics found it; returns a ``CollisionAction``."""
 
 
 class Contents(EnvironmentPart):
-    """The bodies, sensors and modules of an environment; collision checks of bodies, links and rays."""
+    """Bodies, sensors and modules of an environment; collision checks of bodies, links and rays."""
 
     _often_called = ("CheckCollision",)
 
@@ -62,8 +61,8 @@ class Contents(EnvironmentPart):
 
     def __init__(self) -> None:
         super().__init__()
-        # The environment keeps the API object of each body in it, so that active DOFs and user data stay. The objects
-        # of other bodies go with the script's last reference.
+        # The environment keeps the API objects of its bodies, so that active DOFs and user data survive. The objects
+        # of other bodies are deleted with the script's last reference.
         self._objects: WeakValueDictionary[BodyState, KinBody] = WeakValueDictionary()
         self._kept_objects: dict[BodyState, KinBody] = {}
         self._body_callbacks: list[BodyCallback] = []
@@ -71,10 +70,6 @@ class Contents(EnvironmentPart):
         self._sensors: list[Sensor] = []  # sensors without a robot
         self.collision_callbacks: list[CollisionCallback] = []
         self._checker: CollisionChecker | None = None
-
-    @property
-    def _environment(self) -> "Environment":
-        return cast("Environment", self)
 
     def wrap(self, state: BodyState) -> KinBody:
         """Return the API object of a body, always the same one."""
@@ -103,7 +98,7 @@ class Contents(EnvironmentPart):
             self._tell_of_body(body, 0)
 
     def _tell_of_body(self, body: KinBody, action: int) -> None:
-        """Call the functions of ``RegisterBodyCallback``; ``action`` is 1 if the body was added, 0 if removed."""
+        """Call the callbacks of ``RegisterBodyCallback``; ``action`` is 1 if the body was added, 0 if removed."""
         for callback in tuple(self._body_callbacks):
             callback(body, action)
 
@@ -113,8 +108,8 @@ class Contents(EnvironmentPart):
 
         Args:
             interface: The object, made for this environment. A body keeps its pose.
-            addMode: What to do if the name is taken: None, False or ``InterfaceAddMode.StrictNameChecking`` raise,
-                True or ``AllowRenaming`` give it another name. OpenRAVE 0.9 calls the argument ``anonymous``.
+            addMode: Treatment of a taken name: None, False or ``InterfaceAddMode.StrictNameChecking`` raise an error,
+                True or ``AllowRenaming`` rename the object. OpenRAVE 0.9 calls the argument ``anonymous``.
             cmdargs: The arguments of a module, the name of a robot first.
 
         Raises:
@@ -138,11 +133,12 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Accept a viewer of this environment, which is attached already; raise an error for anything else."""
+        """Accept a viewer of this environment, which is already attached; raise an error for any other object."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
-        raise ArgumentError(f"Add: takes a body, a robot, a sensor or a module, not {kind}")
+        cause = f"; the last Read… gave None: {self._unread}" if interface is None and self._unread else ""
+        raise ArgumentError(f"Add: takes a body, a robot, a sensor or a module, not {kind}{cause}")
 
     @also_named(anonymous="addMode", robot="body")
     def AddKinBody(self, body: KinBody, addMode: Any = None) -> None:  # noqa: ANN401 - a number or an enumeration
@@ -171,7 +167,7 @@ class Contents(EnvironmentPart):
             self._kept_objects[state] = body
         self._tell_of_body(body, 1)
         for viewer in self._viewers:
-            viewer.take_over()
+            viewer.apply_loaded()
 
     AddRobot = AddKinBody
 
@@ -221,7 +217,7 @@ class Contents(EnvironmentPart):
     def Remove(self, interface: object) -> bool:
         """Remove a body, a robot, a module, a sensor or a viewer from the environment.
 
-        A removed body can be used outside of the environment and added again. All grabs by it and of it end.
+        A removed body can be used outside of the environment and added again. All grabs by it and of it are released.
 
         Args:
             interface: The object.
@@ -230,7 +226,7 @@ class Contents(EnvironmentPart):
             Whether it was in the environment.
 
         Raises:
-            openrave_exception: it is something else (``InvalidArguments``) or None (``Failed``), or a body of another
+            openrave_exception: it has another type (``InvalidArguments``), is None (``Failed``), or a body of another
                 environment.
 
         Example:
@@ -258,7 +254,7 @@ class Contents(EnvironmentPart):
     RemoveKinBody = RemoveProblem = Remove
 
     def RemoveKinBodyByName(self, name: str) -> bool:
-        """Remove the body or robot of a name, and return whether there was one; see ``Remove``."""
+        """Remove the body called ``name``, and return whether it existed; see ``Remove``."""
         body = self.GetKinBody(name)
         return body is not None and self.Remove(body)
 
@@ -296,7 +292,7 @@ class Contents(EnvironmentPart):
             checkname: A name; the result then has only the body of this name.
 
         Returns:
-            The bodies in the order in which they were added; an added body fills the place of a removed one.
+            The bodies in the order in which they were added; a new body takes the index of a removed one.
 
         Example:
             >>> robots = [body for body in env.GetBodies() if body.IsRobot()]
@@ -320,7 +316,7 @@ class Contents(EnvironmentPart):
         return [body for body in self.GetBodies(checkname) if isinstance(body, Robot)]
 
     def GetKinBody(self, name: str) -> KinBody | None:
-        """Return the body or robot of a name, or None.
+        """Return the body or robot called ``name``, or None.
 
         Example:
             >>> body = env.GetKinBody("Pendulum")
@@ -331,7 +327,7 @@ class Contents(EnvironmentPart):
         return None if state is None else self.wrap(state)
 
     def GetRobot(self, name: str) -> Robot | None:
-        """Return the robot of a name, or None.
+        """Return the robot called ``name``, or None.
 
         Example:
             >>> robot = env.GetRobot("Pendulum")
@@ -345,7 +341,7 @@ class Contents(EnvironmentPart):
         return [*(sensor for sensor in found if sensor is not None), *self._sensors]
 
     def GetSensor(self, name: str) -> Sensor | None:
-        """Return the sensor of a name, or None. The name of a robot's sensor is ``robot:sensor``."""
+        """Return the sensor called ``name``, or None. The name of a robot's sensor is ``robot:sensor``."""
         return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
@@ -401,13 +397,13 @@ class Contents(EnvironmentPart):
     GetLoadedProblems = GetModules
 
     def RegisterBodyCallback(self, callback: BodyCallback) -> Handle:
-        """Register a function that is called when bodies are added and removed.
+        """Register a callback for added and removed bodies.
 
         Args:
             callback: A function of the body, and of 1 if it was added or 0 if it was removed.
 
         Returns:
-            A handle. The function is called as long as the handle exists.
+            A handle; deleting or closing it removes the callback.
         """
         return registered(self._body_callbacks, callback, "RegisterBodyCallback: callback")
 
@@ -420,13 +416,13 @@ class Contents(EnvironmentPart):
     AllExceptBody = TriangulateOptions.AllExceptBody
 
     def GetCollisionChecker(self) -> CollisionChecker:
-        """Return the collision checker, which ``CheckCollision`` uses; never None."""
+        """Return the collision checker that ``CheckCollision`` uses; never None."""
         if self._checker is None:
             self._checker = CollisionChecker(self._environment)
         return self._checker
 
     def SetCollisionChecker(self, collisionchecker: CollisionChecker | None) -> bool:
-        """Choose the collision checker, which ``CheckCollision`` uses.
+        """Set the collision checker that ``CheckCollision`` uses.
 
         Args:
             collisionchecker: A checker of this environment; with None, nothing collides from now on.
@@ -479,6 +475,8 @@ class Contents(EnvironmentPart):
         """
         self._check_alive()
         checker = self._checker or self.GetCollisionChecker()
+        if report is None and not named:  # which takes less time, since planners ask this most
+            return checker.CheckCollision(*arguments)
         return checker.CheckCollision(*arguments, report=report, **named)
 
     def CheckCollisionRays(
@@ -507,25 +505,26 @@ class Contents(EnvironmentPart):
             row = int(np.flatnonzero(~np.isfinite(rows).all(axis=1))[0])
             raise ArgumentError(f"CheckCollisionRays: ray {row} is {rows[row].tolist()}, and should be finite numbers")
         checker = self.GetCollisionChecker()
-        with self._simulation.lock, checker.groups.world() as world:
+        with self._simulation.lock:
+            world = checker.world()
             targets = checker.ray_targets(world, ... if body is None else body)
             return world.rays.first_hits(rows, targets, front_facing_only=front_facing_only)
 
     @also_named(fncallback="callback")
     def RegisterCollisionCallback(self, callback: CollisionCallback) -> Handle:
-        """Register a function that decides about each collision.
+        """Register a callback that decides whether each collision counts.
 
         Args:
             callback: A function of a report with one pair, and of False. It returns a ``CollisionAction``; collisions
                 that it ignores do not count.
 
         Returns:
-            A handle. The function is called as long as the handle exists.
+            A handle; deleting or closing it removes the callback.
         """
         return registered(self.collision_callbacks, callback, "RegisterCollisionCallback: callback")
 
     def HasRegisteredCollisionCallbacks(self) -> bool:
-        """Return whether functions of ``RegisterCollisionCallback`` are registered."""
+        """Return whether callbacks of ``RegisterCollisionCallback`` are registered."""
         return bool(self.collision_callbacks)
 
     def Triangulate(self, body: KinBody) -> TriMesh:
@@ -546,7 +545,7 @@ class Contents(EnvironmentPart):
 
 
 def _renames(mode: Any) -> bool:  # noqa: ANN401 - a number or an enumeration
-    """Return whether ``addMode`` allows another name: True, or a mode without strict checking of names."""
+    """Return whether ``addMode`` allows renaming: True, or a mode without strict checking of names."""
     if mode is None or isinstance(mode, bool):
         return bool(mode)
     if mode not in tuple(InterfaceAddMode):

@@ -1,4 +1,4 @@
-"""Simulation time; environments as infos and as OpenRAVE's JSON; their names, descriptions and units."""
+"""Simulation time, and an environment's description: infos, OpenRAVE's JSON, name and units."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -34,7 +34,7 @@ from ravemj.rave.units import (
 )
 
 State = dict[str, Any]
-"""The published state of a body; see ``GetPublishedBodies``."""
+"""Published state of a body; see ``GetPublishedBodies``."""
 
 
 def _state(body: KinBody) -> State:
@@ -60,15 +60,14 @@ Json = Mapping[str, Any]
 
 
 class Description(Contents):
-    """Simulation time; name, user data, parameters and units of an environment, and the environment as an info or JSON.
+    """Simulation time; name, user data, parameters and units of an environment; the environment as an info or JSON.
 
-    Each step of time runs physics, then controllers and modules, then sensors. Time starts to pass in a thread with the
-    first command to a controller, or with the first call of ``GetSimulationTime`` or ``IsSimulationRunning``; before
-    that, no thread runs. It passes until ``StopSimulation``, and stands still while a script locks the environment
-    (``with env:``).
+    Each step of time runs physics, then controllers and modules, then sensors. The simulation thread starts with the
+    first command to a controller, or with the first call of ``GetSimulationTime`` or ``IsSimulationRunning``. It runs
+    until ``StopSimulation``, and pauses while a script locks the environment (``with env:``).
 
-    Published bodies are copies of poses and joint values, for readers that do not take the lock.
-    ``UpdatePublishedBodies`` makes them, and so does each step of running time.
+    Published bodies are copies of poses and joint values, for readers without the lock. ``UpdatePublishedBodies`` and
+    each step of the simulation thread update them.
     """
 
     _internal = (
@@ -93,7 +92,7 @@ class Description(Contents):
         return self._name
 
     def GetNameId(self) -> str:
-        """Return the name and the id of the environment, which no other environment has."""
+        """Return the name and the id of the environment as a unique string."""
         return f"{self._name}({self._environment.GetId()})"
 
     def GetDescription(self) -> str:
@@ -101,7 +100,7 @@ class Description(Contents):
         return self.annotations.description
 
     def SetDescription(self, sceneDescription: str) -> None:
-        """Set ``sceneDescription``, a text for people."""
+        """Set ``sceneDescription``, free text."""
         self.annotations.description = str(sceneDescription)
 
     SetUserData = SetUserData
@@ -143,7 +142,7 @@ class Description(Contents):
         return self._numbers.pop(parameterName, None) is not None
 
     def GetHomeDirectory(self) -> str:
-        """Return the folder for files that are kept between runs, that of ``RaveGetHomeDirectory``."""
+        """Return the folder for persistent files, that of ``RaveGetHomeDirectory``."""
         return RaveGetHomeDirectory()
 
     def GetUnit(self) -> tuple[str, float]:
@@ -158,7 +157,7 @@ class Description(Contents):
             unitmult: The length of the unit [m].
 
         Raises:
-            openrave_exception: there is no such unit, or it has another length.
+            openrave_exception: the unit is unknown, or its length is wrong.
         """
         unit = GetLengthUnitFromString(unitname, LengthUnit.m)
         metres = GetLengthUnitConversionScale(unit, LengthUnit.m)
@@ -192,7 +191,7 @@ class Description(Contents):
 
     @property
     def _metre(self) -> float:
-        """The length of a metre in the environment's unit."""
+        """One metre in the environment's unit of length."""
         return GetLengthUnitStandardValue(self._units.lengthUnit)
 
     def ExtractInfo(self) -> EnvironmentBaseInfo:
@@ -210,7 +209,7 @@ class Description(Contents):
     def UpdateFromInfo(
         self, info: EnvironmentBaseInfo, updateMode: int = UpdateFromInfoMode.Exact
     ) -> tuple[list[KinBody], list[KinBody], list[KinBody]]:
-        """Make the environment match a description: add, change and remove bodies.
+        """Update the environment from a description: add, change and remove bodies.
 
         Args:
             info: The description.
@@ -275,7 +274,7 @@ class Description(Contents):
         atts: Mapping[str, str] | None = None,
         uri: str = "",
     ) -> bool:
-        """Make the environment match a description in OpenRAVE's JSON; see ``UpdateFromInfo``.
+        """Update the environment from a description in OpenRAVE's JSON; see ``UpdateFromInfo``.
 
         Args:
             envInfo: The description, as a dict.
@@ -339,24 +338,24 @@ class Description(Contents):
         return body
 
     def StartSimulation(self, timestep: float, realtime: bool = True) -> None:
-        """Run simulation time in a thread.
+        """Run the simulation in a thread.
 
         Args:
             timestep: The duration of a step [s].
-            realtime: Whether a second of simulation takes a second; False runs it as fast as possible.
+            realtime: Whether to run in real time; False runs as fast as possible.
         """
         self._check_alive()
         self._clock.start(checked_number(timestep, "StartSimulation: timestep", 1e-6, " s"), realtime=realtime)
 
     def StopSimulation(self, shutdownthread: int = 1) -> None:
-        """Stop simulation time until ``StartSimulation``.
+        """Stop the simulation thread until ``StartSimulation``.
 
         ``StepSimulation`` still works. With ``shutdownthread``, wait for the end of a running step.
         """
         self._clock.stop(wait=bool(shutdownthread))
 
     def StepSimulation(self, timestep: float) -> None:
-        """Run one step of simulation time: physics, controllers, sensors.
+        """Run one simulation step: physics, controllers, sensors.
 
         Args:
             timestep: The duration of the step [s].
@@ -371,17 +370,17 @@ class Description(Contents):
         self._clock.step(checked_number(timestep, "StepSimulation: timestep", 0, " s"))
 
     def IsSimulationRunning(self) -> bool:
-        """Return whether simulation time runs in a thread."""
+        """Return whether the simulation thread runs."""
         self._clock.wake()
         return self._clock.is_allowed
 
     def GetSimulationTime(self) -> int:
-        """Return the simulation time that has passed [microseconds]."""
+        """Return the simulation time [microseconds]."""
         self._clock.wake()
         return self._clock.now
 
     def SetPhysicsEngine(self, physics: PhysicsEngine | str | None) -> bool:
-        """Choose the physics engine.
+        """Set the physics engine.
 
         Args:
             physics: An engine from ``RaveCreatePhysicsEngine``; None for no physics. A name makes a new engine with the
@@ -483,11 +482,11 @@ class Description(Contents):
 
     @property
     def clock(self) -> Clock:
-        """The clock of simulation time, an object below OpenRAVE's API."""
+        """Clock of the simulation time, below OpenRAVE's API."""
         return self._clock
 
     def _advance(self, timestep: float) -> None:
-        """Run one step of simulation time. The clock holds the lock.
+        """Run one simulation step. The clock holds the lock.
 
         Sensors come last, so that they measure the state at the end of the step.
         """

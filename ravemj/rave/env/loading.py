@@ -1,4 +1,4 @@
-"""Methods of an environment that load models, and their arguments."""
+"""Methods that load models into environments, and their arguments."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -21,17 +21,20 @@ from ravemj.errors import (
     Diagnostic,
     Diagnostics,
     ErrorCode,
+    ManipulatorError,
     RavemjError,
     Source,
     SourceError,
     UnnamedError,
+    send_warning,
     send_warnings,
 )
 from ravemj.formats.data_folders import existing
 from ravemj.formats.file_access import FileAccess
+from ravemj.formats.suffixes import format_of
 from ravemj.model.scene import Grab, Mesh, Scene
 from ravemj.rave.env.description import Description
-from ravemj.rave.env.saving import is_json, placed_errors, read_json
+from ravemj.rave.env.saving import placed_errors, read_json
 from ravemj.rave.infos import EnvironmentBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
@@ -50,7 +53,7 @@ Argument = KinBody | Text | Attributes | None
 
 
 def warn_of_attributes(path: str, given: Attributes) -> None:
-    """Warn of attributes for a JSON file, which has a name for everything already."""
+    """Warn about attributes of a JSON file, which have no effect because its bodies have names."""
     diagnostics = Diagnostics()
     for name in given:
         diagnostics.warn("unknown-attribute", f"nothing reads '{name}' for a JSON file", Source(path))
@@ -60,7 +63,7 @@ def warn_of_attributes(path: str, given: Attributes) -> None:
 def read_arguments(
     caller: str, arguments: tuple[Argument, ...], named: dict[str, Argument]
 ) -> tuple[KinBody | None, str | bytes, Attributes]:
-    """Return the body to fill, if one is given, the file or text, and the attributes."""
+    """Return the body to fill (or None), the file or text, and the attributes."""
     given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
     if named:
         raise TypeError(f"{caller}: has no argument {', '.join(named)}")
@@ -72,10 +75,10 @@ def read_arguments(
 
 
 def checked_attributes(atts: object, caller: str) -> Attributes:
-    """Return attributes that a user gave, with their names in lower case.
+    """Return the user's attributes with names in lower case.
 
     Raises:
-        ArgumentError: they are no texts by names.
+        ArgumentError: they are not strings by name.
     """
     if atts is None:
         return {}
@@ -93,7 +96,7 @@ _NAME_CONFLICTS = {ErrorCode.BodyNameConflict.name, ErrorCode.SensorNameConflict
 
 
 class Loading(Description):
-    """The methods that load models."""
+    """Methods that load models."""
 
     _internal = ("add_file", "named_files")
 
@@ -104,8 +107,8 @@ class Loading(Description):
             filename: An OpenRAVE XML file with an environment, a robot, a kinbody or a sensor; a URDF, whose SRDF is
                 looked for beside it, or a xacro; a COLLADA file (``.dae``, ``.zae``); OpenRAVE's JSON (``.json``, see
                 ``LoadJSON``); or a mesh file. Relative paths are searched in the working folder, then in the folders of
-                the environment variable ``OPENRAVE_DATA``. Which files it may name itself: see "Which files a model may
-                read".
+                the environment variable ``OPENRAVE_DATA``. For the files that it may refer to, see "Which files a model
+                may read".
             atts: Attributes as those of a ``<Robot>``: ``name`` replaces the name of the body, ``prefix`` is put before
                 the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
                 multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
@@ -117,12 +120,9 @@ class Loading(Description):
 
         Returns:
             Whether the whole file was loaded. As in OpenRAVE, the result is False if the file is missing or broken,
-            refers to a missing file, or has a body or sensor whose name is taken. The reason is logged, and the bodies
-            before the error are in the environment; ``ravemj.load`` raises an error instead. Bodies of COLLADA and mesh
-            files get another name if theirs is taken.
-
-        Raises:
-            openrave_exception: a body or a sensor of the file has no name (``Failed``).
+            refers to a missing file, or has a body or sensor without a name or with one that is taken. The reason is
+            logged, and the bodies before the error are in the environment; ``ravemj.load`` raises an error instead.
+            Bodies of COLLADA and mesh files get another name if theirs is taken.
 
         Example:
             >>> env = ravemj.Environment()
@@ -130,7 +130,7 @@ class Loading(Description):
             True
         """
         checked_kind(filename, (str, bytes, os.PathLike), "Load: filename", "a path")
-        if is_json(os.fsdecode(filename)):
+        if format_of(os.fsdecode(filename)) == "json":
             return self._try_json(os.fsdecode(filename), checked_attributes(atts, "Load"))
         reading = self._read_file(filename, checked_attributes(atts, "Load"))
         try:
@@ -144,16 +144,16 @@ class Loading(Description):
     LoadURI = Load
 
     def add_file(self, path: str, dropped: Sequence[str] = ()) -> str:
-        """Add the file ``path`` that a person has dropped on a viewer, all of it or nothing.
+        """Add the file ``path`` that was dropped on a viewer, completely or not at all.
 
-        It may refer to the files in its folder and to those that were dropped with it, ``dropped``. Bodies whose names
-        are taken get other names. Return the error with file and line, or the mesh that is missing of what was added;
-        empty if all is there.
+        It may refer to files in its folder and to the files ``dropped`` with it. Bodies whose names are taken are
+        renamed. Return the error with file and line, or the missing mesh of an added body; empty if the file is
+        complete.
         """
         path = os.path.abspath(path)
         access = FileAccess.dropped(path, dropped)
         try:
-            if is_json(path):
+            if format_of(path) == "json":
                 self._try_elsewhere(path)
                 self._load_json(path)
                 return ""
@@ -169,14 +169,14 @@ class Loading(Description):
             return str(broken[0] if broken else reading.failure)
         if not reading.scene.bodies and not reading.scene.sensors:
             return f"{path}: the file has no body and no sensor"
-        Compiled(reading.scene, Diagnostics())  # raises where MuJoCo refuses the bodies
+        Compiled(reading.scene, Diagnostics())  # raises an error if MuJoCo rejects the bodies
         self._add(replace(reading, renames=True, diagnostics=access.named_diagnostics()))
         missing = [finding for finding in reading.diagnostics if finding.code == "missing-file"]
         others = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
         return f"{missing[0]}{others}" if missing else ""
 
     def _try_elsewhere(self, path: str) -> None:
-        """Load a file of JSON into another environment, for a moment; errors as of ``_load_json``."""
+        """Load a JSON file into a temporary environment; errors as of ``_load_json``."""
         trial = type(self)()
         try:
             trial._load_json(path)
@@ -194,7 +194,7 @@ class Loading(Description):
         return True
 
     def _load_json(self, path: str) -> None:
-        """Take over the environment of a file; see ``LoadJSON``. After an error, what was read before is there."""
+        """Load an environment from JSON; see ``LoadJSON``. After an error, objects read so far are kept."""
         self._check_alive()
         with placed_errors(path):
             self.LoadJSON(self._json_content(path))
@@ -223,7 +223,11 @@ class Loading(Description):
             True
         """
         checked_kind(data, (str, bytes), "LoadData: data", "a text")
-        return self._take(self._read_data(data, checked_attributes(atts, "LoadData")))
+        reading = self._read_data(data, checked_attributes(atts, "LoadData"))
+        loaded = self._take(reading)
+        if isinstance(reading.failure, UnnamedError):
+            raise reading.failure
+        return loaded
 
     def _read_file(self, path: Text, given: Attributes, access: FileAccess | None = None) -> "Reading":
         from ravemj.formats.readers import read_file  # noqa: PLC0415 - takes a while, and not every script reads a file
@@ -237,8 +241,6 @@ class Loading(Description):
 
     def _take(self, reading: "Reading") -> bool:
         self._add(reading)
-        if isinstance(reading.failure, UnnamedError):
-            raise reading.failure
         if reading.failure is not None:
             _LOG.error("%s", reading.failure)
         return reading.failure is None and all(finding.severity != "error" for finding in reading.diagnostics)
@@ -263,13 +265,13 @@ class Loading(Description):
             for sensor in reading.scene.sensors:
                 self.AddSensor(Sensor(self._environment, sensor), reading.renames)
         for viewer in self._viewers:
-            viewer.take_over(reading.scene.view)
+            viewer.apply_loaded(reading.scene.view)
         send_warnings(reading.diagnostics)
 
     def _hold(
         self, holder: BodyState, grabs: Sequence[Grab], added: Mapping[str, BodyState], diagnostics: Diagnostics
     ) -> None:
-        """Make a body grab the bodies that its file says it holds."""
+        """Grab the bodies that the file declares as grabbed."""
         for grab in grabs:
             held = added.get(grab.body)
             if held is None or held is holder:
@@ -329,17 +331,18 @@ class Loading(Description):
 
     def _read_uri(self, filename: Text, given: Attributes, into: KinBody | None, *, is_robot: bool) -> KinBody | None:
         path = os.fsdecode(filename)
-        if not is_json(path):
+        if format_of(path) != "json":
             return self._read(self._read_file(path, given), into, is_robot=is_robot)
         warn_of_attributes(path, given)
         try:
             return self._body_of_json(path, into, is_robot=is_robot)
         except SourceError as error:
+            self._unread = str(error)
             _LOG.error("%s", error)
             return None
 
     def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file, which is not added; ``into`` is a body to make anew, or None."""
+        """Return the first body of a file without adding it; ``into`` is a body to rebuild, or None."""
         content = self._json_content(path)
         info = EnvironmentBaseInfo()
         with placed_errors(path):
@@ -354,11 +357,15 @@ class Loading(Description):
         return body
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
-        """Return the first body that was read, without adding it."""
+        """Return the first body of a reading, without adding it."""
         self._note(reading)
         send_warnings(reading.diagnostics)
-        if reading.failure is not None or not reading.scene.bodies:
-            _LOG.error("%s", reading.failure or "the file has no body")
+        failure = reading.failure
+        if isinstance(failure, ManipulatorError):
+            send_warning(Diagnostic("warning", "bad-manipulator", failure.message, failure.source, failure.hint))
+        elif failure is not None or not reading.scene.bodies:
+            self._unread = str(failure or "the file has no body")
+            _LOG.error("%s", self._unread)
             return None
         scene = reading.scene.bodies[0]
         scene = replace(scene, is_robot=scene.is_robot or is_robot)
@@ -407,7 +414,7 @@ class Loading(Description):
             return self.ReadTrimeshURI(path, atts)
 
     def ReadInterfaceURI(self, filename: Text, atts: Attributes | None = None) -> KinBody | Sensor | None:
-        """Return a robot, body or sensor from a file without adding it. ravemj reads no other interfaces from files.
+        """Return a robot, body or sensor from a file without adding it; other interfaces cannot be read.
 
         Args:
             filename: The file; see ``Load``.
@@ -417,7 +424,7 @@ class Loading(Description):
             The first robot or body, else the first sensor; None with a logged reason if there is none.
         """
         given = checked_attributes(atts, "ReadInterfaceURI")
-        if is_json(os.fsdecode(filename)):
+        if format_of(os.fsdecode(filename)) == "json":
             return self._read_uri(filename, given, None, is_robot=False)
         reading = self._read_file(filename, given)
         if reading.failure or reading.scene.bodies or not reading.scene.sensors:
@@ -430,15 +437,15 @@ class Loading(Description):
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """All warnings and errors about the loaded files and, once the model is compiled, about their translation."""
+        """Warnings and errors about the loaded files and, once the model is compiled, about their translation."""
         return (*self._found, *self._simulation.diagnostics)
 
     @property
     def files(self) -> tuple[str, ...]:
-        """The paths of all files that were read: models, included files, and meshes."""
+        """Paths of all read files: models, included files, and meshes."""
         return tuple(self._files)
 
     @property
     def named_files(self) -> dict[str, Source]:
-        """The files that other files name, and where these do so."""
+        """Files named in other files, and the positions of these references."""
         return {path: source for path, source in self._files.items() if source is not None}

@@ -1,4 +1,4 @@
-"""Methods of an environment that save models, and OpenRAVE's JSON files."""
+"""Methods that save environments, and OpenRAVE's JSON files."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -31,6 +31,7 @@ from ravemj.errors import (
 )
 from ravemj.formats.data_folders import existing
 from ravemj.formats.limits import json_bytes
+from ravemj.formats.suffixes import SUFFIXES, format_of
 from ravemj.model import scene
 from ravemj.model.scene import Inertial, KinBody, Scene, View
 from ravemj.model.shape_bodies import FROM_SCRIPT
@@ -44,28 +45,16 @@ if TYPE_CHECKING:
     from ravemj.formats.writers import ModelFormat
 
 
-SUFFIXES = {
-    "collada": (".dae", ".zae"),
-    "openrave": (".robot.xml", ".kinbody.xml", ".env.xml"),
-    "json": (".json",),
-}
-"""Suffixes of the formats that ``Save`` writes, the usual one first."""
-
 _Given = Callable[[KinBodyInfo], None]
-
-
-def is_json(path: str) -> bool:
-    """Return whether a file is JSON, by the suffix of its name."""
-    return path.lower().endswith(SUFFIXES["json"])
 
 
 def save_json(
     info: EnvironmentBaseInfo, path: str, content: scene.Scene, skipped: Sequence[str], diagnostics: Diagnostics
 ) -> None:
-    """Write bodies and the properties of their environment to a file; ``skipped`` are words of ``skipwrite``.
+    """Write bodies and environment properties to a JSON file; ``skipped`` are words of ``skipwrite``.
 
-    The info is changed. JSON has no place for the view and for sensors that no robot carries; ``diagnostics`` get
-    warnings that they are left out.
+    The info is changed. JSON cannot store the view and sensors without a robot; ``diagnostics`` receive warnings about
+    them.
 
     Raises:
         OutputError: the file cannot be written, or a number is not finite. An existing file stays as it is.
@@ -94,7 +83,7 @@ def save_json(
 
 @contextmanager
 def placed_errors(path: str) -> Generator[None]:
-    """Turn errors about values into errors that name the file."""
+    """Convert errors about values into errors that name the file."""
     try:
         yield
     except SourceError:
@@ -102,13 +91,13 @@ def placed_errors(path: str) -> Generator[None]:
     except RavemjError as error:
         raise SourceError(str(error), Source(path)) from error
     except (ArithmeticError, RecursionError) as error:
-        raise SourceError("a number in the file is too large to compute with", Source(path)) from error
+        raise SourceError("a number in the file is too large or too small to compute with", Source(path)) from error
     except (TypeError, ValueError, LookupError) as error:  # a hundred places convert values; any can meet a wrong type
         raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(path)) from error
 
 
 def read_json(path: str) -> tuple[str, dict[str, Any]]:
-    """Return the path of a file that is looked for as ``Load`` does, and the object that it holds.
+    """Search a file as ``Load`` does; return its path and its JSON object.
 
     Raises:
         SourceError: The file is missing or broken.
@@ -118,7 +107,7 @@ def read_json(path: str) -> tuple[str, dict[str, Any]]:
 
 
 def _parsed(path: str) -> dict[str, Any]:
-    """Return the JSON object in a file, which has a list of bodies."""
+    """Parse the JSON object of a file, which must have a list of bodies."""
     try:
         content = json.loads(json_bytes(path).decode("utf-8-sig"), parse_constant=_refuse)
     except json.JSONDecodeError as error:
@@ -178,10 +167,10 @@ _SKIPS: dict[str, _Given] = {
 
 
 SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
-"""The argument ``atts`` of ``Save``: the name of a body, or texts by name; in pairs a name may occur twice."""
+"""Argument ``atts`` of ``Save``: the name of a body, or strings by name; in pairs a name may be repeated."""
 
 _WITH_SENSORS = (SelectionOptions.Everything, SelectionOptions.AllExceptBody)
-"""Selections that the sensors belong to which no robot carries."""
+"""Selections that include sensors without a robot."""
 
 _NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))  # as without <rigid_body>
 
@@ -203,19 +192,19 @@ _NO_EFFECT = {
     "ignoreexternaluri": "a body stands in the file itself where 'externalref' does not name it",
     "reusesimilar": "each body is written by itself",
 }
-"""Options of OpenRAVE that do not change what ``Load`` reads back, with the reason that a warning gives."""
+"""OpenRAVE's options that do not change what ``Load`` reads back, with the reason given in a warning."""
 
 _IN_MEMORY = ("collada", "json")
 _VALUES = {
     "skipwrite": tuple(_PARTS),
-    "format": tuple(SUFFIXES),
+    "format": ("collada", "openrave", "urdf", "json"),
     "meshes": ("stl", "obj"),
     "openravescheme": ("openrave",),
 }
 
 
 class Saving(Description):
-    """The methods that save models."""
+    """Methods that save environments."""
 
     _internal = ("write",)
 
@@ -268,7 +257,7 @@ class Saving(Description):
         atts: SaveArguments | None,
         diagnostics: Diagnostics,
     ) -> None:
-        """Do what ``Save`` does, and add its warnings to ``diagnostics``."""
+        """Save as ``Save`` does, and add the warnings to ``diagnostics``."""
         from ravemj.formats.writers import external_bodies, save  # noqa: PLC0415 - slow to import, and rarely wanted
 
         checked_kind(filename, (str, os.PathLike), "Save: filename", "a path")
@@ -290,11 +279,12 @@ class Saving(Description):
             sensors = ()
         bodies = _chosen(bodies, options, [value for name, value in given if name == "target"])
         names = [body.name for body in bodies]
-        if named.get("format") == "json" or ("format" not in named and is_json(path)):
+        if named.get("format") == "json" or ("format" not in named and format_of(path) == "json"):
             content = Scene(tuple(bodies), view, sensors=sensors)
             save_json(self.ExtractInfo(), path, content, skipped, diagnostics)
             return
-        kind = cast("ModelFormat", named.get("format", "collada"))
+        usual = "urdf" if format_of(path) == "urdf" else "collada"
+        kind = cast("ModelFormat", named.get("format", usual))
         if self._metre != 1 and kind == "collada":
             raise UnsupportedError("Save", "COLLADA files in other units than the metre")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
@@ -310,7 +300,7 @@ class Saving(Description):
     def WriteToMemory(
         self, filetype: str, options: int = SelectionOptions.Everything, atts: SaveArguments | None = None
     ) -> bytes:
-        """Return the content that ``Save`` writes to a file.
+        """Return the file content that ``Save`` would write.
 
         Args:
             filetype: ``collada``, or ``json`` for OpenRAVE's JSON.
@@ -330,7 +320,7 @@ class Saving(Description):
 
 
 def _checked(atts: SaveArguments | None, diagnostics: Diagnostics) -> list[tuple[str, str]]:
-    """Return the arguments as pairs of texts."""
+    """Return the arguments as pairs of strings."""
     if isinstance(atts, str):
         return [("target", atts)]
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())
@@ -354,7 +344,7 @@ def _check_words(name: str, value: str) -> None:
 
 
 def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) -> set[str]:
-    """Return the names of the bodies that the option ``externalref`` names."""
+    """Return the body names in the option ``externalref``."""
     asked = {word for name, value in given if name == "externalref" for word in value.split()}
     missing = sorted(asked - {"*", *names})
     if missing:
@@ -363,7 +353,6 @@ def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) ->
 
 
 def _chosen(bodies: Sequence[KinBody], options: int, targets: Sequence[str]) -> list[KinBody]:
-    """Return the bodies that are selected."""
     if options not in set(SelectionOptions):
         raise ArgumentError(f"Save: options: {options!r} is no SelectionOptions")
     names = [body.name for body in bodies]

@@ -1,9 +1,9 @@
-"""Viewers of an environment, pictures, and drawings of scripts."""
+"""Viewers, pictures and drawings of an environment."""
 
 import os
 import weakref
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal, cast
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,14 +30,13 @@ if TYPE_CHECKING:
     from ravemj.graphics.webgl.animation import Animation
     from ravemj.gui.viewers import Viewer
     from ravemj.gui.viewers.web import WebViewer
-    from ravemj.rave.environment import Environment
     from ravemj.rave.kinbody import KinBody
     from ravemj.trajectories.motion_arguments import MotionLike
 
 
 _DEFAULT_COLOR = (1.0, 0.5, 0.5, 1.0)  # OpenRAVE's pink
 _LABEL_POINT = 4.0
-"""Size of the point of a label [pixels]."""
+"""Size of the point beside a label [pixels]."""
 
 
 def _checked_lines(points: ArrayLike, width: float, colors: ArrayLike | None) -> tuple[Floats, float, Floats]:
@@ -55,7 +54,7 @@ def _checked_points(points: ArrayLike) -> Floats:
 
 
 def _checked_colors(colors: ArrayLike | None, count: int) -> Floats:
-    """Return as many colours with alpha, (count, 4)."""
+    """Return a colour with alpha for each element, (count, 4)."""
     numbers = np.atleast_2d(checked_numbers(_DEFAULT_COLOR if colors is None else colors, "colors"))
     if numbers.ndim > 2 or numbers.shape[1] not in (3, 4) or len(numbers) not in (1, count):
         message = f"colors: has shape {numbers.shape}, and should be one colour or {count}, of 3 or 4 numbers each"
@@ -86,7 +85,7 @@ def _checked_triangles(indices: ArrayLike | None, count: int) -> Ints:
 
 
 def _checked_texture(texture: ArrayLike) -> Floats:
-    """Return an image as colours with alpha, (H, W, 4) in 0..1."""
+    """Convert an image to colours with alpha, (H, W, 4), from 0 to 1."""
     numbers = checked_numbers(texture, "texture")
     if np.issubdtype(np.asarray(texture).dtype, np.integer):
         numbers /= 255
@@ -101,7 +100,7 @@ def _checked_texture(texture: ArrayLike) -> Floats:
 
 
 class GraphHandle(Handle):
-    """The handle of a drawing, which vanishes with the last reference to it: keep it while the drawing should show.
+    """Handle of a drawing, which disappears with the last reference to the handle.
 
     Example:
         >>> handle = env.plot3([0, 0, 1], 8)
@@ -116,24 +115,24 @@ class GraphHandle(Handle):
         super().__init__(drawings.remove, key)
 
     def SetTransform(self, transform: ArrayLike) -> None:
-        """Place the drawing.
+        """Set the pose of the drawing.
 
         Args:
-            transform: ``T_world_drawing``, where the frame goes in which the drawing was made: 4x4 or 3x4, or a pose
-                [w, x, y, z, tx, ty, tz]. Every call starts from what was drawn first.
+            transform: ``T_world_drawing``, relative to the original drawing: 4x4, 3x4, or a pose [w, x, y, z, tx, ty,
+                tz].
 
         Raises:
-            ArgumentError: this is no rigid transform.
+            ArgumentError: the transform is not rigid.
         """
         self._drawing.place(checked_transform(transform, "SetTransform: transform"))
 
     def SetShow(self, show: bool) -> None:
-        """Show the drawing, or hide it if ``show`` is False."""
+        """Show the drawing if ``show``, else hide it."""
         self._drawing.show(bool(show))
 
 
 class Viewing(EnvironmentPart):
-    """The viewers of an environment, pictures, which need no viewer, and drawings beside the bodies.
+    """Viewers, pictures (which do not need a viewer), and drawings of an environment.
 
     Drawings are points, lines, arrows, boxes, planes, triangles and labels. Colours are red, green and blue, 0 to 1,
     with alpha as an optional fourth number; the default is OpenRAVE's pink (1, 0.5, 0.5). Without a viewer, all methods
@@ -222,13 +221,13 @@ class Viewing(EnvironmentPart):
         self._check_alive()
         origins = checked_origins(embed)
         viewer = WebViewer(self._simulation, self._renderer, "web", host, port, token=token)
-        viewer.server.let_embed(origins)
+        viewer.server.allow_embedding(origins)
         self._close_viewers()
         self._attach(viewer)
         return viewer
 
     def _attach(self, viewer: "Viewer") -> None:
-        viewer.environment = weakref.ref(self)
+        viewer.environment = weakref.ref(self._environment)
         self._viewers.append(viewer)
 
     def _close_viewers(self) -> None:
@@ -303,7 +302,7 @@ class Viewing(EnvironmentPart):
         return self._renderer.render(view, self.look(background, LookChoices(shadows, floor, lights)), form)
 
     def look(self, background: ArrayLike | None = None, choices: LookChoices = AS_USUAL) -> Look:
-        """Return background, floor and lights of pictures; without a background, the viewer's, else the file's.
+        """Return background, floor and lights of pictures; the default background is the viewer's, else the file's.
 
         Raises:
             ArgumentError: the background is not a colour.
@@ -312,7 +311,7 @@ class Viewing(EnvironmentPart):
 
     @property
     def own_background(self) -> tuple[float, float, float] | None:
-        """The background that the viewer or the file has; None where neither sets one."""
+        """Background set by the viewer or the file; None if neither sets one."""
         return self._simulation.view.background if self._viewer is None else self._viewer.own_background
 
     def animation(  # noqa: PLR0913 - keyword arguments
@@ -326,6 +325,7 @@ class Viewing(EnvironmentPart):
         shadows: bool | None = None,
         floor: str = "auto",
         lights: Literal["studio", "model", "both"] = "both",
+        notes: Sequence[str] = (),
     ) -> "Animation":
         """Return an HTML page that plays a motion and can be turned and zoomed without a server.
 
@@ -335,8 +335,9 @@ class Viewing(EnvironmentPart):
         Args:
             motion: In any form that ``record`` accepts: a ``Motion``, a trajectory, rows of time and joint values, or
                 the path of a file. Joints stop at their limits, with a warning. Afterwards the robot is at the end of
-                the motion. Without a motion, the page shows the scene as it is.
+                the motion. Without a motion, the page shows the scene as it is, with a slider for each joint.
             robot: The body that moves; by default the first robot with joints, or the one whose joints a table names.
+                Without a motion, the body that has sliders; by default all bodies with joints.
             fps: Poses stored for each second. The page interpolates between them at the rate of the screen.
             camera: The first ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's, else the
                 file's, else a view of the whole motion.
@@ -345,6 +346,7 @@ class Viewing(EnvironmentPart):
             floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto``: one where neither script
                 nor file sets a background.
             lights: ``studio``, ``model`` (the model's own lights) or ``both``.
+            notes: Lines of text in a corner of the page.
 
         Returns:
             The page: ``save("swing.html")`` writes it, ``html`` is its text.
@@ -360,7 +362,7 @@ class Viewing(EnvironmentPart):
 
         self._check_alive()
         choices = LookChoices(shadows, floor, lights)
-        return animate(cast("Environment", self), motion, robot, fps, camera, background, choices)
+        return animate(self._environment, motion, robot, fps, camera, background, choices, notes=notes)
 
     def save_html(  # noqa: PLR0913 - keyword arguments
         self,
@@ -374,6 +376,7 @@ class Viewing(EnvironmentPart):
         shadows: bool | None = None,
         floor: str = "auto",
         lights: Literal["studio", "model", "both"] = "both",
+        notes: Sequence[str] = (),
     ) -> "Path":
         """Write a motion, or the scene as it is, as one HTML file that needs neither a server nor a network.
 
@@ -387,6 +390,7 @@ class Viewing(EnvironmentPart):
             shadows: Whether lights cast shadows.
             floor: ``auto``, ``on`` or ``off``.
             lights: ``studio``, ``model`` or ``both``.
+            notes: Lines of text in a corner of the page.
 
         Returns:
             The path.
@@ -405,11 +409,12 @@ class Viewing(EnvironmentPart):
             shadows=shadows,
             floor=floor,
             lights=lights,
+            notes=notes,
         )
         return page.save(path)
 
     def default_camera(self, aspect: float = 4 / 3) -> Camera:
-        """Return the default camera for pictures of an ``aspect`` of width to height.
+        """Return the default camera for pictures with the aspect ratio ``aspect``, width to height.
 
         It is the viewer's, else the file's, else one that shows the whole scene.
         """
@@ -422,7 +427,7 @@ class Viewing(EnvironmentPart):
 
     @property
     def renderer(self) -> SimulationRenderer:
-        """The renderer of the environment."""
+        """Renderer of the environment."""
         return self._renderer
 
     def _repr_png_(self) -> bytes:

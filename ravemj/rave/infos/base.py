@@ -1,13 +1,13 @@
-"""OpenRAVE's JSON format of infos: which key holds which field, and in which form.
+"""Base classes of infos, and OpenRAVE's JSON format of their fields.
 
-The fields of infos declare their keys, see ``base``. Writing and reading both multiply lengths by a given scale. Poses
-are [w, x, y, z, tx, ty, tz], and arrays are lists.
+The fields of infos declare their keys with ``json_field``. Writing and reading both multiply lengths by a given scale.
+Poses are [w, x, y, z, tx, ty, tz], and arrays are lists.
 """
 
-# Fields have the names that OpenRAVE gives them, and users put anything into them.
+# Fields have the names that OpenRAVE gives them, and users may put any value into them.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportUnknownMemberType=false
 # pyright: reportUnknownLambdaType=false
-# Users put anything into fields, which have the names that OpenRAVE gives them.
+# As above.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportPrivateUsage=false
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -34,7 +34,7 @@ Json = dict[str, Any]
 
 
 class Described(Protocol):
-    """An object that converts itself to JSON and back: an info."""
+    """Protocol of objects that convert themselves to JSON and back: infos."""
 
     def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
         """Return the object as JSON."""
@@ -46,7 +46,7 @@ class Described(Protocol):
 
 
 class Form(NamedTuple):
-    """The conversion of a field to JSON and back.
+    """Conversion of a field to JSON and back.
 
     Attributes:
         write: A function of the field and the scale that returns the JSON value.
@@ -58,13 +58,13 @@ class Form(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """A JSON key and its field.
+    """JSON key and its field.
 
     Attributes:
         key: The key.
         field: The name of the field.
         form: The conversion.
-        optional: Whether the key is left out if the field is None or has its default value.
+        optional: Whether the key is omitted if the field is None or has its default value.
         of: The attribute of the described object that holds the same value, for classes that look it up.
     """
 
@@ -76,7 +76,7 @@ class Entry(NamedTuple):
 
 
 def plain(value: Any) -> Any:  # noqa: ANN401 - what JSON can hold
-    """Return a value made of lists, dicts, numbers and texts."""
+    """Convert a value to lists, dicts, numbers and strings."""
     if isinstance(value, Enum):
         return plain(value.value)
     if isinstance(value, np.ndarray | np.generic):
@@ -89,7 +89,7 @@ def plain(value: Any) -> Any:  # noqa: ANN401 - what JSON can hold
 
 
 def lengths(power: int = 1) -> Form:
-    """Return the form of numbers with the unit m^power."""
+    """Return the conversion of numbers with the unit m^power."""
 
     def scaled(values: Any, scale: float) -> Any:  # noqa: ANN401 - a number or an array
         return plain(np.asarray(values, dtype=float) * scale**power)
@@ -132,7 +132,7 @@ def _read_parameters(items: Sequence[Json], key: str, present: Mapping[str, Any]
 
 
 def parameters(key: str) -> Form:
-    """Return the form of named values: a list of dicts, each with ``id`` and with the value under ``key``."""
+    """Return the conversion of named values: a list of dicts, each with ``id`` and the value under ``key``."""
     return Form(
         lambda values, scale: [{"id": name, key: plain(value)} for name, value in values.items()],
         lambda items, scale, present: _read_parameters(items, key, present),
@@ -140,7 +140,7 @@ def parameters(key: str) -> Form:
 
 
 def info(kind: Callable[[], Described]) -> Form:
-    """Return the form of a field that holds one info or None."""
+    """Return the conversion of a field with an info or None."""
 
     def read(value: Json | None, scale: float, present: Described | None) -> Described | None:
         if value is None:
@@ -153,14 +153,14 @@ def info(kind: Callable[[], Described]) -> Form:
 
 
 def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None = None) -> Form:
-    """Return the form of a list of infos.
+    """Return the conversion of a list of infos.
 
-    Reading changes the info of the list that has the same id, or else the same name. Without one, it adds an info. An
-    item with ``__deleted__`` removes its info.
+    Reading updates the info with the same id, or else the same name. If there is none, it adds an info. An item with
+    ``__deleted__`` removes its info.
 
     Args:
         kind: The class of the infos.
-        robot: The class for items with ``isRobot``, if it is another one.
+        robot: The class for items with ``isRobot``, if it differs.
     """
 
     def read(items: Sequence[Json], scale: float, present: Sequence[Described]) -> list[Described]:
@@ -185,31 +185,31 @@ def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None =
 
 
 class _Called:
-    """A list of infos, found by their ids and names."""
+    """List of infos with look-up by id and name."""
 
     def __init__(self, infos: Sequence[Described]) -> None:
-        self._place_of: dict[int, int] = {}  # also of infos that were removed and may come back, by identity
+        self._place_of: dict[int, int] = {}  # includes removed infos that may be added again, by identity
         self._at: dict[int, Described] = {}
         self._called: dict[tuple[str, object], set[int]] = {}
         for info in infos:
             self.add(info)
 
     def add(self, info: Described) -> None:
-        """Add an info at the end, or where it was before."""
+        """Add an info at the end, or at its previous position."""
         place = self._place_of.setdefault(id(info), len(self._place_of))
         self._at[place] = info
         for key in _calls("_", vars(info)):
             self._called.setdefault(key, set()).add(place)
 
     def remove(self, info: Described) -> None:
-        """Remove an info, which has the id and the name that it had when it was added."""
+        """Remove an info, whose id and name have not changed since it was added."""
         place = self._place_of[id(info)]
         del self._at[place]
         for key in _calls("_", vars(info)):
             self._called[key].discard(place)
 
     def first(self, item: Json) -> Described | None:
-        """Return the first info that has the id or the name of an item."""
+        """Return the first info with the id or the name of an item."""
         places = [place for key in _calls("", item) for place in self._called.get(key, ())]
         return self._at[min(places)] if places else None
 
@@ -227,7 +227,7 @@ def _calls(prefix: str, fields: Mapping[str, object]) -> Iterator[tuple[str, obj
 
 
 def named(names: Mapping[Any, str]) -> Form:
-    """Return the form of an enumeration; ``names`` are the words that JSON has for its members."""
+    """Return the conversion of an enumeration; ``names`` are the JSON words of its members."""
     values = {word: value for value, word in reversed(list(names.items()))}  # the first of two equal words wins
 
     def read(word: str, scale: float, present: object) -> Any:  # noqa: ANN401 - a member of the enumeration
@@ -243,7 +243,7 @@ def _text(value: Any) -> str | None:  # noqa: ANN401 - whatever JSON holds
     if value is not None and not isinstance(value, str):
         raise TypeError(f"is {value!r}, and should be a text")
     if value is not None:
-        value.encode()  # raises at halves of surrogate pairs, which no file and no terminal takes
+        value.encode()  # raises an error for unpaired surrogates, which neither files nor terminals accept
     return value
 
 
@@ -257,7 +257,7 @@ T = TypeVar("T")
 
 
 class FieldOfClass:
-    """A class attribute for a field that has no default value, so that ``dir(Class)`` and scripts find it there."""
+    """Class attribute for a field without default value, so that ``dir(Class)`` and scripts find it there."""
 
 
 def json_field(
@@ -266,12 +266,12 @@ def json_field(
     """Declare a field of an info and its key in JSON.
 
     Args:
-        key: The key; empty for a field that JSON leaves out, or has under keys that depend on other fields.
+        key: The key; empty for a field without a fixed key in JSON.
         form: The conversion to JSON and back.
-        default: The value of new infos, which get copies of it.
-        optional: Whether the key is left out if the field is None or has its default value.
+        default: The default value; each new info gets a copy.
+        optional: Whether the key is omitted if the field is None or has its default value.
         of: The attribute of the described object that holds the same value, for classes that look it up.
-        kw_only: Whether the constructor takes the field only by its name.
+        kw_only: Whether the constructor accepts the field only by keyword.
     """
     metadata = {"entry": Entry(key, "", form, optional, of)}
     if isinstance(default, Hashable):
@@ -282,9 +282,9 @@ def json_field(
 
 @dataclass_transform(eq_default=False, field_specifiers=(json_field, field))
 def info_class(cls: type[T]) -> type[T]:
-    """Make a class a dataclass whose fields can be found on the class as well, with a table of their JSON keys.
+    """Class decorator: a dataclass whose fields are also class attributes, with a table of their JSON keys.
 
-    The key of a field with a mere default is its name in camel case; names with an underscore in front have none.
+    The key of a field with a plain default is its name in camel case; names with a leading underscore have none.
     """
     made: Any = dataclass(eq=False, repr=False)(cls)
     for one in fields(made):
@@ -299,19 +299,19 @@ def info_class(cls: type[T]) -> type[T]:
 
 
 def _camel(name: str) -> str:
-    """Return the JSON key of a field: ``gearRatio`` for ``gear_ratio``, nothing for ``_name``."""
+    """Return the JSON key of a field: ``gearRatio`` for ``gear_ratio``, empty for ``_name``."""
     first, *rest = name.split("_")
     return first and first + "".join(word.capitalize() for word in rest)
 
 
 @info_class
 class Info(ApiObject):
-    """The base class of infos. They compare by their fields, and print as the expression that makes them."""
+    """Base class of infos. They compare by their fields, and print as the expression that makes them."""
 
     _called: ClassVar[str]
-    """The class as users write it, for ``repr`` and error messages; by default its name."""
+    """Class name for ``repr`` and error messages; by default its own."""
     _entries: ClassVar[tuple[Entry, ...]]
-    """The JSON keys, made from the fields."""
+    """JSON keys, made from the fields."""
     _internal: ClassVar[tuple[str, ...]] = (
         *("of", "geometry", "draw", "link", "adjacent", "joint", "motor", "manipulator", "sensor", "camera"),
         *("named_values", "transform", "values_by_axis", "same_structure", "parameters", "with_parameters"),
@@ -379,14 +379,14 @@ class Info(ApiObject):
 
 @info_class
 class IdentifiedInfo(Info):
-    """An info with an id."""
+    """Info with an id."""
 
     _id: str | None = json_field("id", TEXT, default=None, kw_only=True)
 
 
 @info_class
 class ParameterFields(IdentifiedInfo):
-    """The parameters that users attach to links and joints: numbers, integers and texts by name."""
+    """Parameters that users attach to links and joints: numbers, integers and strings by name."""
 
     _mapFloatParameters: Mapping[str, ArrayLike] = json_field(
         "floatParameters", parameters("values"), default={}, optional=True
@@ -399,14 +399,14 @@ class ParameterFields(IdentifiedInfo):
     )
 
     def with_parameters(self, parameters: Parameters) -> Self:
-        """Set the fields from parameters, and return this object."""
+        """Set the fields from parameters; return this object."""
         self._mapFloatParameters = {name: np.array(values) for name, values in parameters.floats}
         self._mapIntParameters = {name: np.array(values, dtype=np.int_) for name, values in parameters.integers}
         self._mapStringParameters = dict(parameters.texts)
         return self
 
     def parameters(self) -> Parameters:
-        """Return the parameters of the fields."""
+        """Return the fields as parameters."""
         floats = {name: checked_numbers(values, name).ravel() for name, values in self._mapFloatParameters.items()}
         integers = {name: checked_numbers(values, name).ravel() for name, values in self._mapIntParameters.items()}
         return Parameters(
@@ -420,7 +420,7 @@ def vector(values: ArrayLike, name: str) -> Vec3:
     """Return the first three numbers of a field.
 
     Raises:
-        ArgumentError: there are fewer numbers, or one is not finite.
+        ArgumentError: there are fewer than three numbers, or one is not finite.
     """
     numbers = checked_numbers(values, name).ravel()
     if len(numbers) < 3 or not np.isfinite(numbers[:3]).all():
@@ -439,11 +439,11 @@ def _default(one: Field[Any]) -> object:
 
 
 _ROUNDING = 1e-14
-"""Matrices that are the same differ by this much once their rotations were quaternions, as in JSON."""
+"""Tolerance of equal matrices after a conversion of their rotations to quaternions, as in JSON."""
 
 
 def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put into fields
-    """Return whether two values are equal, arrays and lists compared element by element."""
+    """Return whether two values are equal; arrays and lists are compared element by element."""
     if isinstance(first, TriMesh) and isinstance(second, TriMesh):
         return _same(first.toDict(), second.toDict())
     if isinstance(first, Mapping) and isinstance(second, Mapping):
@@ -454,12 +454,12 @@ def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put
     if isinstance(first, list | tuple) and isinstance(second, list | tuple):
         return len(first) == len(second) and all(map(_same, first, second))
     if first in (None, "") and second in (None, ""):
-        return True  # in OpenRAVE's JSON a text that is not there is empty
+        return True  # in OpenRAVE's JSON a missing string is empty
     return bool(first == second)
 
 
 def _written(value: object) -> str:
-    """Return a value as an expression that needs no imports: arrays as lists."""
+    """Return a value as an expression without imports: arrays as lists."""
     if isinstance(value, Enum):
         return f"{type(value).__name__}.{value.name}"
     if isinstance(value, np.ndarray | np.generic):

@@ -1,4 +1,4 @@
-"""Descriptions of bodies, robots, environments, and of what is attached to them."""
+"""Descriptions of bodies, robots, environments and attached parts."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 
 @info_class
 class ManipulatorInfo(IdentifiedInfo):
-    """The description of a manipulator: a chain of links with a tool at its end.
+    """Description of a manipulator: a chain of links with a tool at its end.
 
     Attributes:
         _name: The name.
@@ -63,7 +63,7 @@ class ManipulatorInfo(IdentifiedInfo):
         _vGripperJointNames: The names of the gripper's joints.
         _vChuckingDirection: For each DOF of these joints the sign of closing; OpenRAVE 0.9 calls the field
             ``_vClosingDirection``.
-        _sIkSolverXMLId: The name of an IK solver; not used.
+        _sIkSolverXMLId: The name of the IK solver that ``GetIkSolver`` makes, as ``<iksolver>`` has it.
         _grippername: The name of the ``GripperInfo`` that describes the gripper.
     """
 
@@ -99,6 +99,7 @@ class ManipulatorInfo(IdentifiedInfo):
             _vdirection=np.array(arm.direction),
             _vGripperJointNames=[body.joints[joint].name for joint in arm.gripper_joints],
             _grippername=arm.gripper_name,
+            _sIkSolverXMLId=arm.ik_solver,
         )
 
     def manipulator(self) -> "ManipulatorBuilder":
@@ -121,12 +122,13 @@ class ManipulatorInfo(IdentifiedInfo):
             gripper_joints=list(self._vGripperJointNames),
             closing_direction=checked_numbers(self._vChuckingDirection, "_vChuckingDirection").ravel().tolist(),
             gripper_name=self._grippername or "",
+            ik_solver=self._sIkSolverXMLId or "",
         )
 
 
 @info_class
 class AttachedSensorInfo(IdentifiedInfo):
-    """The description of a sensor on a link.
+    """Description of a sensor on a link.
 
     Attributes:
         _name: The name.
@@ -189,7 +191,7 @@ class AttachedSensorInfo(IdentifiedInfo):
 
 @info_class
 class GripperInfo(IdentifiedInfo):
-    """The description of a gripper. Manipulators name it in ``ManipulatorInfo._grippername``.
+    """Description of a gripper. Manipulators name it in ``ManipulatorInfo._grippername``.
 
     Attributes:
         _name: The name.
@@ -204,7 +206,7 @@ class GripperInfo(IdentifiedInfo):
 
 @info_class
 class ConnectedBodyInfo(IdentifiedInfo):
-    """A body that can be connected to a link of a robot. Once connected, it is part of the robot.
+    """Description of a body that can be connected to a link of a robot. Once connected, it is part of the robot.
 
     Attributes:
         _name: The name of the body. With an underscore, it is the prefix of the names of its parts.
@@ -237,14 +239,14 @@ class ConnectedBodyInfo(IdentifiedInfo):
 
 @info_class
 class GrabbedInfo(IdentifiedInfo):
-    """A grabbed body, and how its holder holds it; ``ResetGrabbed`` restores it from this.
+    """Description of a grab; ``ResetGrabbed`` restores it.
 
     Attributes:
-        _grabbedname: The name of the held body.
-        _robotlinkname: The name of the link that holds it.
+        _grabbedname: The name of the grabbed body.
+        _robotlinkname: The name of the grabbing link.
         _trelative: ``T_link_body``, shape (4, 4).
-        _setIgnoreRobotLinkNames: The names of the holder's links that are not tested against the held body.
-        _grabbedUserData: Data of the user, anything that JSON can hold. ravemj only stores it.
+        _setIgnoreRobotLinkNames: The names of the holder's links whose collisions with the body are ignored.
+        _grabbedUserData: User data, any JSON value. ravemj only stores it.
     """
 
     _id: str | None = json_field("id", TEXT, default="", optional=True, kw_only=True)
@@ -256,7 +258,7 @@ class GrabbedInfo(IdentifiedInfo):
 
     @classmethod
     def of(cls, holder: scene.KinBody, grab: GrabbedBody) -> Self:
-        """Return the info of one body that ``holder`` holds."""
+        """Return the info of a body grabbed by ``holder``."""
         links = [link.name for link in holder.links]
         ignored = sorted(links[index] for index in grab.ignored)
         return cls(grab.body.scene.name, links[grab.link], grab.T_link_body.copy(), ignored)
@@ -268,7 +270,7 @@ class GrabbedInfo(IdentifiedInfo):
 
 T = TypeVar("T")
 
-_NEAR = 1e-12  # the rounding of numbers that went through a file
+_NEAR = 1e-12  # tolerance for numbers that went through a file
 
 
 class ExtractInfoOptions(NamedFlag):
@@ -290,7 +292,7 @@ _DOF_VALUES = Form(
 
 @info_class
 class KinBodyInfo(IdentifiedInfo):
-    """The description of a body.
+    """Description of a body.
 
     Attributes:
         _name: The name of the body.
@@ -322,11 +324,11 @@ class KinBodyInfo(IdentifiedInfo):
         return None if np.array_equal(T_world_link0, np.eye(4)) else T_world_link0
 
     def same_structure(self, other: "KinBodyInfo") -> bool:
-        """Return whether two infos describe the same links and joints; poses and joint values do not count."""
+        """Return whether two infos describe the same links and joints; poses and joint values are ignored."""
         return _alike(self._standing().SerializeJSON(), other._standing().SerializeJSON())
 
     def _standing(self) -> "KinBodyInfo":
-        """Return a copy of the info without poses, joint values and held bodies."""
+        """Return a copy of the info without poses, joint values and grabbed bodies."""
         links = [replace(link, _t=np.eye(4)) for link in self._vLinkInfos]
         joints = [replace(joint, _vcurrentvalues=None) for joint in self._vJointInfos]
         return replace(
@@ -340,7 +342,7 @@ class KinBodyInfo(IdentifiedInfo):
 
 @info_class
 class RobotBaseInfo(KinBodyInfo):
-    """The description of a robot.
+    """Description of a robot.
 
     Attributes:
         _vManipInfos: The manipulators, a list of ``ManipulatorInfo``.
@@ -380,7 +382,7 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
 
     Args:
         info: The description.
-        like: An existing body, which says whether to make a robot, and gives the name if the info has none.
+        like: An existing body, which determines whether to make a robot, and the name if the info has none.
 
     Raises:
         RavemjError: a list of the info contains an object of another class, two links share a name, or the links and
@@ -421,7 +423,7 @@ def _checked(infos: Sequence[T], kind: type[T]) -> Sequence[T]:
 def _asked(
     builder: "BodyBuilder", values: dict[tuple[str, int], float], diagnostics: Diagnostics
 ) -> list[float] | None:
-    """Return the value of each DOF, or None if the info asks for no values."""
+    """Return the value of each DOF, or None if the info has no values."""
     active = [joint for joint in builder.joints if joint.active]
     known = {(joint.name, index) for joint in builder.joints for index in range(len(joint.axes))}
     for name, index in values.keys() - known:
@@ -441,9 +443,9 @@ Rename = Callable[[str | None], str]
 
 
 def with_connected(robot: RobotBaseInfo, bodies: Iterable[ConnectedBodyInfo]) -> RobotBaseInfo:
-    """Return a robot with the parts of connected bodies.
+    """Return a robot with the parts of connected bodies added.
 
-    The names of these parts begin with the name of their body and an underscore.
+    The names of these parts start with the name of their body and an underscore.
 
     Raises:
         ArgumentError: the robot does not have the link that should carry a body, or a body has no links.
@@ -454,7 +456,7 @@ def with_connected(robot: RobotBaseInfo, bodies: Iterable[ConnectedBodyInfo]) ->
 
 
 def only_parts_of(robot: RobotBaseInfo, own: RobotBaseInfo) -> RobotBaseInfo:
-    """Return a robot reduced to the parts whose names another description contains."""
+    """Return a robot reduced to the parts named in another description."""
     kept = {name: {one._name for one in getattr(own, name)} for name in _LISTS}
     parts = {name: [one for one in getattr(robot, name) if one._name in kept[name]] for name in _LISTS}
     joints = kept["_vJointInfos"]
@@ -512,14 +514,14 @@ def _with_one(robot: RobotBaseInfo, body: ConnectedBodyInfo) -> RobotBaseInfo:
 
 
 def _renamed(joint: JointInfo, own: Rename) -> JointInfo:
-    # Equations contain the names of joints: every word that is one gets the prefix, functions and numbers do not.
+    # Equations contain the names of joints: each of these words gets the prefix, functions and numbers do not.
     mimic = [one and [_WORD.sub(lambda word: own(word[0]), equation) for equation in one] for one in joint._vmimic]
     linkname0, linkname1 = own(joint._linkname0), own(joint._linkname1)
     return replace(joint, _name=own(joint._name), _linkname0=linkname0, _linkname1=linkname1, _vmimic=mimic)
 
 
 def _weld(body: ConnectedBodyInfo, carrier: str, root: str) -> JointInfo:
-    """Return the joint without DOFs that fixes a body to the robot, under OpenRAVE's name for it."""
+    """Return the fixed joint between a body and the robot, under OpenRAVE's name for it."""
     return JointInfo(
         _name=f"{body._name}___dummyconnectedbody__",
         _type=JointType.Prismatic,
@@ -543,12 +545,12 @@ _BODIES = infos(KinBodyInfo, robot=RobotBaseInfo)
 
 @info_class
 class EnvironmentBaseInfo(Info):
-    """The description of an environment.
+    """Description of an environment.
 
     Attributes:
         _vBodyInfos: The bodies, a list of ``KinBodyInfo`` and ``RobotBaseInfo``.
         _gravity: The gravitational acceleration in the world frame [m/s^2], shape (3,).
-        _description: A text for people; ``_keywords`` is a list of words.
+        _description: Free text; ``_keywords`` is a list of words.
         _uInt64Parameters: Integers of the user by name.
         _unitInfo: The units, a ``UnitInfo``.
     """

@@ -1,6 +1,6 @@
-"""Descriptions of shapes, and their JSON format."""
+"""Descriptions of geometries, and their JSON format."""
 
-# JSON and users put anything into the fields that the functions of forms take.
+# JSON and users may put any value into the fields that the functions of forms get.
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownMemberType=false
 # The fields have the names that OpenRAVE gives them.
@@ -45,11 +45,11 @@ if TYPE_CHECKING:
 
 
 VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
-"""The fields of sizes that are vectors, in their order; sizes that are numbers share the first."""
+"""Vector-valued fields of sizes, in order; scalar sizes share the first."""
 
 
 class SideWallType(NamedInt):
-    """The side of a cage that a wall stands on: towards negative or positive x or y."""
+    """Side of a cage on which a wall stands: negative or positive x or y."""
 
     NX = 0
     PX = 1
@@ -59,7 +59,7 @@ class SideWallType(NamedInt):
 
 @dataclass
 class SideWall:
-    """A wall of a cage.
+    """Wall of a cage.
 
     Attributes:
         transf: ``T_cage_wall``, shape (4, 4).
@@ -74,7 +74,7 @@ class SideWall:
 
 @dataclass
 class AxialSlice:
-    """The radius of a shape of revolution at one height.
+    """Radius of a shape of revolution at one height.
 
     Attributes:
         zOffset: The height [m].
@@ -86,7 +86,7 @@ class AxialSlice:
 
 
 class GeometrySizes(IdentifiedInfo):
-    """The sizes of a shape by name. As in OpenRAVE, getters read the same numbers, whatever the type is."""
+    """Sizes of a shape by name. As in OpenRAVE, getters read the same fields for any type."""
 
     _type: GeometryType
     _t: ArrayLike
@@ -96,11 +96,11 @@ class GeometrySizes(IdentifiedInfo):
     _vCollisionScale: ArrayLike
 
     def GetBoxHalfExtents(self) -> Floats:
-        """Return half the edge lengths of a box [m], shape (3,)."""
+        """Return the half extents of a box [m], shape (3,)."""
         return _first(self._vGeomData)
 
     def SetBoxHalfExtents(self, halfExtents: ArrayLike) -> None:
-        """Set ``halfExtents``, half the edge lengths of a box [m], shape (3,)."""
+        """Set ``halfExtents``, the half extents of a box [m], shape (3,)."""
         self._vGeomData = checked_vector(halfExtents, 3, "SetBoxHalfExtents: halfExtents")
 
     def GetContainerOuterExtents(self) -> Floats:
@@ -120,11 +120,11 @@ class GeometrySizes(IdentifiedInfo):
         self._vGeomData2 = checked_vector(innerExtents, 3, "SetContainerInnerExtents: innerExtents")
 
     def GetCageBaseHalfExtents(self) -> Floats:
-        """Return half the edge lengths of a cage's base [m], shape (3,)."""
+        """Return the half extents of a cage's base [m], shape (3,)."""
         return _first(self._vGeomData)
 
     def SetCageBaseHalfExtents(self, halfExtents: ArrayLike) -> None:
-        """Set ``halfExtents``, half the edge lengths of a cage's base [m], shape (3,)."""
+        """Set ``halfExtents``, the half extents of a cage's base [m], shape (3,)."""
         self._vGeomData = checked_vector(halfExtents, 3, "SetCageBaseHalfExtents: halfExtents")
 
     def GetSphereRadius(self) -> float:
@@ -174,7 +174,7 @@ class GeometrySizes(IdentifiedInfo):
             return None, None
         outer, inner = self.GetContainerOuterExtents(), self.GetContainerInnerExtents()
         T_link_box = np.array(self._t, dtype=float)
-        # The frame of a container is at the centre of its bottom, and the empty box reaches up to its rim.
+        # The origin of a container is at the centre of its bottom, and the empty box extends up to its rim.
         T_link_box[:3, 3] += T_link_box[:3, 2] * (outer[2] - inner[2] / 2)
         return T_link_box, inner / 2
 
@@ -190,12 +190,12 @@ class GeometrySizes(IdentifiedInfo):
 
 
 def _first(numbers: ArrayLike) -> Floats:
-    """Return the first three numbers, with zeros for those that are missing."""
+    """Return the first three numbers; missing ones are 0."""
     return np.array([*np.ravel(np.asarray(numbers, dtype=float)), 0.0, 0.0, 0.0])[:3]
 
 
 TYPE_FORM = named({kind: kind.name.lower() for kind in GeometryType} | {GeometryType.None_: ""})
-"""The form of types of shapes."""
+"""JSON conversion of shape types."""
 
 _EXTENTS = Form(
     lambda numbers, scale: (_first(numbers) * scale).tolist(),
@@ -204,7 +204,7 @@ _EXTENTS = Form(
 
 
 def _number(place: int) -> Form:
-    """Return the JSON form of one number of a field with several."""
+    """Return the JSON conversion of one element of a vector field."""
 
     def read(value: float, scale: float, present: Any) -> Floats:  # noqa: ANN401 - what users put into the field
         numbers = np.array([*_first(present), 0.0])
@@ -249,7 +249,7 @@ _SLICES = Form(
 
 
 def _of_sizes(shape: type[scene.Shape]) -> Iterator[Entry]:
-    """Yield the keys of a shape, named like its sizes; see ``GeometryInfo`` for the fields that hold them."""
+    """Yield the JSON keys of a shape, named like its sizes; see ``GeometryInfo`` for their fields."""
     vectors, places = iter(VECTORS), itertools.count()
     for name, kind, optional in shape.sizes():
         first, *others = name.split("_")
@@ -279,7 +279,7 @@ _SIZES_JSON = {GeometryType[one.name]: tuple(_of_sizes(one.shape)) for one in sc
         Entry("sideWalls", "_vSideWalls", _WALLS, optional=True),
     ),
 }
-"""The keys of sizes in JSON. No shape has one of the last three types; only infos know them."""
+"""JSON keys of the sizes of each type. The last three types have no shape in the scene; only infos know them."""
 
 
 def _mesh_json(mesh: TriMesh, scale: float) -> Json:
@@ -293,7 +293,7 @@ _SHAPES = {GeometryType[one.name]: one.shape for one in scene.SHAPE_TYPES}
 
 @info_class
 class GeometryInfo(GeometrySizes):
-    """The description of a collision geometry of a link.
+    """Description of a collision geometry of a link.
 
     Attributes:
         _type: The type of the shape, a ``GeometryType``.
@@ -375,7 +375,7 @@ class GeometryInfo(GeometrySizes):
         return info
 
     def _take(self, shape: scene.Shape) -> None:
-        """Set the fields of the sizes: each vector of a shape fills a field, and its scalars share the first one."""
+        """Set the fields of the sizes: each vector fills a field, and scalars share the first one."""
         vectors, numbers = iter(VECTORS), list[float]()
         for size in shape.sizes():
             value = getattr(shape, size.name)
@@ -438,7 +438,6 @@ class GeometryInfo(GeometrySizes):
         return kind.of_sizes(sizes)
 
     def _numbers(self, count: int) -> list[float]:
-        """Return the first numbers of ``_vGeomData``."""
         numbers = checked_numbers(self._vGeomData, "GeometryInfo._vGeomData").ravel()
         if len(numbers) < count or not np.isfinite(numbers[:count]).all():
             found = numbers.tolist()
@@ -468,13 +467,13 @@ class GeometryInfo(GeometrySizes):
         return trimesh_of(self.geometry().triangulated())
 
     def draw(self, filename: str) -> None:
-        """Draw a mesh file in place of the shape; an empty name draws the shape itself."""
+        """Set a mesh file to draw instead of the shape; an empty name draws the shape itself."""
         self._filenamerender, self._drawn = filename or None, (None, None)
 
     def _display(self) -> tuple[scene.Surface, ...] | None:
-        """Return the surfaces that are drawn in place of the shape, or None if the shape itself is drawn.
+        """Return the surfaces that are drawn instead of the shape; None draws the shape itself.
 
-        They are those of the geometry that this info was made from, unless another file was set since.
+        They are those of the geometry that this info was made from, unless another file has been set.
         """
         name, surfaces = self._drawn
         file = _file(self._filenamerender, self._vRenderScale)
@@ -484,7 +483,6 @@ class GeometryInfo(GeometrySizes):
 
 
 def _four(*numbers: float) -> Floats:
-    """Return the numbers as an array of four, with zeros for the rest."""
     return np.array([*numbers, 0.0, 0.0, 0.0, 0.0])[:4]
 
 
@@ -493,7 +491,6 @@ def _file(name: str | None, scale: ArrayLike) -> scene.MeshFile | None:
 
 
 def _parts(file: scene.MeshFile) -> "tuple[MeshPart, ...]":
-    """Read a mesh file."""
     from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
 
     return read_mesh(existing(file.name), file.scale)

@@ -1,6 +1,6 @@
-"""Descriptions of joints, their motors and the hardware that commands them."""
+"""Descriptions of joints, their motors and control hardware."""
 
-# JSON and users put anything into the fields that the functions of forms take.
+# JSON and users may put any value into the fields that the functions of forms get.
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownMemberType=false
 # The fields have the names that OpenRAVE gives them.
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 class JointControlMode(NamedInt):
-    """The hardware that drives a joint of a real robot."""
+    """Hardware that drives a joint of a real robot."""
 
     JCM_None = 0
     JCM_RobotController = 1
@@ -54,10 +54,10 @@ class JointControlMode(NamedInt):
 
 @info_class
 class ElectricMotorActuatorInfo(Info):
-    """An electric motor with a gear. Its maximum torque replaces ``JointInfo._vmaxtorque``.
+    """Electric motor with a gear. Its maximum torque replaces ``JointInfo._vmaxtorque``.
 
     Attributes:
-        gear_ratio: Turns of the motor for one turn of the joint.
+        gear_ratio: Motor turns per joint turn.
         max_instantaneous_torque: The peak torque of the motor [N m].
         nominal_torque: The continuous torque of the motor [N m], used if the peak torque is 0.
         rotor_inertia: The inertia of the rotor [kg m^2].
@@ -85,7 +85,7 @@ class ElectricMotorActuatorInfo(Info):
     viscous_friction: float = 0.0
 
     def motor(self) -> "Motor":
-        """Return the torque limit, inertia and friction that the motor has at the joint."""
+        """Return the motor's torque limit, inertia and friction at the joint."""
         from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS, motor_of  # noqa: PLC0415 - rarely wanted
 
         return motor_of({name: float(getattr(self, name)) for name in ACTUATOR_TAGS})
@@ -93,7 +93,7 @@ class ElectricMotorActuatorInfo(Info):
 
 @info_class
 class JointControlInfo_RobotController(Info):  # noqa: N801 - OpenRAVE's name
-    """The controller that drives a joint of a real robot. ravemj stores it only, since it drives no hardware.
+    """Controller of a joint of a real robot. ravemj only stores it, since it drives no hardware.
 
     Attributes:
         controllerType: The type of the controller.
@@ -114,7 +114,7 @@ class JointControlInfo_RobotController(Info):  # noqa: N801 - OpenRAVE's name
 
 @info_class
 class JointControlInfo_IO(Info):  # noqa: N801 - OpenRAVE's name
-    """The inputs and outputs that drive a joint, for instance that of a gripper. ravemj stores it only.
+    """Inputs and outputs that drive a joint, for instance of a gripper. ravemj only stores them.
 
     Attributes:
         deviceType: The type of the device.
@@ -135,7 +135,7 @@ class JointControlInfo_IO(Info):  # noqa: N801 - OpenRAVE's name
 
 @info_class
 class JointControlInfo_ExternalDevice(Info):  # noqa: N801 - OpenRAVE's name
-    """Another device that drives a joint. ravemj stores it only.
+    """Other device that drives a joint. ravemj only stores it.
 
     Attributes:
         externalDeviceType: The type of the device.
@@ -173,17 +173,17 @@ _MIMICS = Form(
     lambda items, scale, present: [[*one["equations"], "", ""][:3] for one in items],
 )
 _VALUES = Form(PLAIN.write, PLAIN.read)
-"""Joint values and their derivatives: plain numbers, or lengths if the joint is prismatic."""
+"""Conversion of joint values and their derivatives: plain numbers, or lengths if the joint is prismatic."""
 
 
 def _of_axes(key: str, of: str, default: float, form: Form = PLAIN) -> ArrayLike:
-    """Declare a field with one number for each axis, which ``scene.Axis`` calls ``of``."""
+    """Declare a field with one number for each axis; ``of`` is its name in ``scene.Axis``."""
     return json_field(key, form, default=np.full(3, default), of=of)
 
 
 @info_class
 class JointInfo(ParameterFields):
-    """The description of a joint between two links.
+    """Description of a joint between two links.
 
     Fields with one number for each axis may be longer than the number of axes.
 
@@ -194,14 +194,14 @@ class JointInfo(ParameterFields):
         _linkname1: The name of the second link.
         _vanchor: A point on the axis, in the frame of the first link [m], shape (3,).
         _vaxes: The directions of the axes in the frame of the first link, a list of vectors of shape (3,).
-        _vcurrentvalues: The joint values at the link poses of the infos [rad or m]; None stands for 0.
+        _vcurrentvalues: The joint values at the link poses of the infos [rad or m]; None means 0.
         _vlowerlimit: Lower limits [rad or m]. A joint whose lower limits equal its upper limits is a weld.
         _vupperlimit: Upper limits [rad or m].
         _vmaxvel: Velocity limits [rad/s or m/s]; _vmaxaccel, _vmaxjerk, _vmaxtorque, _vweights and _vresolution
             likewise.
         _vhardmaxvel: Velocity limits that planners never exceed, 0 for none; _vhardmaxaccel and _vhardmaxjerk likewise.
         _voffsets: See ``Joint.SetWrapOffset``.
-        _bIsCircular: Whether the axis turns without end; then limits do not count.
+        _bIsCircular: Whether the axis rotates without limits.
         _bIsActive: Whether the joint has DOFs.
         _vmimic: The equations of a mimic joint: for each axis a list with those of position, velocity and acceleration.
         _infoElectricMotor: The motor, or None.
@@ -258,7 +258,7 @@ class JointInfo(ParameterFields):
 
     @classmethod
     def of(cls, body: scene.KinBody, index: int, values: Sequence[float]) -> Self:
-        """Return the description of an existing joint, with its links at given joint values.
+        """Return the description of a joint at given joint values.
 
         Args:
             body: The body.
@@ -338,7 +338,7 @@ class JointInfo(ParameterFields):
         axes = self._made_axes(kind, values)
         anchor = vector(self._vanchor, "JointInfo._vanchor")
         T_first_second = links[first].pose.inverse() @ links[second].pose
-        # The builder wants the pose of the second link at value 0, and the infos give it at the current values.
+        # The builder expects the pose of the second link at value 0; infos have it at the current values.
         if kind == "spherical":
             T_first_second = about(anchor, wxyz_from_rotation_vector((values[0], values[1], values[2]))).inverse() @ (
                 T_first_second
@@ -379,7 +379,7 @@ class JointInfo(ParameterFields):
         return tuple(axes)
 
     def _per_axis(self, field: str, count: int) -> list[float]:
-        """Return one number for each axis of the joint; that of a new info stands for missing numbers.
+        """Return one number for each axis; missing ones have the default of new infos.
 
         Raises:
             ArgumentError: a number is NaN.
@@ -396,16 +396,16 @@ class JointInfo(ParameterFields):
 
 
 _DEFAULTS = {one.field: float(next(iter(getattr(JointInfo(), one.field)), 0.0)) for one in JointInfo._entries if one.of}
-"""The values of new infos, for each axis."""
+"""Default values of new infos for each axis."""
 
 
 def _motor_of(axis: scene.Axis) -> ElectricMotorActuatorInfo | None:
-    """Return a motor with the armature inertia of an axis and a gear ratio of 1; None without armature inertia."""
+    """Return a motor with the armature inertia of an axis and gear ratio 1; None without inertia."""
     return ElectricMotorActuatorInfo(gear_ratio=1.0, rotor_inertia=axis.armature) if axis.armature else None
 
 
 def type_of(kind: scene.JointKind) -> JointType:
-    """Return OpenRAVE's number for a kind of joint."""
+    """Return OpenRAVE's joint type."""
     return next(number for number, known in _KINDS.items() if known == kind)
 
 
@@ -417,7 +417,7 @@ def _unit(direction: Vec3) -> Vec3:
 
 
 def _directions(body: scene.KinBody, joint: scene.Joint, values: Sequence[float]) -> list[Vec3]:
-    """Return the directions of the axes at some values, in the frame of the first link."""
+    """Return the directions of the axes at joint values, in the frame of the first link."""
     if joint.static and body.joints:  # the builder turns the axes of a weld into the frame of its second link
         return [rotate(conjugate(joint.T_parent_child.wxyz), axis.direction) for axis in joint.axes]
     return directions_at(joint, values)

@@ -1,6 +1,6 @@
-"""The description of a link."""
+"""Description of a link."""
 
-# JSON and users put anything into the fields that the functions of forms take.
+# JSON and users may put any value into the fields that the functions of forms get.
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownMemberType=false
 
@@ -35,7 +35,7 @@ _GROUPS = Form(
 
 @info_class
 class LinkInfo(ParameterFields):
-    """The description of a link.
+    """Description of a link.
 
     Attributes:
         _name: The name.

@@ -1,8 +1,8 @@
 """Descriptions of sensors: resolution, range, calibration."""
 
-# Users put anything into fields.
+# Users may put any value into fields.
 # pyright: reportUnknownArgumentType=false, reportUnknownLambdaType=false
-# The tables of infos are theirs, and users put anything into their fields.
+# The tables of infos are their private state, and users may put any value into their fields.
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -20,11 +20,11 @@ from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.base import TEXT, Entry, Form, Info, Json, info, info_class, json_field, vector
 
 PINHOLE = {"fx": (0, 0), "fy": (1, 1), "cx": (0, 2), "cy": (1, 2)}
-"""The numbers of a camera matrix and their places in it."""
+"""Elements of a camera matrix by name."""
 
 
 def _number_of_matrix(place: tuple[int, int]) -> Form:
-    """Return the JSON form of one number of a matrix."""
+    """Return the JSON conversion of one element of a matrix."""
 
     def read(value: float, scale: float, present: Any) -> Floats:  # noqa: ANN401 - what users put into the field
         del scale
@@ -37,7 +37,7 @@ def _number_of_matrix(place: tuple[int, int]) -> Form:
 
 @info_class
 class CameraIntrinsics(Info):
-    """The intrinsics of a camera: its matrix and the distortion of its lens. Rendered pictures have no distortion.
+    """Intrinsics of a camera: its matrix and lens distortion. Rendered pictures are not distorted.
 
     Attributes:
         K: The camera matrix [pixels], shape (3, 3).
@@ -59,7 +59,7 @@ class CameraIntrinsics(Info):
 
 @info_class
 class SensorGeometry(Info):
-    """The base class of the constant properties of sensors. Each kind of sensor has a class of its own.
+    """Base class of the constant properties of sensors; each kind of sensor has a subclass.
 
     Attributes:
         hardware_id: The manufacturer's identifier.
@@ -79,7 +79,7 @@ class SensorGeometry(Info):
 
 @info_class
 class CameraGeomData(SensorGeometry):
-    """The image size and the intrinsics of a camera.
+    """Image size and intrinsics of a camera.
 
     Attributes:
         intrinsics: The camera matrix and the lens.
@@ -87,7 +87,7 @@ class CameraGeomData(SensorGeometry):
         height: The height of the image [pixels].
         measurement_time: The exposure time [s].
         gain: The gain.
-        target_region: The name of the region that the camera looks at.
+        target_region: The name of the region that the camera observes.
     """
 
     _type = SensorType.Camera
@@ -111,13 +111,13 @@ class CameraGeomData(SensorGeometry):
 
 @info_class
 class LaserGeomData(SensorGeometry):
-    """The field of view and the range of a laser scanner.
+    """Field of view and range of a laser scanner.
 
     Attributes:
         min_angle: The first angle of a scan [rad], about the first and the second axis.
         max_angle: The last angle of a scan [rad], likewise.
-        min_range: The smallest distance that is measured [m].
-        max_range: The greatest distance that is measured [m].
+        min_range: The minimum measured distance [m].
+        max_range: The maximum measured distance [m].
         resolution: The step of the angles [rad], likewise.
         time_increment: Time between two measurements [s].
         time_scan: Time between two scans [s].
@@ -136,7 +136,7 @@ class LaserGeomData(SensorGeometry):
 
 @info_class
 class SpinningLaserGeomData(LaserGeomData):
-    """A laser scanner whose plane turns about a second axis, ``BaseSpinningLaser2D``.
+    """Laser scanner whose scan plane rotates about a second axis, ``BaseSpinningLaser2D``.
 
     OpenRAVE reads its properties from XML only, and has no class for them.
 
@@ -153,7 +153,7 @@ class SpinningLaserGeomData(LaserGeomData):
 
 @info_class
 class FlashLidarGeomData(LaserGeomData):
-    """A camera that measures distances, ``BaseFlashLidar3D``. The angles of laser scanners do not apply.
+    """Camera that measures distances, ``BaseFlashLidar3D``. The angles of laser scanners do not apply.
 
     OpenRAVE reads its properties from XML only, and has no class for them.
 
@@ -170,7 +170,7 @@ class FlashLidarGeomData(LaserGeomData):
 
 @info_class
 class JointEncoderGeomData(SensorGeometry):
-    """The resolution of the encoders of a joint.
+    """Resolution of the encoders of a joint.
 
     Attributes:
         resolution: The step of each DOF of the joint [rad or m].
@@ -183,7 +183,7 @@ class JointEncoderGeomData(SensorGeometry):
 
 @info_class
 class Force6DGeomData(SensorGeometry):
-    """The calibration of a force-torque sensor.
+    """Calibration of a force-torque sensor.
 
     Attributes:
         polarity: The sign of the measurements, 1 or -1.
@@ -198,7 +198,7 @@ class Force6DGeomData(SensorGeometry):
 
 @info_class
 class IMUGeomData(SensorGeometry):
-    """The timing of an inertial measurement unit.
+    """Timing of an inertial measurement unit.
 
     Attributes:
         time_measurement: Time between two measurements [s].
@@ -211,7 +211,7 @@ class IMUGeomData(SensorGeometry):
 
 @info_class
 class OdometryGeomData(SensorGeometry):
-    """The body whose motion an odometry sensor measures.
+    """Body whose motion an odometry sensor measures.
 
     Attributes:
         targetid: The name of the body.
@@ -224,7 +224,7 @@ class OdometryGeomData(SensorGeometry):
 
 @info_class
 class TactileGeomData(SensorGeometry):
-    """The shape of a tactile sensor.
+    """Geometry of a tactile sensor.
 
     Attributes:
         thickness: The thickness of the skin [m].
@@ -237,7 +237,7 @@ class TactileGeomData(SensorGeometry):
 
 @info_class
 class ActuatorGeomData(SensorGeometry):
-    """The limits of an actuator.
+    """Limits of an actuator.
 
     Attributes:
         maxtorque: The maximum torque [N m].
@@ -272,7 +272,7 @@ _DESCRIBED: Mapping[type, type[SensorGeometry]] = {
     scene.JointEncoder: JointEncoderGeomData,
     scene.Tactile: TactileGeomData,
 }
-"""The classes of infos that describe devices."""
+"""Info class of each device class."""
 
 _OTHER_NAMES = {
     "correction_matrix": "correction",
@@ -280,7 +280,7 @@ _OTHER_NAMES = {
     "time_measurement": "scan_time",
     "time_scan": "scan_time",
 }
-"""The fields of infos that have another name in devices; fields without a counterpart there are only stored."""
+"""Fields of infos with another name in devices; fields without a counterpart are only stored."""
 
 
 def geometry_of(device: scene.Device) -> SensorGeometry:
@@ -304,7 +304,7 @@ def device_of(geometry: SensorGeometry, before: scene.Device) -> scene.Device | 
 
     Args:
         geometry: The info.
-        before: The device so far, or one of its kind. It keeps the properties that the info has no field for.
+        before: The previous device, or one of its kind. It supplies the properties that the info does not have.
 
     Returns:
         The device; None if the info describes another kind of sensor.
@@ -312,7 +312,7 @@ def device_of(geometry: SensorGeometry, before: scene.Device) -> scene.Device | 
     Raises:
         ArgumentError: a field has wrong numbers.
     """
-    if type(geometry) not in {_described(before), _DESCRIBED[type(before)]}:  # a plain laser's keeps how one spins
+    if type(geometry) not in {_described(before), _DESCRIBED[type(before)]}:  # plain lasers have no fields for the spin
         return None
     changes: dict[str, Any] = {}
     if isinstance(geometry, CameraGeomData | FlashLidarGeomData):
@@ -334,7 +334,7 @@ def _described(device: scene.Device) -> type[SensorGeometry]:
 
 
 def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[str, str, Any]]:
-    """Yield the names that an info and a device have for what both know, and the type that it has in the device."""
+    """Yield the names in the info and in the device of each common property, and its type in the device."""
     types = {one.name: one.type for one in fields(device)}
     for one in fields(geometry):
         name = _OTHER_NAMES.get(one.name, one.name)
@@ -343,7 +343,7 @@ def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[st
 
 
 def _is_angle(field: str, kind: Any) -> bool:  # noqa: ANN401 - a type
-    """Return whether a field has angles about two axes, and the device that about the first."""
+    """Return whether a field has angles about two axes, of which the device has only the first."""
     return kind is float and field in {"min_angle", "max_angle", "resolution"}
 
 
@@ -386,4 +386,4 @@ _READERS: Mapping[Any, Callable[[Any, str], Any]] = {
     Vec3: vector,
     tuple[float, ...]: _numbers,
 }
-"""The conversions of fields, by the types that they have in devices."""
+"""Conversions of fields by their type in devices."""

@@ -1,9 +1,10 @@
-"""Bodies."""
+"""Bodies: names, grabbing, collision settings and bounding boxes."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Callable, Generator, Iterable, Sequence
+from operator import methodcaller
 from types import EllipsisType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -11,10 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.core.arrays import checked_numbers, checked_rows, checked_transform
+from ravemj.core.arrays import checked_numbers, checked_transform, checked_whole_numbers
 from ravemj.core.blocks import Block, Closing, exit_in_c, restoring
 from ravemj.core.transforms import Floats, inverse
-from ravemj.engine.collision.moving import batch_collides
 from ravemj.engine.collision.queries import moved_apart, tested_pairs
 from ravemj.engine.grabbing import grab_as_it_stands
 from ravemj.engine.simulation import BodyState, both_locks
@@ -46,9 +46,9 @@ if TYPE_CHECKING:
 
 
 class KinBody(BodyConfiguration, Interface):
-    """A body: links connected by joints. ``env.GetBodies()`` makes it.
+    """Body of links connected by joints; ``env.GetBodies()`` returns the bodies.
 
-    What it holds (``Grab``) moves along, and counts as part of it for collision.
+    Grabbed bodies (``Grab``) move along, and belong to the body in collision checks.
 
     Example:
         >>> body.GetDOF()
@@ -94,10 +94,10 @@ class KinBody(BodyConfiguration, Interface):
         self.innermost_block: _Saving | None = None
 
     def SetName(self, name: str) -> None:
-        """Give the body another name.
+        """Set the ``name``.
 
         Raises:
-            openrave_exception: another body of the environment has it (``BodyNameConflict``), or it is empty.
+            openrave_exception: the name is taken in the environment (``BodyNameConflict``), or empty.
 
         Example:
             >>> robot.SetName("swing")
@@ -111,16 +111,16 @@ class KinBody(BodyConfiguration, Interface):
         return self._state.scene.is_robot
 
     def GetEnvironmentBodyIndex(self) -> int:
-        """Return the body's number in its environment, from 1; 0 while it is not added."""
+        """Return the body's index in its environment, from 1; 0 outside of an environment."""
         return self._state.index
 
     @also_named(reference="ref")
     def Clone(self, ref: "KinBody", cloningoptions: int = 0) -> None:
-        """Copy another body, which may be in another environment: its links, joints, name and configuration.
+        """Copy another body, also from another environment: links, joints, name and configuration.
 
         Args:
-            ref: The body to copy; what it holds is not copied.
-            cloningoptions: OpenRAVE's; ignored.
+            ref: The body to copy; grabbed bodies are not copied.
+            cloningoptions: Not used.
 
         Raises:
             openrave_exception: this body is in an environment.
@@ -131,18 +131,19 @@ class KinBody(BodyConfiguration, Interface):
             self._state.copy(original)
 
     def Destroy(self) -> None:
-        """Take the body out of the environment, and leave nothing of it but its name."""
+        """Remove the body from the environment, and delete its content except for the name."""
         with self._simulation.lock:
             self._env.Remove(self)
             self._state.rebuild(empty_body(self._state.scene))
 
     def connect(self) -> None:
-        """Make active connected bodies parts of a robot; the environment calls this before it adds the body."""
+        """Merge active connected bodies into a robot; the environment calls this before it adds the body."""
 
     def disconnect(self) -> None:
-        """Take the parts of connected bodies away; the environment calls this after it removed the body."""
+        """Remove the parts of connected bodies; the environment calls this after it has removed the body."""
 
     SetJointValues = BodyConfiguration.SetDOFValues
+    GetJointValues = BodyConfiguration.GetDOFValues
     GetBodyTransformations = BodyConfiguration.GetLinkTransformations
     SetBodyTransformations = BodyConfiguration.SetLinkTransformations
     GetEnvironmentId = GetEnvironmentBodyIndex
@@ -151,11 +152,12 @@ class KinBody(BodyConfiguration, Interface):
         """Save the body's state.
 
         Args:
-            options: What to save, ``SaveParameters`` combined with ``|``; None: poses, joint values and enabled links.
+            options: What to save, ``SaveParameters`` combined with ``|``; by default poses, joint values and enabled
+                links.
 
         Returns:
-            A saver: ``with`` it, the state comes back at the end of the block, also after an exception. Otherwise
-            ``Restore()`` brings it back; dropping it does nothing.
+            A saver. At the end of a ``with`` block it restores the state, also after an exception. Otherwise call
+            ``Restore()``; deleting the saver does nothing.
 
         Example:
             >>> with body.CreateKinBodyStateSaver():
@@ -164,13 +166,13 @@ class KinBody(BodyConfiguration, Interface):
         return StateSaver(self, options)
 
     def SetDOFTorques(self, torques: ArrayLike, add: bool = False) -> None:
-        """Let torques act on the joints during the next step of simulation time, and not longer.
+        """Apply joint torques during the next simulation step only.
 
-        They need a physics engine: ``env.SetPhysicsEngine("mujoco")``. Without one they do nothing.
+        They require a physics engine: ``env.SetPhysicsEngine("mujoco")``. Without one they have no effect.
 
         Args:
             torques: Torques [N m, for sliders N], shape (dof,).
-            add: Whether torques that were set for that step stay.
+            add: Whether to add to the torques that were set for that step; False replaces them.
 
         Raises:
             ArgumentError: the number of torques is wrong.
@@ -197,16 +199,16 @@ class KinBody(BodyConfiguration, Interface):
         linkstoignore: "Iterable[Link | int | str] | EllipsisType" = ...,
         grabbedUserData: object = ...,
     ) -> bool:
-        """Hold a body by a link, in the pose that both have now: ``Grab(body, grablink)``, or with all four arguments.
+        """Grab a body with a link at their present relative pose: ``Grab(body, grablink)``, or with all four arguments.
 
-        From now on it moves with the link. It does not collide with the links that it touches now. Grabbing a body
-        that is held already renews link and pose.
+        The body then moves with the link. Collisions with links that it touches now are ignored. Grabbing a body again
+        updates link and pose.
 
         Args:
-            body: What to hold; it was made for the same environment, and need not be in it.
-            grablink: The link of this body that holds it.
-            linkstoignore: Further links of this body that it should not collide with.
-            grabbedUserData: Goes with ``linkstoignore``, as in OpenRAVE, which keeps it; not used.
+            body: The body to grab. It must be made for the same environment, but need not be in it.
+            grablink: The link of this body that grabs it.
+            linkstoignore: Further links of this body whose collisions with it are ignored.
+            grabbedUserData: Not used; given together with ``linkstoignore``, as in OpenRAVE.
 
         Returns:
             True.
@@ -214,7 +216,7 @@ class KinBody(BodyConfiguration, Interface):
         Raises:
             TypeError: one of ``linkstoignore`` and ``grabbedUserData`` is given without the other (gap-20).
             openrave_exception: this body is not in the environment (``NotInitialized``); the other one is None
-                (``Failed``), of another environment, this body itself, or holds this body (``InvalidArguments``).
+                (``Failed``), of another environment, this body itself, or has grabbed this body (``InvalidArguments``).
         """
         if (linkstoignore is ...) != (grabbedUserData is ...):
             raise TypeError("Grab: takes links to ignore as Grab(body, grablink, linkstoignore, grabbedUserData)")
@@ -229,18 +231,18 @@ class KinBody(BodyConfiguration, Interface):
             return True
 
     def Release(self, body: "KinBody") -> None:
-        """Let go of a body; it stays where it is. Nothing happens if it is not held."""
+        """Release a body, which stays in place. If it is not grabbed, nothing happens."""
         held = checked_kind(body, KinBody, "Release: body").simulation_state
         with self._simulation.lock:
             self._state.release(held)
 
     def ReleaseAllGrabbed(self) -> None:
-        """Let go of all held bodies."""
+        """Release all grabbed bodies."""
         with self._simulation.lock:
             self._state.grabs = []
 
     def ReleaseAllGrabbedWithLink(self, grablink: Link) -> None:
-        """Let go of all bodies that the link ``grablink`` holds."""
+        """Release all bodies grabbed by the link ``grablink``."""
         index = self._own_link(grablink, "ReleaseAllGrabbedWithLink")
         with self._simulation.lock:
             self._state.grabs = [grab for grab in self._state.grabs if grab.link != index]
@@ -252,12 +254,12 @@ class KinBody(BodyConfiguration, Interface):
         linkstoignore: "Iterable[Link | int | str] | None" = None,
         grabbedUserData: object = None,
     ) -> GrabbedInfoCheckResult:
-        """Return whether a body is held in a way, as ``Grab`` would hold it.
+        """Compare the grab of a body with given arguments of ``Grab``, and return the result.
 
         Args:
             body: The body.
-            grablink: The link of this body that should hold it.
-            linkstoignore: The links that it should not collide with; None: they are not compared.
+            grablink: The expected grabbing link of this body.
+            linkstoignore: The expected links to ignore; None skips this comparison.
             grabbedUserData: Not used.
         """
         del grabbedUserData
@@ -273,29 +275,30 @@ class KinBody(BodyConfiguration, Interface):
         return GrabbedInfoCheckResult.Identical
 
     def RegrabAll(self) -> None:
-        """Put all held bodies back where they were grabbed, relative to their links."""
+        """Restore the relative poses of all grabbed bodies at the time of grabbing."""
         with self._simulation.lock:
             self._state.moved()
 
     def GetGrabbed(self) -> "list[KinBody]":
-        """Return the held bodies that are in the environment, in the order of grabbing."""
+        """Return the grabbed bodies in the environment, in the order of grabbing."""
         return [self._env.wrap(grab.body) for grab in self._state.grabs if self._simulation.holds(grab.body)]
 
     def GetNumGrabbed(self) -> int:
-        """Return the number of held bodies."""
+        """Return the number of grabbed bodies."""
         return len(self._state.grabs)
 
     def IsGrabbing(self, body: "KinBody") -> Link | None:
-        """Return the link that holds a body, or None."""
+        """Return the link that grabs a body, or None."""
         held = checked_kind(body, KinBody, "IsGrabbing: body").simulation_state
         grab = grab_of(self._state, held)
         return None if grab is None else Link(self._env.wrap(self._state), self._state, grab.link)
 
     def GetGrabbedInfo(self, grabbedname: str | None = None) -> list[GrabbedInfo] | GrabbedInfo | None:
-        """Return how bodies are held, for ``ResetGrabbed``.
+        """Return the descriptions of grabs, for ``ResetGrabbed``.
 
         Args:
-            grabbedname: Return that of one body, or None if it is not held; left out: a list of all.
+            grabbedname: The name of a body; returns its description, or None if it is not grabbed. By default a list of
+                all.
         """
         infos = grabbed_infos(self._state)
         if grabbedname is None:
@@ -303,13 +306,13 @@ class KinBody(BodyConfiguration, Interface):
         return next((info for info in infos if info._grabbedname == grabbedname), None)  # pyright: ignore[reportPrivateUsage] - OpenRAVE's field
 
     def ResetGrabbed(self, grabbedinfos: Sequence[GrabbedInfo]) -> None:
-        """Hold the bodies that the infos of ``GetGrabbedInfo`` name, each in the pose that it had, and no others.
+        """Replace all grabs by those of infos, each with its relative pose.
 
         Args:
-            grabbedinfos: What ``GetGrabbedInfo`` returned.
+            grabbedinfos: The infos, results of ``GetGrabbedInfo``.
 
         Raises:
-            openrave_exception: a body or link is not there. Nothing has changed then.
+            openrave_exception: a body or link does not exist. Nothing changes then.
         """
         with self._simulation.lock:
             infos = [checked_kind(info, GrabbedInfo, "ResetGrabbed: grabbedinfos") for info in grabbedinfos]
@@ -317,11 +320,11 @@ class KinBody(BodyConfiguration, Interface):
             self._state.moved()
 
     def GetAttached(self) -> "list[KinBody]":
-        """Return this body, those that it holds, those that hold it, and so on."""
+        """Return this body and all bodies connected to it by grabs, directly or indirectly."""
         return [self._env.wrap(state) for state in self._simulation.attached(self._state)]
 
     def HasAttached(self) -> bool:
-        """Return whether the body holds others or is held."""
+        """Return whether the body has grabbed others or is grabbed."""
         return len(self._simulation.attached(self._state)) > 1
 
     def GetAttachedEnvironmentBodyIndices(self) -> list[int]:
@@ -342,13 +345,13 @@ class KinBody(BodyConfiguration, Interface):
         return link.GetIndex()
 
     def restorers(self, options: int) -> list[Restorer]:
-        """Return what gives this body, or one like it, its present state back."""
+        """Return functions that restore the present state, on this body or on one of the same structure."""
         return body_restorers(self._state, options)
 
     def __enter__(self) -> Self:
-        """Lock the environment and save the body: poses, joint values and enabled links come back at the end.
+        """Lock the environment and save the body; poses, joint values and enabled links are restored at the end.
 
-        A robot's active DOFs and active manipulator come back as well. Limits, velocities and what it holds do not.
+        A robot's active DOFs and active manipulator are restored, too; limits, velocities and grabs are not.
 
         Example:
             >>> with robot:
@@ -384,7 +387,7 @@ class KinBody(BodyConfiguration, Interface):
         return body_table(self)
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
-        """Print the table of the DOFs in IPython, where ``repr`` would name the body alone."""
+        """Print the table of the DOFs in IPython; ``repr`` names only the body."""
         from ravemj.rave.tables import body_text, print_pretty  # noqa: PLC0415 - html is slow to import
 
         del cycle
@@ -393,6 +396,13 @@ class KinBody(BodyConfiguration, Interface):
     def __str__(self) -> str:
         kind = self._interface_type.name
         return f"<{kind}:{self.GetXMLId()} - {self.GetName()} ({self.GetKinematicsGeometryHash()})>"
+
+    def __reduce__(self) -> tuple[Callable[[object], object], tuple[object]]:
+        """Pickle the body with its environment."""
+        if not self._state.index:
+            message = f"'{self.GetName()}' cannot be pickled, since it is not in an environment; add it first"
+            raise RavemjError(message, ErrorCode.InvalidState)
+        return methodcaller("GetBodyFromEnvironmentBodyIndex", self._state.index), (self._env,)
 
     AdjacentOptions = AdjacentOptions
 
@@ -403,7 +413,7 @@ class KinBody(BodyConfiguration, Interface):
     ) -> bool:
         """Return whether links of the body collide with each other or with grabbed bodies.
 
-        Pairs of links do not count if a joint connects them, if the file declares them ``<adjacent>``, or if they
+        Pairs of links are ignored if a joint connects them, if the file declares them ``<adjacent>``, or if they
         touched when the body was added.
 
         Args:
@@ -422,45 +432,25 @@ class KinBody(BodyConfiguration, Interface):
         return checker.CheckSelfCollision(self, report)
 
     def SetSelfCollisionChecker(self, collisionchecker: "CollisionChecker | None") -> None:
-        """Let ``CheckSelfCollision`` use ``collisionchecker``; None selects that of the environment."""
+        """Set the checker of ``CheckSelfCollision``; None for ``collisionchecker`` selects that of the environment."""
         if collisionchecker is not None:
             _check_checker(collisionchecker, "SetSelfCollisionChecker")
         self._self_checker = collisionchecker
 
     def GetSelfCollisionChecker(self) -> "CollisionChecker | None":
-        """Return the checker that ``SetSelfCollisionChecker`` chose, or None."""
+        """Return the checker of ``SetSelfCollisionChecker``, or None."""
         return self._self_checker
-
-    def batch_collides(self, values: ArrayLike, itself_too: bool = True) -> NDArray[np.bool_]:
-        """Return for each of many configurations whether the body collides in it.
-
-        Args:
-            values: The joint values of the configurations [rad or m], shape (n, dof); limits are not checked.
-            itself_too: Whether self-collisions count.
-
-        Returns:
-            Whether the body collides, shape (n,). Afterwards the body is back in its configuration. Options,
-            groups and callbacks of collision checkers have no effect.
-
-        Example:
-            >>> lower, upper = robot.GetDOFLimits()
-            >>> samples = np.random.uniform(lower, upper, (1000, robot.GetDOF()))
-            >>> free = samples[~robot.batch_collides(samples)]
-        """
-        rows = checked_rows(values, self.GetDOF(), "batch_collides: values")
-        with self._simulation.lock:
-            return batch_collides(self._state, rows, itself_too=itself_too)
 
     def active_dofs(self) -> tuple[int, ...]:
         """Return the DOF indices of the active joints. Only robots can choose them; other bodies have all."""
         return tuple(range(self.GetDOF()))
 
     def moves_as_a_whole(self) -> bool:
-        """Return whether affine DOFs are active, which move the body as a whole; only robots can have them."""
+        """Return whether affine DOFs are active, which move the whole body; only robots can have them."""
         return False
 
     def Enable(self, enable: bool) -> None:
-        """Let all links take part in collision checks, or none, as ``enable`` says."""
+        """Enable or disable collisions of all links, as ``enable`` says."""
         self._state.link_enabled = [bool(enable)] * len(self._state.link_enabled)
 
     def IsEnabled(self) -> bool:
@@ -472,7 +462,7 @@ class KinBody(BodyConfiguration, Interface):
         return np.array(self._state.link_enabled, dtype=np.uint8)
 
     def SetLinkEnableStates(self, enablestates: ArrayLike) -> None:
-        """Enable and disable links: ``enablestates`` has a truth value for each link, shape (links,)."""
+        """Enable and disable links: ``enablestates`` has a boolean for each link, shape (links,)."""
         states = checked_numbers(enablestates, "SetLinkEnableStates: enablestates")
         count = len(self._state.link_enabled)
         if states.shape != (count,):
@@ -545,7 +535,11 @@ class KinBody(BodyConfiguration, Interface):
             openrave_exception: a pair names a link that the body does not have, or the same link twice.
         """
         count, added = len(self._state.scene.links), set(self._state.scene.adjacent)
-        for first, second in pairs:
+        wanted = "pairs: the link indices of a pair"
+        for pair in (checked_whole_numbers(pair, wanted).tolist() for pair in pairs):
+            if len(pair) != 2:
+                raise ArgumentError(f"{wanted} are {pair}, and should be two")
+            first, second = pair
             if not (0 <= first < count and 0 <= second < count and first != second):
                 message = (
                     f"SetAdjacentLinks: ({first}, {second}) should be two of the {count} links of '{self.GetName()}'"
@@ -557,7 +551,7 @@ class KinBody(BodyConfiguration, Interface):
             self._state.edit(adjacent=tuple(sorted(added)))
 
     def SetNonCollidingConfiguration(self) -> None:
-        """Declare the current configuration free of self-collisions: links that touch now are never tested again."""
+        """Declare the current configuration free of self-collisions: links that touch now are excluded from tests."""
         with self._simulation.lock:
             self._state.rest_poses = self._state.link_transforms()
             self._simulation.collision_stamp += 1
@@ -679,7 +673,7 @@ class KinBody(BodyConfiguration, Interface):
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4), enabledOnlyLinks)
 
     def _poses(self, T_world_body: Floats | None = None) -> Floats:
-        """Return the poses of the links for the current or a given pose of the first link, shape (links, 4, 4)."""
+        """Return the link poses for the current or a given pose of the first link, shape (links, 4, 4)."""
         with self._simulation.lock:
             poses = self._state.link_transforms()
         return poses if T_world_body is None or not len(poses) else T_world_body @ inverse(poses[0]) @ poses
@@ -691,7 +685,7 @@ class KinBody(BodyConfiguration, Interface):
 
 
 class _Saving(Block["KinBody"]):
-    """The block of ``with body:``."""
+    """Context manager behind ``with body:``."""
 
     def __init__(self, body: KinBody) -> None:
         super().__init__(self._run(body))
@@ -731,8 +725,8 @@ def check_holdable(state: BodyState, held: BodyState) -> None:
     """Check that a body can grab another one.
 
     Raises:
-        RavemjError: the body is not in its environment; or the other body was made for another environment, or holds
-            this one.
+        RavemjError: the body is not in its environment; or the other body was made for another environment, or has
+            grabbed this one.
     """
     if not state.simulation.holds(state):
         message = f"Grab: '{state.scene.name}' is not in this environment; add it first"
@@ -749,7 +743,7 @@ def _check_not_carried_by(state: BodyState, held: BodyState) -> None:
 
 
 def grab_of(state: BodyState, held: BodyState) -> GrabbedBody | None:
-    """Return the grab by which a body holds another one, or None."""
+    """Return the grab of a held body, or None."""
     return next((grab for grab in state.grabs if grab.body is held), None)
 
 
@@ -759,10 +753,10 @@ def grabbed_infos(state: BodyState) -> list[GrabbedInfo]:
 
 
 def described_grab(state: BodyState, info: GrabbedInfo) -> GrabbedBody:
-    """Return the grab that an info describes.
+    """Return the grab described by an info.
 
     Raises:
-        ArgumentError: the grabbed body or a link does not exist, or the grabbed body holds the other one.
+        ArgumentError: the grabbed body or a link does not exist, or the grabbed body has grabbed the other one.
     """
     held = state.simulation.body(info._grabbedname)
     if held is None:

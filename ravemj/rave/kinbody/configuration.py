@@ -1,11 +1,11 @@
-"""The configuration of a body (joint values, poses, velocities), Jacobians and dynamics."""
+"""Configuration of a body (joint values, poses, velocities), Jacobians and dynamics."""
 
 from collections.abc import Mapping, Sequence
 from types import EllipsisType
 from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import (
@@ -22,6 +22,7 @@ from ravemj.core.arrays import (
     finite_vector,
 )
 from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_jacobian
+from ravemj.engine.collision.moving import Among, batch_collides, batch_distances
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.enums import CheckLimitsAction
@@ -44,9 +45,9 @@ class BodyConfiguration(BodyPart):
     body stores the velocities of its links, and computes those of the DOFs from them. So set joint values first, then
     velocities.
 
-    Methods whose names begin with ``batch_`` take arrays of joint values, and do not move the body. Besides the result
-    they need little memory, whatever the number of configurations is. If the result itself is too large, pass the
-    joint values in parts, or an ``out`` that lies on disk (``numpy.memmap``).
+    Methods whose names begin with ``batch_`` take arrays of joint values, and do not move the body. Apart from the
+    result, they need little memory for any number of configurations. If the result itself is too large, pass the joint
+    values in parts, or an ``out`` on disk (``numpy.memmap``).
     """
 
     _often_called = (
@@ -94,8 +95,8 @@ class BodyConfiguration(BodyPart):
         The body moves at once, without dynamics, and viewers show it.
 
         Args:
-            values: Joint values [rad; m for sliders], one for each DOF or for each index. NaN leaves a joint as it is;
-                [] with indices leaves all joints as they are.
+            values: Joint values [rad; m for sliders], one for each DOF or for each index. NaN keeps the value of a
+                joint; [] with indices keeps all values.
             dofindices: The DOF indices that ``values`` refer to; by default all DOFs. With None, values beyond the
                 number of DOFs are ignored.
             checklimits: What to do with values outside the limits, a ``CheckLimitsAction``: by default they are
@@ -112,7 +113,7 @@ class BodyConfiguration(BodyPart):
         """
         lock = self._simulation.lock
         try:
-            lock.acquire()  # without ``with``, which takes twice as long, since nothing is called more often
+            lock.acquire()  # not in a ``with`` block, which takes twice as long; no method is called more often
             state = self._state
             kinematics = state.kinematics
             if (
@@ -146,7 +147,7 @@ class BodyConfiguration(BodyPart):
             return self._simulation.compiled().qpos_indices(self._state)
 
     def GetTransform(self) -> Floats:
-        """Return the pose of the body, which is that of its first link.
+        """Return the pose of the body, which is the pose of its first link.
 
         Returns:
             A copy of ``T_world_link0``, shape (4, 4); the identity for a body without links.
@@ -263,7 +264,7 @@ class BodyConfiguration(BodyPart):
             return self._state.link_transforms()
 
     def GetUpdateStamp(self) -> int:
-        """Return a number that grows with every change of pose."""
+        """Return a counter that increases with every change of pose."""
         return self._state.stamp
 
     def GetConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
@@ -287,7 +288,7 @@ class BodyConfiguration(BodyPart):
         Raises:
             ArgumentError: there is no such DOF.
         """
-        chosen = checked_numbers(indices, "indices").astype(np.int_).tolist()
+        chosen = checked_whole_numbers(indices, "indices").tolist()
         if any(not 0 <= index < self.GetDOF() for index in chosen):
             raise ArgumentError(f"indices: are {chosen}, and should be from 0 to {self.GetDOF() - 1}")
         return ConfigurationSpecification.of(body_groups(self._state.scene.name, chosen, 0, interpolation))
@@ -348,13 +349,13 @@ class BodyConfiguration(BodyPart):
             angular: The angular velocity of the first link in world axes [rad/s], shape (3,). If ``linear`` is a single
                 number, this is taken as ``indices``.
             checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
-            indices: The DOF indices that ``dofvelocities`` refer to; by default all. OpenRAVE has a mistake here that
-                ravemj repeats: with k indices, only the first k DOFs count. Those of them that no index names keep
-                their velocities, and all other DOFs stop. So name all DOFs.
+            indices: The DOF indices that ``dofvelocities`` refer to; by default all. ravemj repeats an error of
+                OpenRAVE here: with k indices, only the first k DOFs count. Those of them that no index names keep their
+                velocities, and all other DOFs stop. So name all DOFs.
 
         Raises:
             ArgumentError: the number of velocities is wrong, or one is infinite; with ``CheckLimitsThrow``, one is
-                outside its limits. The velocities stay as they were.
+                outside its limits. The velocities do not change.
             IndexError: there is no such DOF.
 
         Example:
@@ -393,7 +394,7 @@ class BodyConfiguration(BodyPart):
                 (links, 6).
 
         Raises:
-            ArgumentError: the shape is wrong, or a number is not finite. The velocities stay as they were.
+            ArgumentError: the shape is wrong, or a number is not finite. The velocities do not change.
         """
         shape = (len(self._state.scene.links), 6)
         checked = checked_numbers(velocities, "SetLinkVelocities")
@@ -437,7 +438,7 @@ class BodyConfiguration(BodyPart):
     def ComputeJacobianTranslation(
         self, linkindex: int, position: ArrayLike, indices: "ArrayLike | None" = None
     ) -> Floats:
-        """Return the Jacobian of the position of a link's point.
+        """Return the Jacobian of the position of a point on a link.
 
         Args:
             linkindex: Index of the link.
@@ -475,8 +476,46 @@ class BodyConfiguration(BodyPart):
             jacobian = self._state.dynamics.rotation_jacobian(link)
         return jacobian if indices is None else _columns(jacobian, indices)
 
+    def jacobians(
+        self,
+        links: ArrayLike,
+        points: ArrayLike | None = None,
+        indices: ArrayLike | None = None,
+        *,
+        base: bool = False,
+    ) -> Floats:
+        """Return the Jacobians of points on several links in one array, with one MuJoCo call per point.
+
+        Args:
+            links: Indices of the links, shape (k,).
+            points: A point of each link in the world [m], shape (k, 3); by default the links' origins.
+            indices: The DOF indices of the columns, each of an existing DOF; by default all.
+            base: Whether six more columns follow: the velocity of the origin of the body's first link [m/s] and its
+                angular velocity [rad/s], both in world axes.
+
+        Returns:
+            Shape (k, 6, columns). The first three rows are ``ComputeJacobianTranslation``, the others
+            ``ComputeJacobianAxisAngle``, in world axes.
+
+        Raises:
+            ArgumentError: there is no such link, or the points are not finite or not as many as the links.
+            IndexError: there is no such DOF.
+
+        Example:
+            >>> feet = [robot.GetLink(name).GetIndex() for name in ("LFoot", "RFoot")]
+            >>> robot.jacobians(feet, base=True).shape
+            (2, 6, 31)
+        """
+        chosen = [self._checked_link(link) for link in checked_whole_numbers(links, "links").tolist()]
+        dofs = None if indices is None else checked_indices(indices, self.GetDOF(), "indices")
+        given = None if points is None else np.ascontiguousarray(checked_rows(points, 3, "points"))
+        if given is not None and len(given) != len(chosen):
+            raise ArgumentError(f"points: are {len(given)}, and should be {len(chosen)}, one for each link")
+        with self._simulation.lock:
+            return self._state.dynamics.jacobians(chosen, given, dofs, base=base)
+
     def CalculateJacobian(self, linkindex: int, position: ArrayLike) -> Floats:
-        """Return ``ComputeJacobianTranslation`` for all DOFs; its older name.
+        """Return ``ComputeJacobianTranslation`` for all DOFs; older name.
 
         Args:
             linkindex: Index of the link.
@@ -485,11 +524,11 @@ class BodyConfiguration(BodyPart):
         return self.ComputeJacobianTranslation(linkindex, position)
 
     def CalculateAngularVelocityJacobian(self, linkindex: int) -> Floats:
-        """Return ``ComputeJacobianAxisAngle(linkindex)``, for all DOFs, shape (3, dof); its older name."""
+        """Return ``ComputeJacobianAxisAngle(linkindex)`` for all DOFs, shape (3, dof); older name."""
         return self.ComputeJacobianAxisAngle(linkindex)
 
     def CalculateRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:
-        """Return the Jacobian of a quaternion that turns with a link.
+        """Return the Jacobian of a quaternion fixed to a link.
 
         Args:
             linkindex: Index of the link.
@@ -504,7 +543,7 @@ class BodyConfiguration(BodyPart):
     def ComputeHessianTranslation(
         self, linkindex: int, position: ArrayLike, indices: "ArrayLike | None" = None
     ) -> Floats:
-        """Return the Hessian of the position of a link's point.
+        """Return the Hessian of the position of a point on a link.
 
         Args:
             linkindex: Index of the link.
@@ -542,8 +581,8 @@ class BodyConfiguration(BodyPart):
     ) -> Floats:
         """Return the accelerations of the links for the current values and velocities, without gravity.
 
-        A root link keeps its angular velocity, and its origin accelerates by ``w x v``. OpenRAVE computes wrong
-        accelerations for mimic joints; ravemj does not.
+        A root link keeps its angular velocity, and its origin accelerates by ``w x v``. OpenRAVE's accelerations of
+        mimic joints are wrong; ravemj's are correct.
 
         Args:
             dofaccelerations: Accelerations of the DOFs [rad/s^2; m/s^2 for sliders], shape (dof,); further numbers are
@@ -593,15 +632,15 @@ class BodyConfiguration(BodyPart):
         The torques are those for the current values and velocities, including the velocity of the base, and for the
         environment's gravity. They include the inertia of rotors and the friction of motors.
 
-        OpenRAVE divides the forces of sliders by 2 pi, leaves out a part of the load of mimic joints, and refuses
+        OpenRAVE divides the forces of sliders by 2 pi, omits a part of the load of mimic joints, and does not support
         spherical joints. ravemj computes all of them correctly.
 
         Args:
             dofaccelerations: Accelerations [rad/s^2; m/s^2 for sliders], shape (dof,); further numbers are ignored.
                 None and [] stand for zeros.
             externalforcetorque: External forces: link index to [force, torque], six numbers [N, N m] in world axes, at
-                the link's centre of mass. As in OpenRAVE they count as loads that the joints exert on the links, so
-                a push from outside has the opposite sign.
+                the link's centre of mass. As in OpenRAVE they are loads that the joints exert on the links, so an
+                external push has the opposite sign.
             returncomponents: Whether to return the three components.
 
         Returns:
@@ -610,8 +649,8 @@ class BodyConfiguration(BodyPart):
             those of gravity, external forces and the velocity of the base.
 
         Raises:
-            openrave_exception: a passive joint is neither a weld nor a mimic joint (``Assert``), so torques of DOFs do
-                not determine its motion. ``batch_inverse_dynamics`` takes it as fixed.
+            openrave_exception: a passive joint is neither a weld nor a mimic joint (``Assert``), so the torques of DOFs
+                do not determine its motion. ``batch_inverse_dynamics`` treats it as fixed.
 
         Example:
             >>> robot.ComputeInverseDynamics([0, 0])  # torques that hold the robot against gravity
@@ -651,7 +690,7 @@ class BodyConfiguration(BodyPart):
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
         """Return the poses of all links for many configurations, several times faster than a loop.
 
-        Joint limits do not count, except that mimic joints stop at theirs.
+        Joint limits are ignored, except those of mimic joints.
 
         Args:
             values: Joint values [rad; m for sliders], shape (N, dof).
@@ -730,15 +769,68 @@ class BodyConfiguration(BodyPart):
             state.batch.inverse_dynamics(checked[0], checked[1], checked[2], state.inertias, gravity, result)
         return result
 
+    def batch_collides(self, values: ArrayLike, itself_too: bool = True) -> NDArray[np.bool_]:
+        """Return for each configuration whether the body collides.
+
+        Args:
+            values: The joint values of the configurations [rad or m], shape (n, dof); limits are not checked.
+            itself_too: Whether to test self-collisions.
+
+        Returns:
+            Whether the body collides, shape (n,). Afterwards the configuration of the body is restored. Options, groups
+            and callbacks of collision checkers have no effect, here and in the other ``batch_`` methods.
+
+        Example:
+            >>> lower, upper = robot.GetDOFLimits()
+            >>> samples = np.random.uniform(lower, upper, (1000, robot.GetDOF()))
+            >>> free = samples[~robot.batch_collides(samples)]
+        """
+        rows = checked_rows(values, self.GetDOF(), "batch_collides: values")
+        with self._simulation.lock:
+            return batch_collides(self._state, rows, Among(itself=itself_too))
+
+    def batch_self_collides(self, values: ArrayLike) -> NDArray[np.bool_]:
+        """Return for each configuration whether the body collides with itself or its grabbed bodies.
+
+        Args:
+            values: The joint values of the configurations [rad or m], shape (n, dof); limits are not checked.
+
+        Returns:
+            Whether links of the body or its grabbed bodies collide with each other, shape (n,).
+        """
+        rows = checked_rows(values, self.GetDOF(), "batch_self_collides: values")
+        with self._simulation.lock:
+            return batch_collides(self._state, rows, Among(others=False))
+
+    def batch_distances(self, values: ArrayLike, itself_too: bool = False) -> Floats:
+        """Return for each configuration the distance between the body and the other bodies.
+
+        Args:
+            values: The joint values of the configurations [rad or m], shape (n, dof); limits are not checked.
+            itself_too: Whether to include the distances of the link pairs of self-collision tests.
+
+        Returns:
+            The least distance [m], negative if geometries overlap, infinite if there are no other geometries, shape
+            (n,). Afterwards the configuration of the body is restored.
+
+        Example:
+            >>> clearance = robot.batch_distances(trajectory_values).min()
+        """
+        rows = checked_rows(values, self.GetDOF(), "batch_distances: values")
+        with self._simulation.lock:
+            return batch_distances(self._state, rows, Among(itself=itself_too))
+
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
-    """Return columns of a Jacobian, along its last axis; zeros for an index that is not a DOF."""
+    """Return the columns of a Jacobian for DOF indices, along its last axis; zeros for an invalid index."""
     if indices is None:
         return jacobian
     chosen = checked_whole_numbers(indices, "indices")
     if not chosen.size:
         return jacobian
-    count = jacobian.shape[-1]
+    count, plain = jacobian.shape[-1], chosen.tolist()
+    if min(plain) >= 0 and max(plain) < count:
+        return jacobian.take(chosen, -1)
     known = (chosen >= 0) & (chosen < count)
     columns = np.zeros((*jacobian.shape[:-1], len(chosen)))
     columns[..., known] = jacobian[..., chosen[known]]
@@ -746,7 +838,7 @@ def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
 
 
 def _both_columns(hessian: Floats, indices: "ArrayLike | None") -> Floats:
-    """Return columns of a Hessian, along its first and its last axis; see ``_columns``."""
+    """Return the columns of a Hessian for DOF indices, along its first and last axis; see ``_columns``."""
     return hessian if indices is None else _columns(_columns(hessian, indices).T, indices).T
 
 

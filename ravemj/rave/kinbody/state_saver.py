@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 Restorer = Callable[["KinBody"], None]
-"""A function that restores a part of the saved state, on the saved body or on one of the same structure."""
+"""Function that restores a part of the saved state, on the saved body or on one of the same structure."""
 
-# These are plain numbers, because ``&`` of two flags takes as long as saving a pose.
+# Plain numbers, because ``&`` of two flags takes as long as saving a pose.
 _TRANSFORMATION, _ENABLE = int(SaveParameters.LinkTransformation), int(SaveParameters.LinkEnable)
 _VELOCITIES, _GRABBED = int(SaveParameters.LinkVelocities), int(SaveParameters.GrabbedBodies)
 _AXIS_FIELDS = {
@@ -41,7 +41,8 @@ def body_restorers(state: BodyState, options: int) -> list[Restorer]:
     found: list[Restorer] = []
     if options & _GRABBED:
         grabs = state.grabs
-        found.append(lambda body: _hold(body.simulation_state, grabs))
+        moves = bool(options & _TRANSFORMATION)
+        found.append(lambda body: _hold(body.simulation_state, grabs, moves_held=not moves))
     if options & _TRANSFORMATION:
         saved = state.configuration()
         found.append(lambda body: body.simulation_state.restore(saved))
@@ -60,7 +61,7 @@ def body_restorers(state: BodyState, options: int) -> list[Restorer]:
 
 
 class StateSaver(ApiObject):
-    """Saves the state of a body, and restores it on leaving a ``with`` block.
+    """Saved state of a body, restored on leaving a ``with`` block.
 
     ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make state savers.
     """
@@ -81,7 +82,7 @@ class StateSaver(ApiObject):
         """Restore the state. This can be done several times.
 
         Args:
-            body: The body that gets the state, which has the same structure; by default the saved body.
+            body: The body to change, of the same structure; by default the saved body.
         """
         target = self._body if body is None else body
         checked_kind(target, BodyPart, "Restore: body", "a KinBody")
@@ -93,7 +94,7 @@ class StateSaver(ApiObject):
                 restore(target)
 
     def Release(self) -> None:
-        """Discard the state: the saver restores nothing from now on."""
+        """Discard the state: the saver restores nothing afterwards."""
         self._restorers = []
 
     Close = Release
@@ -110,8 +111,11 @@ class StateSaver(ApiObject):
         return f"<state saver:{self._body.GetName()}>"
 
 
-def _hold(state: BodyState, grabs: Sequence[GrabbedBody]) -> None:
+def _hold(state: BodyState, grabs: Sequence[GrabbedBody], *, moves_held: bool) -> None:
+    """Restore grabs; ``moves_held`` restores the relative poses of grabbed bodies, too."""
     state.grabs = still_possible(state, grabs)
+    if moves_held:
+        state.carry()
 
 
 def _structure(body: "KinBody") -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""The structure of a body: links, joints, DOF limits, mass; where it comes from, and making it anew."""
+"""Structure of a body: links, joints, DOF limits, mass, its source, and rebuilding it."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -36,10 +36,10 @@ if TYPE_CHECKING:
 
 
 class BodyPart(ApiObject):
-    """The structure of a body: links and joints, limits of DOFs, mass, hashes; and methods that replace all of it.
+    """Structure of a body: links, joints, DOF limits, mass and hashes, and methods that replace it.
 
-    It is the root base class of bodies, and declares the state that they share. OpenRAVE's ids, revisions and reference
-    files belong to databases of models, which ravemj has none of: they are what scripts set, or empty.
+    It is the root base class of bodies, and declares their shared state. OpenRAVE's ids, revisions and reference files
+    belong to model databases, which ravemj does not have: they are empty unless scripts set them.
     """
 
     _often_called = ("GetDOFLimits",)
@@ -53,8 +53,10 @@ class BodyPart(ApiObject):
     _simulation: Simulation
 
     _known: tuple[tuple[scene.Joint, ...], dict[str, Floats]] | None = None
-    """A cache: the joints, and fields of all their axes as arrays, by name. A change replaces the tuple of joints, so
-    the cache holds as long as the scene has this very tuple."""
+    """Cache: the joints, and arrays of fields of all their axes by name.
+
+    A change replaces the tuple of joints, so the cache is valid as long as the scene has this very tuple.
+    """
 
     @property
     def simulation_state(self) -> BodyState:
@@ -77,7 +79,7 @@ class BodyPart(ApiObject):
         """Return the joint limits.
 
         Args:
-            indices: Which DOFs, in which order; left out: all.
+            indices: The DOF indices, in the order of the result; by default all.
 
         Returns:
             Lower and upper limits [rad or m], each of shape (dof,); ±10000 for circular joints.
@@ -100,7 +102,7 @@ class BodyPart(ApiObject):
             indices: The DOF indices of the limits; None for all.
 
         Raises:
-            openrave_exception: the number of limits is wrong. The limits stay as they were.
+            openrave_exception: the number of limits is wrong. The limits do not change.
             IndexError: there is no such DOF.
         """
         self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
@@ -174,7 +176,7 @@ class BodyPart(ApiObject):
         return np.zeros(0), np.zeros(0)
 
     def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 for an unknown one."""
+        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown."""
         return self._of_axes("max_torque", indices)
 
     GetDOFMaxTorque = GetDOFTorqueLimits
@@ -220,7 +222,7 @@ class BodyPart(ApiObject):
     def _set_axes(
         self, caller: str, fields: dict[str, ArrayLike], indices: "ArrayLike | None" = None, *, positive: bool = False
     ) -> None:
-        """Set fields of axes. If one number is wrong, none is set."""
+        """Set fields of axes. If one number is invalid, none is set."""
         dof = self.GetDOF()
         chosen = checked_indices(... if indices is None else indices, dof)
         given: dict[str, list[float]] = {}
@@ -266,7 +268,7 @@ class BodyPart(ApiObject):
     _places: tuple[object, dict[str, int]] = (None, {})
 
     _uri: str | None = None
-    """What ``InitFrom…`` was given; None: the file that the body was read from."""
+    """File or ``uri`` given to ``InitFrom…``; None means the file from which the body was read."""
 
     _id = ""
 
@@ -299,14 +301,14 @@ class BodyPart(ApiObject):
         return [links[index] for index in checked_indices(indices, len(links), "indices").tolist()]
 
     def _all_links(self) -> tuple[Link, ...]:
-        """Return the links. They are made once, since they only hold an index, valid whatever the body is."""
+        """Return the links. They are created once, since they only store an index."""
         count = len(self._state.scene.links)
         if len(self._links) != count:
             self._links = tuple(Link(self._body, self._state, index) for index in range(count))
         return self._links
 
     def GetLink(self, name: str) -> Link | None:
-        """Return the link of a name, or None.
+        """Return the link called ``name``, or None.
 
         Example:
             >>> T_world_link = robot.GetLink("Arm1").GetTransform()
@@ -327,7 +329,7 @@ class BodyPart(ApiObject):
         return [joints[index] for index in checked_indices(indices, len(joints), "indices").tolist()]
 
     def _all_joints(self) -> tuple[Joint, ...]:
-        """Return the joints that have DOFs, then the passive ones; like the links, they are made once."""
+        """Return the active joints, then the passive ones; created once, like the links."""
         body = self._state.scene
         count = len(body.joints) + len(body.passive_joints)
         if len(self._joints) != count:
@@ -355,7 +357,7 @@ class BodyPart(ApiObject):
         return list(self._all_joints()[len(self._state.scene.joints) :])
 
     def GetJoint(self, name: str) -> Joint | None:
-        """Return the joint of that name, passive or not, or None.
+        """Return the joint called ``name``, passive or not, or None.
 
         Example:
             >>> robot.GetJoint("Joint1").GetDOFIndex()
@@ -375,7 +377,7 @@ class BodyPart(ApiObject):
         if len(dofs) != 1:
             raise ArgumentError(f"GetJointFromDOFIndex: dofindex: are {dofs}, and should be one number")
         joints = self._state.scene.joints
-        behind = itertools.accumulate(len(joint.axes) for joint in joints)  # the DOF behind each joint
+        behind = itertools.accumulate(len(joint.axes) for joint in joints)  # the DOF after each joint
         return self._all_joints()[next(index for index, end in enumerate(behind) if dofs[0] < end)]
 
     def GetAdjacentLinks(self) -> set[tuple[int, int]]:
@@ -383,7 +385,7 @@ class BodyPart(ApiObject):
         return set(adjacent_pairs(self._state.scene))
 
     def GetJointIndex(self, name: str) -> int:
-        """Return the index in ``GetJoints()`` of the joint of a name, or -1."""
+        """Return the index in ``GetJoints()`` of the joint called ``name``, or -1."""
         return next((joint.GetJointIndex() for joint in self.GetJoints() if joint.GetName() == name), -1)
 
     def IsDOFRevolute(self, dofindex: int) -> bool:
@@ -401,7 +403,11 @@ class BodyPart(ApiObject):
             linkindex1: Index of a link.
             linkindex2: Index of the other link.
             dofindex: Index of the DOF.
+
+        Raises:
+            IndexError: the body has no such link.
         """
+        checked_indices([linkindex1, linkindex2], len(self._state.scene.links), "link indices")  # random api-91001-74
         first, second = self.DoesDOFAffectLink(dofindex, linkindex1), self.DoesDOFAffectLink(dofindex, linkindex2)
         return first != second
 
@@ -464,11 +470,11 @@ class BodyPart(ApiObject):
         return [every[index] for index in joints]
 
     def GetDependencyOrderedJoints(self) -> list[Joint]:
-        """Return the joints that have DOFs, each one after those that move it."""
+        """Return the active joints, each one after the joints that move it."""
         return self.GetJoints(chains.dependency_order(self._state.scene))
 
     def GetClosedLoops(self) -> list[list[tuple[Link, Joint]]]:
-        """Return the closed loops of links: each is a list of links, each with the joint that leads to the next."""
+        """Return the closed loops of links: each is a list of links with the joint that leads to the next link."""
         links, joints = self._all_links(), self._all_joints()
         return [
             [(links[link], joints[joint]) for link, joint in loop] for loop in chains.closed_loops(self._state.scene)
@@ -511,18 +517,24 @@ class BodyPart(ApiObject):
     def GetURI(self) -> str:
         """Return the file that the body was read from, as ``file:/path``; empty for a body made in code.
 
+        Behind the path of a COLLADA file with several bodies stands ``#`` and the body's id: ``ReadRobotURI`` and
+        ``ReadKinBodyURI`` read that body alone.
+
         For ``InitFromBoxes`` and its like, it is their argument ``uri``.
         """
         if self._uri is not None:
             return self._uri
         file = self._state.scene.source.file
         archive, inside, _ = file.partition(_ARCHIVE + "/")  # documents in archives are sources of their own
-        return "" if file in _NO_FILES else f"file:{os.path.abspath(archive + _ARCHIVE if inside else file)}"
+        if file in _NO_FILES:
+            return ""
+        element = self._state.scene.element
+        return f"file:{os.path.abspath(archive + _ARCHIVE if inside else file)}{'#' if element else ''}{element}"
 
     GetXMLFilename = GetURI
 
     def GetReferenceURI(self) -> str:
-        """Return the file that the body refers to in OpenRAVE's JSON. It is empty, since ravemj reads no such files."""
+        """Return an empty string: the file that the body refers to in OpenRAVE's JSON, which ravemj does not read."""
         return ""
 
     def GetAssociatedFileEntries(self) -> None:
@@ -545,12 +557,12 @@ class BodyPart(ApiObject):
         return 0
 
     def GetManageData(self) -> None:
-        """Return None, since ravemj has no sensor systems."""
+        """Return None, since there are no sensor systems."""
 
     def serialize(self, options: int) -> str:
-        """Return a text that determines links, geometries and joints of the body; ``options`` has no effect.
+        """Return a string that determines links, geometries and joints of the body; ``options`` has no effect.
 
-        ``GetKinematicsGeometryHash`` is the hash of this text. OpenRAVE writes another text.
+        ``GetKinematicsGeometryHash`` is its hash. OpenRAVE's string differs.
         """
         del options
         return hashes.text_of_body(self._state.scene)
@@ -674,7 +686,7 @@ class BodyPart(ApiObject):
         return self.InitFromLinks(linkInfos, uri)
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
-        """Replace the body, including its name, by the one of a description.
+        """Rebuild the body, including its name, from a description.
 
         Args:
             info: The description, for instance a result of ``ExtractInfo``.
@@ -700,14 +712,14 @@ class BodyPart(ApiObject):
         return True
 
     def UpdateFromKinBodyInfo(self, info: KinBodyInfo) -> UpdateFromInfoResult:
-        """Set the pose and the joint values of a description, which can be changed while a body is in an environment.
+        """Set the pose and the joint values of a description, which may also be done inside an environment.
 
         Args:
             info: The description, for instance a result of ``ExtractInfo`` of a body of the same structure.
 
         Returns:
-            ``NoChange`` or ``Success``. If links, joints or the name differ, the body stays as it is, and the result is
-            ``RequireReinitialize``: remove the body from the environment, and call ``InitFromKinBodyInfo``.
+            ``NoChange`` or ``Success``. If links, joints or the name differ, the body does not change, and the result
+            is ``RequireReinitialize``: remove the body from the environment, and call ``InitFromKinBodyInfo``.
         """
         with self._simulation.lock:
             before = self.ExtractInfo()
@@ -742,7 +754,7 @@ class BodyPart(ApiObject):
         return KinBodyInfo(**self.extracted(options))
 
     def extracted(self, options: int) -> dict[str, Any]:
-        """Return the fields of the info of ``ExtractInfo``.
+        """Return the fields for the info of ``ExtractInfo``.
 
         Args:
             options: What to include, ``ExtractInfoOptions``.
@@ -773,14 +785,14 @@ class BodyPart(ApiObject):
 
 
 _ARCHIVE = ".zae"
-"""The suffix of archives of COLLADA documents."""
+"""Suffix of archives with COLLADA documents."""
 
 _NO_FILES = frozenset({FROM_SCRIPT.file, "data"})
-"""Sources of bodies that were read from no file; ``data`` is what readers call a text."""
+"""Sources of bodies that were not read from a file; readers call a text ``data``."""
 
 
 def _rows(numbers: ArrayLike, widths: tuple[int, ...], name: str) -> Floats:
-    """Return a finite array of rows."""
+    """Return rows of numbers, checked to be finite."""
     rows = checked_numbers(numbers, name)
     wanted = " or ".join(f"(n, {width})" for width in widths)
     if rows.ndim != 2:

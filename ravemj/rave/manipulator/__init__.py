@@ -1,4 +1,4 @@
-"""The manipulators of a robot."""
+"""Manipulators of a robot."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
 
 
 Target = ArrayLike | IkParameterization | CollisionReport | None
-"""Where a tool should be, or, where that is left out, the report that follows it."""
+"""Goal of a tool; or, if it is left out, the report that follows it."""
 
 
 def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floats | None, CollisionReport | None]:
-    """Return the pose and the report, the first of which may have been left out."""
+    """Return the pose and the report; the pose may have been left out."""
     if isinstance(transform, IkParameterization):
         return transform.GetTransform6D(), report
     if transform is None or isinstance(transform, CollisionReport):
@@ -49,10 +49,10 @@ _SAME = 1e-12
 
 
 class Manipulator(ArmIk):
-    """A manipulator: a chain of joints with a tool at its end. ``robot.GetManipulators()`` returns them."""
+    """Chain of joints with a tool at its end; ``robot.GetManipulators()`` returns the manipulators."""
 
     def SetName(self, name: str) -> None:
-        """Give the manipulator another name.
+        """Rename the manipulator.
 
         Args:
             name: The name.
@@ -84,7 +84,7 @@ class Manipulator(ArmIk):
         return self._link(self._scene.effector)
 
     def GetIkChainEndLink(self) -> Link | None:
-        """Return the link at which the chain of IK solvers ends. It is None, which stands for the end effector."""
+        """Return the last link of the IK chain: None, which means the end effector."""
         return None
 
     def _link(self, index: int | None) -> Link | None:
@@ -240,7 +240,7 @@ class Manipulator(ArmIk):
         return [dof for joint in joints for dof in joint_dofs(self._state.scene, joint)]
 
     def GetChildLinks(self) -> list[Link]:
-        """Return the effector, the links that are fixed to it, and those beyond."""
+        """Return the end effector, the links fixed to it, and the links beyond."""
         return self._robot.GetLinks(chains.links_beyond(self._state.scene, self._scene))
 
     def IsChildLink(self, link: Link) -> bool:
@@ -248,7 +248,7 @@ class Manipulator(ArmIk):
         return link in self.GetChildLinks()
 
     def GetIndependentLinks(self) -> list[Link]:
-        """Return the links that neither the arm nor the gripper moves."""
+        """Return the links that are moved neither by the arm nor by the gripper."""
         return self._robot.GetLinks(chains.independent_links(self._state.scene, self._scene))
 
     def GetGripperIndices(self) -> Ints:
@@ -266,13 +266,13 @@ class Manipulator(ArmIk):
         return self._robot.GetDOFValues(self.GetGripperIndices())
 
     def GetChuckingDirection(self) -> Ints:
-        """Return the sign in which each DOF of the gripper closes: 1, 0 or -1."""
+        """Return the sign of closing for each gripper DOF: 1, 0 or -1."""
         return np.array(self._scene.chucking_direction, dtype=np.int_)
 
     GetClosingDirection = GetChuckingDirection
 
     def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
-        """Set ``chuckingdirection``, the sign in which each DOF of the gripper closes: -1, 0 or 1."""
+        """Set ``chuckingdirection``, the sign of closing for each gripper DOF: -1, 0 or 1."""
         count = len(self._scene.gripper_dofs)
         signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
         self._edit(chucking_direction=tuple(signs.tolist()))
@@ -280,11 +280,11 @@ class Manipulator(ArmIk):
     SetClosingDirection = SetChuckingDirection
 
     def IsGrabbing(self, body: "KinBody") -> bool:
-        """Return whether the effector, or a link beyond it, holds ``body``."""
+        """Return whether the end effector, or a link beyond it, has grabbed ``body``."""
         return self._robot.IsGrabbing(body) in self.GetChildLinks()
 
     def ReleaseAllGrabbed(self) -> None:
-        """Let go of all bodies that the effector and the links beyond it hold."""
+        """Release all bodies grabbed by the end effector and the links beyond it."""
         with self._state.simulation.lock:
             for link in self.GetChildLinks():
                 self._robot.ReleaseAllGrabbedWithLink(link)
@@ -294,15 +294,15 @@ class Manipulator(ArmIk):
         return self._scene.gripper_name
 
     def GetRestrictGraspSetNames(self) -> list[str]:
-        """Return the sets of grasps that the arm is restricted to: none."""
+        """Return the names of the grasp sets that the arm is restricted to: none."""
         return []
 
     def GetToolChangerConnectedBodyToolName(self) -> str:
-        """Return the tool of a connected body that a tool changer puts on here; empty: no tool changer is known."""
+        """Return the tool of the connected body at a tool changer: empty, since tool changers are not supported."""
         return ""
 
     def GetToolChangerLinkName(self) -> str:
-        """Return the link that a tool changer docks to; empty: no tool changer is known."""
+        """Return the link of a tool changer: empty, since tool changers are not supported."""
         return ""
 
     def CheckEndEffectorCollision(
@@ -311,13 +311,13 @@ class Manipulator(ArmIk):
         report: CollisionReport | None = None,
         numredundantsamples: int = 0,
     ) -> bool:
-        """Return whether the links beyond the arm, and what they hold, collide with other bodies.
+        """Return whether the links beyond the arm and their grabbed bodies collide with other bodies.
 
         Args:
-            transform: ``T_world_tool``, where the tool is meanwhile: 4x4, 3x4, 7 numbers, or an
-                ``IkParameterization``. The arm stays. None: where it is. It may be left out before ``report``.
-            report: Filled with what is found.
-            numredundantsamples: OpenRAVE's, for goals that leave the tool some freedom; ignored.
+            transform: ``T_world_tool`` to test: 4x4, 3x4, 7 numbers, or an ``IkParameterization``; the arm does not
+                move. None means the present pose. It may be omitted before ``report``.
+            report: Receives the collisions.
+            numredundantsamples: Not used.
 
         Example:
             >>> T = manip.GetTransform()
@@ -338,13 +338,13 @@ class Manipulator(ArmIk):
         numredundantsamples: int = 0,
         ignoreManipulatorLinks: bool = False,
     ) -> bool:
-        """Return whether the links beyond the arm, and what they hold, collide with the rest of the robot.
+        """Return whether the links beyond the arm and their grabbed bodies collide with the rest of the robot.
 
         Args:
-            transform: ``T_world_tool``, where the tool is meanwhile, as in ``CheckEndEffectorCollision``.
-            report: Filled with what is found.
-            numredundantsamples: Ignored.
-            ignoreManipulatorLinks: Whether the links of the arm itself are left out, which move to reach the pose.
+            transform: ``T_world_tool`` to test, as in ``CheckEndEffectorCollision``.
+            report: Receives the collisions.
+            numredundantsamples: Not used.
+            ignoreManipulatorLinks: Whether to ignore the links of the arm itself, which move to reach the pose.
         """
         del numredundantsamples
         target, report = _sorted_out(transform, report)
@@ -352,10 +352,10 @@ class Manipulator(ArmIk):
         return self._answer(find, report, target)
 
     def CheckIndependentCollision(self, report: CollisionReport | None = None) -> bool:
-        """Return whether the links that neither arm nor gripper move, and what they hold, collide with other bodies.
+        """Return whether the independent links and their grabbed bodies collide with other bodies.
 
         Args:
-            report: Filled with what is found.
+            report: Receives the collisions.
         """
         return self._answer(arms.independent_and_others, report, None)
 
@@ -365,13 +365,15 @@ class Manipulator(ArmIk):
         report: CollisionReport | None,
         T_world_tool: Floats | None,
     ) -> bool:
-        """Test pairs with the tool where it is wanted, or where it is."""
+        """Test pairs with the tool at its goal, by default at its present pose."""
         checker = self._robot.GetEnv().GetCollisionChecker()
-        with self._state.simulation.lock, checker.groups.world() as world, self._moved(world, T_world_tool):
-            return checker.answer(world, find(world, self._state, self._scene), report)
+        with self._state.simulation.lock:
+            world = checker.world()
+            with self._moved(world, T_world_tool):
+                return checker.answer(world, find(world, self._state, self._scene), report)
 
     def _moved(self, world: CollisionWorld, T_world_tool: Floats | None) -> AbstractContextManager[None]:
-        """Put the links beyond the arm, and what they hold, where the tool is wanted."""
+        """Context manager that moves the links beyond the arm and their grabbed bodies to a tool goal."""
         if T_world_tool is None:
             return nullcontext()
         return world.moved(arms.motions_of_end(self._state, self._scene, T_world_tool @ inverse(self.GetTransform())))

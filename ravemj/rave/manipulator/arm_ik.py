@@ -11,17 +11,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.arrays import checked_numbers, checked_rows, checked_vector
 from ravemj.core.transforms import Floats, inverse, pose_of
+from ravemj.engine.collision.moving import Among, batch_collides
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.geometry_functions.ik_parameterization import goal_of_tool, moved_goal
+from ravemj.geometry_functions.ik_parameterization import goal_of_tool, goal_transform, moved_goal
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
 from ravemj.manipulation.arm_search import ArmSearch
 from ravemj.manipulation.tool import Tool
 from ravemj.model import hashes, scene
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
 from ravemj.rave.iksolver import IkSolver, split_options, task_of
+from ravemj.rave.solver_names import named_in_file
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 
 if TYPE_CHECKING:
@@ -37,18 +39,18 @@ WITH_DIRECTION = {
     _Type.Ray4D,
     _Type.TranslationDirection5D,
 }
-"""Types of goals that depend on the direction of the tool."""
+"""Goal types that depend on the direction of the tool."""
 
 _GONE = 1 << 30
-"""The place of a manipulator that was removed; no robot has so many."""
+"""Index of a removed manipulator, larger than any valid one."""
 
 
 class IkBatch(NamedTuple):
-    """Joint values for many goals.
+    """IK solutions of many goals, by branch.
 
     Attributes:
-        solutions: Joint values [rad or m], shape (N, B, n); rows that are no solutions have any numbers.
-        valid: Which rows are solutions, shape (N, B).
+        solutions: Joint values [rad or m], shape (N, B, n); invalid rows have arbitrary values.
+        valid: Whether each row is a solution, shape (N, B).
         branches: A name for each of the B branches of solutions.
     """
 
@@ -57,13 +59,26 @@ class IkBatch(NamedTuple):
     branches: list[str]
 
 
+class BatchSolutions(NamedTuple):
+    """All IK solutions of many goals.
+
+    Attributes:
+        values: Joint values [rad or m], shape (N, K, n); rows after the last solution of a goal are NaN.
+        valid: Whether each row is a solution, shape (N, K).
+    """
+
+    values: Floats
+    valid: NDArray[np.bool_]
+
+
 class ArmIk(ApiObject):
-    """The name and the pose of an arm, and inverse kinematics: joint values for goals, and motions that keep them."""
+    """Base of ``Manipulator`` with the tool pose, inverse kinematics, and motions that keep a goal."""
 
     _often_called = ("__init__",)
 
     _internal = (
         "description",
+        "goals_in_base",
         "moved_up",
         "search",
     )
@@ -84,11 +99,11 @@ class ArmIk(ApiObject):
 
     @property
     def description(self) -> scene.Manipulator:
-        """What the model says of the manipulator."""
+        """The manipulator in the scene."""
         return self._scene
 
     def moved_up(self, removed: int) -> None:
-        """Take note that the manipulator at a place was removed, which may be this one."""
+        """Update the index after the removal of a manipulator, which may be this one."""
         if self._index >= removed:
             self._index = _GONE if self._index == removed else self._index - 1
 
@@ -111,10 +126,10 @@ class ArmIk(ApiObject):
     GetEndEffectorTransform = GetGraspTransform = GetTransform
 
     def _tool(self) -> Tool:
-        """Return the tool and the joints as arrays, which are made anew when the description is another one."""
+        """Return the tool and the joints as arrays, cached until the description changes."""
         arm = self._scene
         if self._known is None or self._known.arm is not arm:
-            self._known = Tool.of(arm)
+            self._known = Tool.for_arm(arm)
         return self._known
 
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
@@ -126,20 +141,33 @@ class ArmIk(ApiObject):
     # Solvers
 
     def GetIkSolver(self) -> IkSolver | None:
-        """Return the solver of inverse kinematics, or None as long as there is none."""
-        return self._robot.ik_solvers.get(self._scene.name)
+        """Return the solver of inverse kinematics, or None as long as there is none.
+
+        If the file names one by ``<iksolver>``, it is made at the first call: any name with ``ikfast`` in it stands for
+        a solver of poses or, with five joints, of the tool's position and direction.
+        """
+        solver = self._robot.ik_solvers.get(self._scene.name)
+        if solver is None and self._scene.ik_solver:
+            named = named_in_file(self._scene.ik_solver, len(self._scene.arm_dofs))
+            if named is not None:
+                kind, steps = named
+                self.SetIkSolver(IkSolver(self._robot.GetEnv(), self._scene.ik_solver, kind, steps=steps))
+                return self._robot.ik_solvers.get(self._scene.name)
+        return solver
 
     def SetIkSolver(self, iksolver: IkSolver | None) -> bool:
-        """Give the arm a solver in place of the one before.
+        """Set the IK solver.
 
         Args:
-            iksolver: What ``RaveCreateIkSolver`` made; None: none.
+            iksolver: A solver of ``RaveCreateIkSolver``; None removes the solver.
 
         Returns:
-            Whether it fits the arm; if not, the log says why.
+            Whether it fits the arm; if not, a warning says why.
         """
         if iksolver is None:
             self._robot.ik_solvers.pop(self._scene.name, None)
+            if self._scene.ik_solver:
+                self._edit(ik_solver="")
             return True
         solver = checked_kind(iksolver, IkSolver, "SetIkSolver: iksolver")
         try:
@@ -156,16 +184,18 @@ class ArmIk(ApiObject):
         solver = self.GetIkSolver()
         if solver is None:
             message = f"{caller}: manipulator '{self._scene.name}' has no solver of inverse kinematics"
+            if self._scene.ik_solver:
+                message += f", since there is none of the name '{self._scene.ik_solver}' that the file has"
             hint = "databases.inversekinematics.InverseKinematicsModel(...).load() makes it"
             raise RavemjError(f"{message}; {hint}", code)
         return solver
 
     def GetNumFreeParameters(self) -> int:
-        """Return how many joints of the arm are sampled, since it has more than the goals need."""
+        """Return the number of free joints, which are sampled because the arm has more joints than the goal needs."""
         return self._solver("GetNumFreeParameters", ErrorCode.Assert).GetNumFreeParameters()  # random-api-51
 
     def GetFreeParameters(self) -> Floats:
-        """Return where the free joints are in their ranges now, from 0 to 1, shape (k,)."""
+        """Return the present values of the free joints as fractions of their ranges, from 0 to 1, shape (k,)."""
         return self._solver("GetFreeParameters").GetFreeParameters()
 
     @overload
@@ -194,26 +224,26 @@ class ArmIk(ApiObject):
         ikFailureAccumulator: list[IkFailureInfo] | None = None,
         **named: object,
     ) -> Floats | IkReturn | None:
-        """Return the joint values nearest to the present ones that take the tool to a goal.
+        """Return the IK solution nearest to the present joint values.
 
-        ``FindIKSolution(param, filteroptions)`` or ``FindIKSolution(param, freevalues, filteroptions)``. The robot
-        stays where it is.
+        ``FindIKSolution(param, filteroptions)`` or ``FindIKSolution(param, freevalues, filteroptions)``. The robot does
+        not move.
 
         Args:
             param: ``T_world_tool``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]; or an ``IkParameterization`` in the world.
-            arguments: Values of the free joints as shares of their ranges, shape (k,), or nothing; then
-                ``IkFilterOptions`` combined with ``|``. 0: within the limits, without self collisions, and approved by
-                the filters.
-            ikreturn: Whether to return an ``IkReturn`` in any case, which also says why there is no solution.
+            arguments: Optionally the values of the free joints as fractions of their ranges, shape (k,); then
+                ``IkFilterOptions`` combined with ``|``. With 0, solutions are within the limits, without
+                self-collisions, and accepted by the filters.
+            ikreturn: Whether to return an ``IkReturn``, which also has the reasons of a failure.
             releasegil: Not used.
-            ikFailureAccumulator: A list that gets an ``IkFailureInfo`` for each solution that was rejected.
+            ikFailureAccumulator: A list that receives an ``IkFailureInfo`` for each rejected solution.
             named: The same as ``arguments``, by name.
 
         Returns:
-            Joint values [rad or m] in the order of ``GetArmIndices()``, shape (n,); None where there are none.
+            Joint values [rad or m] in the order of ``GetArmIndices()``, shape (n,); None if there is no solution.
 
         Raises:
-            openrave_exception: the arm has no solver; the goal is of another type than the solver's, or none at all.
+            openrave_exception: the arm has no solver; the goal is invalid, or its type differs from the solver's.
 
         Example:
             >>> model = databases.inversekinematics.InverseKinematicsModel(robot, IkParameterization.Type.Transform6D)
@@ -259,20 +289,21 @@ class ArmIk(ApiObject):
         ikFailureAccumulator: list[IkFailureInfo] | None = None,
         **named: object,
     ) -> Floats | list[IkReturn]:
-        """Return all joint values that take the tool to a goal.
+        """Return all IK solutions of a goal.
 
-        Free joints are sampled from 0 to their limits. A joint with a range of more than a turn gives all turns.
+        Free joints are sampled from 0 to their limits. If the range of a joint exceeds a turn, all turns are returned.
+        If no sample has an accepted solution, values between the samples are tried.
 
         Args:
             param: The goal, as for ``FindIKSolution``; so are the other arguments.
-            arguments: Values of the free joints, or nothing; then ``IkFilterOptions``.
+            arguments: Optionally the values of the free joints; then ``IkFilterOptions``.
             ikreturn: Whether to return a list of ``IkReturn``.
             releasegil: Not used.
-            ikFailureAccumulator: A list that gets an ``IkFailureInfo`` for each solution that was rejected.
+            ikFailureAccumulator: A list that receives an ``IkFailureInfo`` for each rejected solution.
             named: The same as ``arguments``, by name.
 
         Returns:
-            Joint values [rad or m], a solution in each row, shape (K, n); shape (0,) where there is none. With
+            Joint values [rad or m], a solution in each row, shape (K, n); shape (0,) if there is none. With
             ``ikreturn`` a list.
         """
         del releasegil
@@ -291,27 +322,27 @@ class ArmIk(ApiObject):
             return rows if len(rows) else np.zeros(0)
 
     def search(self, param: ArrayLike | IkParameterization, options: int) -> ArmSearch:
-        """Return a search for joint values that take the tool to a goal in the world; the arm has a solver."""
+        """Return an IK search for a goal in the world; the arm must have a solver."""
         with self._state.simulation.lock:
             return self._solver("search").search(self._in_base(param), None, options)
 
     def _in_base(self, param: ArrayLike | IkParameterization) -> IkParameterization | Floats:
-        """Return a goal in the frame of the arm's base; a pose (4, 4) as it is."""
+        """Return a goal in the frame of the arm's base; an array is a pose (4, 4)."""
         T_base_world = inverse(self._T_world_base())
         if isinstance(param, IkParameterization):
             return param.Transform(T_base_world)
-        return T_base_world @ checked_transform(param, "param")
+        return T_base_world @ goal_transform(param, "param")
 
     # Many goals at once
 
     def ik_solver(self, iktype: IkParameterizationType = _Type.Transform6D) -> "ArmSolutions":
-        """Return the solver of the arm, which is derived when it is first asked for.
+        """Return the solver of the arm, derived on first use.
 
         Args:
             iktype: The type of goal.
 
         Raises:
-            openrave_exception: the arm is none that can be solved, or no solver answers goals of that type.
+            openrave_exception: the arm cannot be solved, or goals of that type are not supported.
 
         Example:
             >>> print(manip.ik_solver().describe())
@@ -324,25 +355,80 @@ class ArmIk(ApiObject):
                 return solver.derived()
             kept = self._robot.arm_solvers
             own = kept.setdefault((self._scene.name, _Type(iktype)), ArmSolver(task_of(_Type(iktype))))
-            return own.of(self._state.scene, self._scene)
+            return own.solver_for(self._state.scene, self._scene)
         except ValueError as error:
             raise ArgumentError(str(error)) from error
 
     def ik(
         self, goals: ArrayLike, iktype: IkParameterizationType = _Type.Transform6D, *, limits: bool = True
     ) -> IkBatch:
-        """Return all joint values that take the tool to many goals, one turn of each; nothing is tested for collision.
+        """Return the IK solutions of many goals, one turn of each, without collision checks.
 
         Args:
-            goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the numbers of goals, shape (N, k).
+            goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the values of the goals, shape (N, k).
             iktype: The type of goal.
             limits: Whether only solutions within the limits are valid; else angles are in [-pi, pi].
 
         Example:
             >>> found = manip.ik(T_world_tools)
-            >>> found.solutions[0][found.valid[0]]  # all ways to the first one
+            >>> found.solutions[0][found.valid[0]]  # all solutions of the first goal
         """
+        from ravemj.ik.candidates import branch_names
+
         solver = self.ik_solver(iktype)
+        local = self.goals_in_base(goals, iktype)
+        try:
+            with self._state.simulation.lock:
+                found = solver.solve(local, limits=limits)
+        except ValueError as error:
+            raise ArgumentError(f"goals: {error}") from error
+        return IkBatch(found.values, found.valid, branch_names(solver, found.values.shape[1]))
+
+    def batch_solutions(
+        self,
+        poses: ArrayLike,
+        free: ArrayLike | None = None,
+        limits: bool = True,
+        collisions: bool = False,
+        iktype: IkParameterizationType = _Type.Transform6D,
+    ) -> BatchSolutions:
+        """Return the solutions of ``FindIKSolutions`` for many goals, in the same order.
+
+        Goals without a solution at the samples of free joints take longer, since values between the samples are tried;
+        ``free`` prevents that.
+
+        Args:
+            poses: ``T_world_tool``, shape (N, 4, 4); for other types the values of the goals, shape (N, k).
+            free: Values of the free joints [rad or m], shape (K, k), all tried for every goal; by default their
+                samples.
+            limits: Whether to enforce joint limits. Without them, angles are in [-pi, pi].
+            collisions: Whether to reject solutions in which moved links or grabbed bodies collide with other bodies or
+                the robot. The other joints keep their present values.
+            iktype: The type of goal.
+
+        Raises:
+            ArgumentError: a shape is wrong, a number is not finite, or the arm cannot be solved.
+
+        Example:
+            >>> values, valid = manip.batch_solutions(T_world_tools, collisions=True)
+            >>> reached = valid.any(axis=1)
+        """
+        from ravemj.ik.batches import padded, solve_each
+
+        solver, goals = self.ik_solver(iktype), self.goals_in_base(poses, iktype)
+        given = None if free is None else checked_rows(free, len(solver.free), "batch_solutions: free")
+        try:
+            rows, sources = solve_each(solver, goals, free=given, limits=limits)
+        except ValueError as error:
+            raise ArgumentError(f"batch_solutions: poses: {error}") from error
+        if collisions:
+            with self._state.simulation.lock:
+                free_of_collisions = ~batch_collides(self._state, rows, Among(dofs=self._scene.arm_dofs))
+            rows, sources = rows[free_of_collisions], sources[free_of_collisions]
+        return BatchSolutions(*padded(rows, sources, len(goals)))
+
+    def goals_in_base(self, goals: ArrayLike, iktype: IkParameterizationType) -> Floats:
+        """Return goals in the frame of the arm's base, shape (N, 4, 4), or (N, k) for other types than poses."""
         T_base_world = inverse(self._T_world_base())
         given = checked_numbers(goals, "ik: goals")
         size = (4, 4) if iktype == _Type.Transform6D else (goal_size(iktype),)
@@ -350,26 +436,19 @@ class ArmIk(ApiObject):
             wanted = f"(N, {', '.join(map(str, size))}) for goals of type {_Type(iktype).name}"
             raise ArgumentError(f"ik: goals: has shape {given.shape}, and should have shape {wanted}")
         if iktype == _Type.Transform6D:
-            local = T_base_world @ given.reshape(-1, 4, 4)
-        else:
-            rows = given.reshape(-1, goal_size(iktype))
-            local = np.array([moved_goal(iktype, row, pose_of(T_base_world)) for row in rows]).reshape(rows.shape)
-        try:
-            with self._state.simulation.lock:
-                found = solver.solve(local, limits=limits)
-        except ValueError as error:
-            raise ArgumentError(f"goals: {error}") from error
-        return IkBatch(found.values, found.valid, _branch_names(solver, found.values.shape[1]))
+            return T_base_world @ given.reshape(-1, 4, 4)
+        rows = given.reshape(-1, goal_size(iktype))
+        return np.array([moved_goal(iktype, row, pose_of(T_base_world)) for row in rows]).reshape(rows.shape)
 
     def GetIkParameterization(
         self, iktype: IkParameterizationType | IkParameterization | int, inworld: bool = True
     ) -> IkParameterization:
-        """Return where the tool is now, as a goal.
+        """Return the present tool pose as a goal.
 
         Args:
-            iktype: The type of goal, or a goal of that type, whose point of the tool is kept; so are its custom
-                values. Of a point that is looked at, the foot on the ray of the tool is taken.
-            inworld: True: in the world. False: in the base link of the arm.
+            iktype: The type of the goal; or a goal of that type, whose tool point and custom values are kept. For a
+                look-at point, its projection onto the tool ray is used.
+            inworld: Whether the goal is in the world frame; False means the arm's base frame.
         """
         like = iktype if isinstance(iktype, IkParameterization) else None
         kind = _Type(iktype if like is None else like.GetType())
@@ -394,13 +473,13 @@ class ArmIk(ApiObject):
 
         Args:
             iktype: The type of goal.
-            interpolation: How the values change between waypoints.
+            interpolation: The interpolation between waypoints.
         """
         names = self._robot.GetName(), self._scene.name
         return IkParameterization.GetConfigurationSpecificationFromType(iktype, interpolation, *names)
 
     def GetInverseKinematicsStructureHash(self, iktype: IkParameterizationType | int) -> str:
-        """Return a text that is the same for arms that one solver fits: 32 hexadecimal digits.
+        """Return a hash that is equal for arms with the same IK solver: 32 hexadecimal digits.
 
         Args:
             iktype: The type of goal.
@@ -413,14 +492,14 @@ class ArmIk(ApiObject):
         return np.eye(4) if self._scene.base is None else self._state.link_transform(self._scene.base)
 
     def null_space(self, iktype: IkParameterizationType = _Type.Transform6D) -> Floats:
-        """Return the joint velocities that leave the goal reached in which the tool is now.
+        """Return the joint velocities that keep the present goal: the null space of the arm.
 
         Args:
-            iktype: What counts of where the tool is.
+            iktype: The goal type, whose components of the tool pose are kept.
 
         Returns:
-            An orthonormal basis of them, a velocity in each column, shape (arm dof, k). In singular configurations
-            there are more than elsewhere.
+            An orthonormal basis, one velocity per column, shape (arm dof, k). Singular configurations have more
+            columns.
 
         Example:
             >>> velocity = 0.1 * manip.null_space()[:, 0]
@@ -434,21 +513,21 @@ class ArmIk(ApiObject):
     def null_space_path(
         self, along: ArrayLike, iktype: IkParameterizationType = _Type.Transform6D, *, step: float = 0.05
     ) -> Floats:
-        """Return configurations on a path that leaves the goal reached in which the tool is now; nothing moves.
+        """Return a path of configurations that keep the present goal (self-motion); the robot does not move.
 
-        The path ends where a joint meets its limit, where it comes back to its start, or after a length of 2 pi.
-        Nothing is tested for collision.
+        The path ends at a joint limit, when it returns to its start, or after a length of 2 pi. Collisions are not
+        checked.
 
         Args:
-            along: Joint velocities, shape (arm dof,); the path begins with what of them is in the null space.
-            iktype: What counts of where the tool is.
+            along: Joint velocities, shape (arm dof,); the path starts along their projection onto the null space.
+            iktype: The goal type, whose components of the tool pose are kept.
             step: Distance of neighbouring configurations in joint space [rad or m].
 
         Returns:
-            Joint values, the present ones first, shape (M, arm dof).
+            Joint values, starting with the present ones, shape (M, arm dof).
 
         Raises:
-            openrave_exception: the arm cannot move that way while its goal stays reached.
+            openrave_exception: the arm cannot move in this direction without leaving the goal.
 
         Example:
             >>> for values in manip.null_space_path([1, 0, 0, 0, 0, 0, 0]):
@@ -471,26 +550,14 @@ class ArmIk(ApiObject):
         return self._robot.GetDOFValues(self._scene.arm_dofs)
 
     def _goal_now(self, iktype: IkParameterizationType) -> Floats:
-        """Return where the tool is in the base of the arm, as solvers take goals."""
+        """Return the present tool pose in the arm's base frame, as input of a solver."""
         if iktype == _Type.Transform6D:
             return inverse(self._T_world_base()) @ self.GetTransform()
         return np.asarray(self.GetIkParameterization(iktype, inworld=False).GetValues())
 
 
 def _without_flag(arguments: tuple[object, ...], ikreturn: bool) -> tuple[tuple[object, ...], bool]:
-    """Return the arguments without ``ikreturn``, which may stand behind the options without its name."""
+    """Split off ``ikreturn``, which may follow the options as a positional argument."""
     if len(arguments) > 1 and isinstance(arguments[-1], bool) and isinstance(arguments[-2], int | np.integer):
         return arguments[:-1], arguments[-1]
     return arguments, ikreturn
-
-
-def _branch_names(solver: "ArmSolutions", count: int) -> list[str]:
-    """Return a name for each solution of a goal: the values of free joints, and the choices of the closed form."""
-    if solver.closed is None:
-        return [f"found {number + 1}" for number in range(count)]
-    names = solver.closed.branch_names
-    free = [
-        " ".join(f"j{joint + 1}={value:.4g}" for joint, value in zip(solver.free, row, strict=True))
-        for row in solver.free_samples()
-    ]
-    return [f"{values} {name}".strip() for values in free for name in names]

@@ -1,7 +1,8 @@
-"""Modules, under OpenRAVE's names: they plan and execute motions.
+"""Modules under OpenRAVE's names, which plan and execute motions.
 
 ``motions`` plans and executes a motion; ``base_manipulation`` and ``task_manipulation`` are the motions of the modules
-of these names. ``commands`` offers them as text commands.
+of these names. ``commands`` offers them as text commands. ``grasper`` simulates grasps; ``grasper_commands`` are its
+commands.
 """
 
 import logging
@@ -11,37 +12,50 @@ from typing import TYPE_CHECKING
 from ravemj.rave.interface import Command, Module, asked_for
 from ravemj.rave.modules.base_manipulation import BaseManipulation, Manipulation
 from ravemj.rave.modules.commands import BASE_COMMANDS, TASK_COMMANDS, Tokens, commands_of, scene_module
+from ravemj.rave.modules.grasper import GraspSimulation
+from ravemj.rave.modules.grasper_commands import GRASPER_COMMANDS
 from ravemj.rave.modules.task_manipulation import TaskManipulation
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
-__all__ = ["MODULES", "Module", "RaveCreateModule", "RaveCreateProblem", "base_module", "task_module"]
+__all__ = ["MODULES", "Module", "RaveCreateModule", "RaveCreateProblem", "base_module", "grasper_module", "task_module"]
 
 _LOG = logging.getLogger("ravemj")
 
-MODULES = ("BaseManipulation", "TaskManipulation", "logging", "urdf", "viewerrecorder")
+MODULES = ("BaseManipulation", "Grasper", "TaskManipulation", "ikfast", "logging", "urdf", "viewerrecorder")
 """Names of the modules."""
 
 MISSING: Mapping[str, str] = {
-    "grasper": "planning of grasps",
-    "ikfast": "compiling of solvers of inverse kinematics",
     "taskcaging": "caging of handles",
     "visualfeedback": "visual feedback",
 }
-"""Modules of OpenRAVE that ravemj lacks: their names in lower case, and the missing feature."""
+"""OpenRAVE's modules that ravemj lacks: names in lower case, with the missing feature."""
 
 
 def base_module(env: "Environment", xmlid: str = "BaseManipulation") -> tuple[Module, BaseManipulation]:
-    """Make a module that moves arms; return it, and the object that plans its motions."""
+    """Make a module that moves arms; return it with its motion planner."""
     manipulation = BaseManipulation(env)
     return _module(env, xmlid, manipulation, commands_of(manipulation, BASE_COMMANDS)), manipulation
 
 
 def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Module, TaskManipulation]:
-    """Make a module that moves grippers; return it, and the object that plans its motions."""
+    """Make a module that moves grippers; return it with its motion planner."""
     manipulation = TaskManipulation(env)
     return _module(env, xmlid, manipulation, commands_of(manipulation, TASK_COMMANDS)), manipulation
+
+
+def grasper_module(env: "Environment", xmlid: str = "Grasper") -> tuple[Module, GraspSimulation]:
+    """Make a module that simulates grasps; return it, and the object that does."""
+    simulation = GraspSimulation(env)
+    return _module(env, xmlid, simulation, commands_of(simulation, GRASPER_COMMANDS)), simulation
+
+
+_ROBOT_MODULES = {
+    "basemanipulation": base_module,
+    "taskmanipulation": task_module,
+    "grasper": grasper_module,
+}
 
 
 def RaveCreateModule(env: "Environment", name: str) -> Module | None:
@@ -49,8 +63,9 @@ def RaveCreateModule(env: "Environment", name: str) -> Module | None:
 
     Args:
         env: The environment.
-        name: ``BaseManipulation``, ``TaskManipulation``, ``viewerrecorder``, which writes videos, ``logging``, which
-            saves scenes, or ``urdf``, which loads robots of ROS as the plugin or_urdf does; in any letter case.
+        name: ``BaseManipulation``, ``TaskManipulation``, ``Grasper``, ``viewerrecorder``, which writes videos,
+            ``logging``, which saves scenes, ``urdf``, which loads robots of ROS as the plugin or_urdf does, or
+            ``ikfast``, which gives arms their solvers; in any letter case.
 
     Returns:
         The module; None with a logged warning if no plugin of OpenRAVE has a module of that name.
@@ -65,24 +80,27 @@ def RaveCreateModule(env: "Environment", name: str) -> Module | None:
         True
     """
     word = asked_for(env, name, "RaveCreateModule", MISSING)[0]
+    if word.lower() in _ROBOT_MODULES:
+        return _ROBOT_MODULES[word.lower()](env, word)[0]
     match word.lower():
-        case "basemanipulation":
-            return base_module(env, word)[0]
-        case "taskmanipulation":
-            return task_module(env, word)[0]
         case "logging":
-            return scene_module(env, word)
+            module = scene_module(env, word)
         case "viewerrecorder":
             from ravemj.rave.viewer_recorder import ViewerRecorder  # noqa: PLC0415 - rarely wanted
 
-            return ViewerRecorder(env, word)
+            module = ViewerRecorder(env, word)
         case "urdf":
             from ravemj.rave.modules.urdf import urdf_module  # noqa: PLC0415 - rarely wanted
 
-            return urdf_module(env, word)
+            module = urdf_module(env, word)
+        case "ikfast":
+            from ravemj.rave.modules.ikfast import ikfast_module  # noqa: PLC0415 - rarely wanted
+
+            module = ikfast_module(env, word)
         case _:
             _LOG.warning("there is no module '%s'", name)
-            return None
+            module = None
+    return module
 
 
 RaveCreateProblem = RaveCreateModule

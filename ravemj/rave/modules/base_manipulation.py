@@ -1,7 +1,9 @@
-"""Motions of joints and of the tool, planned and executed: the module ``BaseManipulation``."""
+"""Planned joint and tool motions and their execution: the module ``BaseManipulation``."""
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
 from itertools import islice
 from operator import is_not
 from typing import TYPE_CHECKING, Any
@@ -9,18 +11,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.manipulation.arm_search import ArmSearch
-from ravemj.manipulation.bodies import Bodies
+from ravemj.manipulation.bodies import Bodies, Conditions
 from ravemj.manipulation.motions import follow_goals, free_configuration, jittered, place_for_others
 from ravemj.manipulation.options import JitterMotion, JointMotion, StraightMotion, ToolMotion, UnsyncMotion
+from ravemj.manipulation.refusals import Cause, RefusedError, Tally
+from ravemj.manipulation.roots import FunctionRoots, Sampler
 from ravemj.manipulation.tool import ToolConstraint
-from ravemj.planning.rrt import MoreGoals
-from ravemj.rave.enums import IkFilterOptions
+from ravemj.planning.space import Space
+from ravemj.rave.enums import IkFilterOptions, IkReturnAction
+from ravemj.rave.ikreturn import IkFailureInfo
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
+from ravemj.rave.planning.parameters import check_movable
 from ravemj.rave.planning.planner import PlannerStatus, PlanningError
+from ravemj.rave.planning.region_goals import MotionSets, preshaped_dofs
 from ravemj.rave.planning.values import Values, hand_of
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
@@ -35,30 +43,32 @@ if TYPE_CHECKING:
 
 
 _SAME = 1e-9
-"""The tolerance within which two configurations are equal [rad or m]."""
+"""Tolerance of equal configurations [rad or m]."""
+
+NO_SETS = MotionSets()
 
 Postprocessing = tuple[str, str]
 Options = Mapping[str, Any]
-"""Options of a command, by their names."""
+"""Options of a command, by name."""
 
 
-def tool_constraint(options: Options) -> ToolConstraint | None:
-    """Return the constraint of the tool that options of a motion ask for; None where they leave it free."""
+def tool_constraints(options: Options) -> list[ToolConstraint]:
+    """Return the tool constraints in the options of a motion; none if the tool is free."""
     given = [name for name in options if name.startswith("constraint")]
     if given and "constraintfreedoms" not in given:
         raise ArgumentError(f"{given[0]} needs constraintfreedoms, which say what the constraint holds")
-    return constraint_of(options) if given and np.any(options["constraintfreedoms"]) else None
+    return [constraint_of(options)] if given and np.any(options["constraintfreedoms"]) else []
 
 
 def constraint_of(options: Options) -> ToolConstraint:
-    """Return the constraint of the tool that options of a command describe."""
+    """Return the tool constraint in the options of a command."""
     frame = options.get("constraintmatrix", options.get("constraintpose", np.eye(4)))
     point = options.get("constrainttaskmatrix", options.get("constrainttaskpose"))
     return ToolConstraint(frame, point, options["constraintfreedoms"], options.get("constrainterrorthresh", 1e-3))
 
 
 class Manipulation:
-    """Plans and executes motions of one robot.
+    """Plan and execute motions of one robot.
 
     Attributes:
         env: The environment of the robot.
@@ -84,28 +94,34 @@ class Manipulation:
         return self._robot
 
     def choose(self, name: str) -> bool:
-        """Choose the robot by its name, and return whether the environment has it."""
+        """Select the robot by name, and return whether the environment has it."""
         robot = self.env.GetRobot(name)
         if robot is not None:
             self._robot = robot
         return robot is not None
 
     def choose_planner(self, name: str) -> None:
-        """Choose the path planner; an unknown name chooses ``birrt``, as in OpenRAVE."""
+        """Select the path planner; an unknown name selects ``birrt``, as in OpenRAVE."""
         self.planner = name if is_planner(name) else "birrt"
 
     def groups(self, dofs: Sequence[int] | None = None) -> list[Group]:
-        """Return the layout of some joints of the robot, or of what is active."""
+        """Return the layout of some joints of the robot, by default of the active DOFs."""
         if dofs is None:
             return self.robot.GetActiveConfigurationSpecification().GetGroups()
         return body_groups(self.robot.simulation_state.scene.name, dofs, 0, "")
 
     def bodies_of(self, dofs: Sequence[int]) -> Bodies:
-        """Return some joints of the robot as what moves."""
+        """Return some joints of the robot as the moving bodies of a problem."""
         return Bodies(self.env.simulation, self.groups(dofs), self.env.GetCollisionChecker)
 
     def stated(self, dofs: Sequence[int] | None = None) -> Values:
-        """Return a problem of some joints, or of what is active."""
+        """Return a planning problem for some joints, by default the active DOFs.
+
+        Raises:
+            RavemjError: an active joint moves a static link (``InvalidState``).
+        """
+        if dofs is None:
+            check_movable(self.robot)
         values = Values()
         values.state(self.env, self.groups(dofs))
         return values
@@ -118,20 +134,20 @@ class Manipulation:
         dofs: Sequence[int] | None = None,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
-        more: MoreGoals | None = None,
-        constraint: ToolConstraint | None = None,
+        more: Sampler | None = None,
+        sets: MotionSets = NO_SETS,
     ) -> Trajectory:
         """Return a motion of some joints to one of several goals.
 
         Args:
             goals: The goals, each of shape (n,); values outside the limits are set to the limits.
-            options: The effort of the options.
-            dofs: The DOF indices of the joints; None for what is active.
+            options: The options of the motion.
+            dofs: The DOF indices of the joints; None for the active DOFs.
             starts: The possible starts; by default the current configuration.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
-            more: A source of further goals while the planner works.
-            constraint: The constraint of the tool along the whole motion, which then consists of short straight lines
-                between configurations that keep it.
+            more: A source of further goals during planning.
+            sets: Regions as goals, and constraints along the whole motion. If regions are among the constraints, the
+                motion is a smooth curve through many configurations that keep them.
 
         Raises:
             PlanningError: no motion was found; the message says why.
@@ -141,14 +157,19 @@ class Manipulation:
             raise ArgumentError(f"steplength: is {options.steplength:g}, and should be more than 0")
         values, jitter = self.stated(dofs), options.jitter
         _check(goals, starts, count(values.groups))
+        if not (len(goals) or sets.goals):
+            raise PlanningError("there is no goal: goal, goals, matrices and the like are all empty")
         values.goal_sampler = more
+        sampled = options.goalsampleprob if isinstance(options, ToolMotion) else ToolMotion.goalsampleprob
         values.numbers["_nmaxiterations"] = options.maxiter
         values.numbers["_fsteplength"] = options.steplength
-        if constraint is not None:
-            values.conditions.manifold = hand_of(self.env, values).tool.to_constraint(constraint)
-            values.postprocessing, jitter = ("LinearTrajectoryRetimer", ""), 0.0
+        values.certify = options.certify
+        sets.state(values, lambda: hand_of(self.env, values, gripper=True), sampled)
+        if values.conditions.manifold is not None:
+            jitter = 0.0
         values.postprocessing = postprocessing or values.postprocessing
         space, conditions = values.space(), values.conditions
+        self._warn_of_limits(conditions, space, goals)
         wanted = [[space.clamp(one) for one in some] for some in (starts or [values.vectors["_vinitialconfig"]], goals)]
         moved = [jittered(conditions, space, some, jitter) for some in wanted]
         values.vectors |= {"_vinitialconfig": np.array(moved[0]).ravel(), "_vgoalconfig": np.array(moved[1]).ravel()}
@@ -160,8 +181,23 @@ class Manipulation:
             if status:
                 if any(map(is_not, itertools.chain(*moved), itertools.chain(*wanted))):
                     self._join(traj, values.groups, wanted, moved)
+                traj.start_index, traj.goal_index = status.start_index, status.goal_index
                 return traj
-        raise PlanningError(status.description)
+        raise PlanningError(status.description, status=status)
+
+    def _warn_of_limits(self, conditions: Conditions, space: Space, goals: Sequence[Floats]) -> None:
+        """Warn of the first goal value that is outside its limits."""
+        assert conditions.bodies is not None, "something moves"
+        for goal in goals:
+            away = np.abs(space.clamp(goal) - goal)
+            if away.max(initial=0.0) > _SAME:
+                number = int(away.argmax())
+                limits = f"[{space.lower[number]:.6g}, {space.upper[number]:.6g}]"
+                told = f"the goal has {conditions.bodies.described(number)} at {goal[number]:.6g}, outside its limits"
+                message = f"{told} {limits}; the motion stops at the limit"
+                source = self.robot.simulation_state.scene.source
+                send_warning(Diagnostic("warning", "value-outside-limits", message, source))
+                return
 
     def _join(
         self,
@@ -170,7 +206,7 @@ class Manipulation:
         wanted: Sequence[Sequence[Floats]],
         moved: Sequence[Sequence[Floats]],
     ) -> None:
-        """Extend a motion to the original start and goal, in place of which the planner used jittered ones."""
+        """Extend a motion to the original start and goal if the planner used jittered ones."""
         spec = ConfigurationSpecification.of(groups)
         for end, (asked, used) in enumerate(zip(wanted, moved, strict=True)):
             place = traj.GetNumWaypoints() if end else 0
@@ -185,7 +221,7 @@ class Manipulation:
                 new.join(new.retimed((1.0, 1.0), retimer, ""))
 
     def straight(self, points: Floats, dofs: Sequence[int] | None = None) -> Trajectory:
-        """Return the fastest motion along straight lines through points (m, n) of joints, or of what is active.
+        """Return the fastest motion along straight segments through points (m, n) of joints or the active DOFs.
 
         Raises:
             PlanningError: the retimer finds no times.
@@ -198,7 +234,7 @@ class Manipulation:
         return traj
 
     def execute(self, traj: Trajectory) -> None:
-        """Have the robot's controller play a motion, which begins with the next simulation step.
+        """Start a motion on the robot's controller; it begins with the next simulation step.
 
         Raises:
             PlanningError: the robot has no controller.
@@ -220,18 +256,25 @@ class Manipulation:
 
 
 def _check(goals: Sequence[Floats], starts: Sequence[Floats], dof: int) -> None:
-    if not len(goals):
-        raise PlanningError("there is no goal")
     for one in [*goals, *starts]:
         if len(one) != dof or not np.isfinite(one).all():
             raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
+
+
+def _unreached(manip: Manipulator, goals: Sequence[IkParameterization]) -> str:
+    """Describe by how much the first goal is out of reach, or that it collides."""
+    shortfall = manip.search(goals[0], _CHECKED).shortfall()
+    if not shortfall:
+        return "without collisions for any of the goals"
+    which = "for the goal, which" if len(goals) == 1 else f"for any of the {len(goals)} goals; the first"
+    return f"{which} is out of reach: {shortfall}"
 
 
 _CHECKED = int(IkFilterOptions.CheckEnvCollisions)
 
 
 class BaseManipulation(Manipulation):
-    """Plans motions of the active DOFs, of an arm, or of its tool."""
+    """Plan motions of the active DOFs, of an arm, or of its tool."""
 
     def move_manipulator(self, goals: Sequence[Floats], options: JointMotion) -> Trajectory:
         """Return a motion of the active manipulator's arm to one of several goals, each of shape (arm dof,).
@@ -257,44 +300,67 @@ class BaseManipulation(Manipulation):
         goals: Sequence[IkParameterization],
         options: ToolMotion,
         *,
-        constraint: ToolConstraint | None = None,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
+        sets: MotionSets = NO_SETS,
     ) -> Trajectory:
         """Return a motion of the arm that moves its tool to one of several goals.
 
         Args:
             goals: The goals of the tool.
             options: The effort of the search.
-            constraint: The constraint of the tool along the whole motion; None for none.
             starts: The possible starts of the arm; by default its current values.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
+            sets: Regions as goals, and constraints along the whole motion.
 
         Raises:
             PlanningError: no motion was found.
             ArgumentError: a number of solutions is negative.
         """
-        if not goals:
-            raise PlanningError("there is no goal")
+        if not (goals or sets.goals):
+            raise PlanningError("there is no goal: goal, goals, matrices and the like are all empty")
         seedik, goalsamples = options.seedik, options.goalsamples
         if min(seedik, goalsamples) < 0:
             raise ArgumentError(f"seedik is {seedik} and goalsamples {goalsamples}, and both should be 0 or more")
-        manip = self._solvable()
-        stream = (row for goal in goals for row in manip.search(goal, _CHECKED).every())
+        manip = self._solvable() if goals else self.arm()
+        gripper = preshaped_dofs(manip, sets.goals)
+        present = self.robot.GetDOFValues()[gripper]
+        stream = (np.append(row, present) for goal in goals for row in manip.search(goal, _CHECKED).every())
         found = list(islice(stream, min(seedik, goalsamples)))
-        if not found:
-            raise PlanningError("inverse kinematics (IK) has no solution without collisions for any of the goals")
+        if not (found or sets.goals):
+            raise _without_solutions(manip, goals)
         rest = islice(stream, goalsamples - len(found))
-        more = MoreGoals(lambda: next(rest, None), options.goalsampleprob)
+        more = Sampler(FunctionRoots(lambda: next(rest, None)), options.goalsampleprob)
         return self.move_joints(
             found,
             options,
-            dofs=manip.description.arm_dofs,
-            starts=starts,
+            dofs=[*manip.description.arm_dofs, *gripper],
+            starts=[np.append(row, present) for row in starts],
             postprocessing=postprocessing,
             more=more,
-            constraint=constraint,
+            sets=sets,
         )
+
+    @contextmanager
+    def holding(self, body: KinBody | str | None) -> Generator[KinBody | None]:
+        """Context manager that grabs a body with the end effector, unless it is grabbed already.
+
+        The body is given by itself or by its name.
+
+        Raises:
+            ArgumentError: the body does not exist.
+        """
+        held = self.env.GetKinBody(body) if isinstance(body, str) else body
+        if body is not None and held is None:
+            raise ArgumentError(f"holding: there is no body '{body}' in the environment")
+        if held is None or self.robot.IsGrabbing(held) is not None:
+            yield held
+            return
+        self.robot.Grab(held)
+        try:
+            yield held
+        finally:
+            self.robot.Release(held)
 
     def _solvable(self) -> Manipulator:
         manip = self.arm()
@@ -308,11 +374,11 @@ class BaseManipulation(Manipulation):
         options: StraightMotion,
         starteematrix: Floats | None = None,
     ) -> Trajectory:
-        """Return a motion of the arm that moves its tool along a straight line, as far as the arm can follow.
+        """Return a motion that moves the tool along a straight line as far as the arm can follow.
 
         Args:
             direction: The direction of the line in the world, of any length, shape (3,).
-            options: Its steps.
+            options: The step size and the numbers of steps.
             starteematrix: ``T_world_tool`` at the start; by default the current pose.
 
         Raises:
@@ -345,7 +411,7 @@ class BaseManipulation(Manipulation):
     def follow(
         self, manip: Manipulator, pose: Callable[[int], tuple[Floats, bool]], count: int, first: Floats
     ) -> Floats:
-        """Return joint values with which the tool follows poses without jumps, as far as it gets, shape (m, n).
+        """Return joint values along tool poses without jumps, up to the first unreachable pose, shape (m, n).
 
         Args:
             manip: The manipulator.
@@ -362,14 +428,14 @@ class BaseManipulation(Manipulation):
         indices: Sequence[int],
         options: UnsyncMotion,
     ) -> Trajectory:
-        """Return a motion of the active DOFs to a place where other joints can reach given values without collisions.
+        """Return a motion of the active DOFs to where other joints can reach given values without collisions.
 
         The other joints themselves are not moved.
 
         Args:
             hand: The values for the other joints.
             indices: The DOF indices of the other joints.
-            options: How to look for the place.
+            options: The options of the search.
 
         Raises:
             PlanningError: no motion was found.
@@ -412,6 +478,36 @@ class BaseManipulation(Manipulation):
         if found is None:
             raise PlanningError(f"{options.maxiter} configurations within {options.jitter:g} are all in collision")
         return found, self.straight(here[None] if found is here else np.stack([here, found]))
+
+
+_CAUSES = {
+    IkReturnAction.RejectKinematics: Cause.REACH,
+    IkReturnAction.RejectJointLimits: Cause.LIMITS,
+    IkReturnAction.RejectSelfCollision: Cause.SELF_COLLISION,
+    IkReturnAction.RejectCustomFilter: Cause.FILTER,
+}
+"""Failure causes by OpenRAVE's codes; all others are collisions with other bodies."""
+
+
+def _without_solutions(manip: Manipulator, goals: Sequence[IkParameterization]) -> PlanningError:
+    """Return an error that counts the goals without IK solution by cause, and names two colliding links."""
+    tally, pairs = Tally([""]), Counter[str]()
+    for goal in goals:
+        failures: list[IkFailureInfo] = []
+        manip.FindIKSolutions(goal, _CHECKED, ikFailureAccumulator=failures)
+        refusals: list[RefusedError] = []
+        for one in failures:
+            first, second = one.GetCollisionReport().plink1, one.GetCollisionReport().plink2
+            if first is not None and second is not None:
+                pairs[f"link '{first.GetName()}' with link '{second.GetName()}'"] += 1
+            cause = _CAUSES.get(one.GetAction(), Cause.COLLISION)
+            refusals.append(RefusedError(cause.value, cause=cause, values=one.GetConfiguration()))
+        tally.note(0, refusals or [RefusedError(Cause.REACH.value, cause=Cause.REACH)])
+    example = f" (e.g. {pairs.most_common(1)[0][0]})" if pairs else ""
+    reason = f"inverse kinematics (IK) has no solution {_unreached(manip, goals)}"
+    status = PlannerStatus(f"{reason}: {tally.described()}{example}")
+    status.tally = tally
+    return PlanningError(status.description, status=status)
 
 
 def _search(manip: Manipulator, T_world_tool: Floats, check: bool) -> ArmSearch:

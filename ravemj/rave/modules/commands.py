@@ -1,4 +1,4 @@
-"""The arguments of commands: texts and numbers, taken off a line one after the other."""
+"""Text commands of the modules, and the parsing of their arguments."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
@@ -10,7 +10,9 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import matrixFromPose
+from ravemj.manipulation.grasps import GraspTable
 from ravemj.manipulation.options import (
+    Certify,
     GraspMotion,
     JitterMotion,
     JointMotion,
@@ -25,10 +27,11 @@ from ravemj.rave.modules.base_manipulation import (
     Manipulation,
     Options,
     constraint_of,
-    tool_constraint,
+    tool_constraints,
 )
-from ravemj.rave.modules.task_manipulation import GraspQuery, TaskManipulation
+from ravemj.rave.modules.task_manipulation import GraspQuery, TaskManipulation, finger_steps
 from ravemj.rave.planning.planner import PlanningError
+from ravemj.rave.planning.region_goals import MotionSets
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT
@@ -38,10 +41,10 @@ if TYPE_CHECKING:
 
 
 class Tokens:
-    """The tokens of a text, taken one after the other.
+    """Token stream of a command line.
 
     Attributes:
-        words: The tokens that are left.
+        words: The remaining tokens.
     """
 
     def __init__(self, text: str) -> None:
@@ -51,7 +54,7 @@ class Tokens:
         """Return the next token.
 
         Raises:
-            ArgumentError: there is none.
+            ArgumentError: no token is left.
         """
         if not self.words:
             raise ArgumentError(f"the text ends where {wanted} should follow")
@@ -80,7 +83,7 @@ class Tokens:
         return int(number)
 
     def count(self) -> int:
-        """Return the next token as a number of things that follow."""
+        """Return the next token as a non-negative count."""
         count = self.integer()
         if count < 0:
             raise ArgumentError(f"{count} should be how many follow, 0 or more")
@@ -91,15 +94,15 @@ class Tokens:
         return np.array([self.number() for _ in range(count)])
 
     def rows(self, width: int) -> Floats:
-        """Return rows of numbers, shape (n, width); the number of rows is the first token."""
+        """Return rows of numbers, shape (n, width), preceded by their count."""
         return self.numbers(self.count() * width).reshape(-1, width)
 
     def list(self) -> Floats:
-        """Return numbers, shape (n,); the number of them is the first token."""
+        """Return numbers, shape (n,), preceded by their count."""
         return self.numbers(self.count())
 
     def matrix(self) -> Floats:
-        """Return a pose, shape (4, 4), from 12 numbers by columns, as OpenRAVE writes it."""
+        """Return a pose, shape (4, 4), from OpenRAVE's 12 numbers in column order."""
         pose = np.eye(4)
         pose[:3] = self.numbers(12).reshape(4, 3).T
         return pose
@@ -109,7 +112,7 @@ Reader = Callable[[Tokens], Any]
 
 
 def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
-    """Return the options in a text: names, each followed by the tokens that its reader takes.
+    """Parse options: names, each followed by the tokens that its reader consumes.
 
     Raises:
         ArgumentError: an option is unknown, or is followed by wrong tokens.
@@ -142,11 +145,22 @@ def text(tokens: Tokens) -> str:
     return tokens.next()
 
 
-_READERS: Mapping[object, Reader] = {int: Tokens.integer, float: Tokens.number, bool: flag, str: text}
+def _certify(tokens: Tokens) -> Certify:
+    word = tokens.next()
+    return "required" if word == "required" else word != "0"
+
+
+_READERS: Mapping[object, Reader] = {
+    int: Tokens.integer,
+    float: Tokens.number,
+    bool: flag,
+    str: text,
+    Certify: _certify,
+}
 
 
 def readers_of(kind: type) -> dict[str, Reader]:
-    """Return what reads the options of a motion, by their types."""
+    """Return a reader for each option of a motion, by its type."""
     return {row.name: _READERS[row.type] for row in fields(kind)}
 
 
@@ -174,7 +188,7 @@ _SEARCH: Mapping[str, Reader] = {
 
 
 def commands_of(manipulation: Kind, commands: Mapping[str, Callable[[Kind, str], str | None]]) -> dict[str, Command]:
-    """Return the commands for one robot. They return None if no motion is found, as OpenRAVE's do."""
+    """Return the commands of one robot. Like OpenRAVE's, they return None if no motion is found."""
 
     def bound(command: Callable[[Kind, str], str | None]) -> Command:
         @wraps(command)
@@ -190,7 +204,7 @@ def commands_of(manipulation: Kind, commands: Mapping[str, Callable[[Kind, str],
 
 
 def _reply(manipulation: Manipulation, traj: Trajectory, options: Options, before: str = "") -> str:
-    """Execute a motion if the options do not forbid it, and return the answer of the command."""
+    """Execute a motion unless the options forbid it, and return the answer of the command."""
     if options.get("execute", True):
         manipulation.execute(traj)
     return before + (traj.serialize(AS_TEXT).decode() if options.get("outputtraj") else "")
@@ -200,17 +214,18 @@ def _final_and_reply(manipulation: Manipulation, found: tuple[Floats, Trajectory
     return _reply(manipulation, found[1], options, _text(found[0]) if options.get("outputfinal") else "")
 
 
-def _some(options: Options, *names: str) -> dict[str, Any]:
+def some(options: Options, *names: str) -> dict[str, Any]:
+    """Return those of the options that have one of the names."""
     return {name: options[name] for name in names if name in options}
 
 
 def _set_robot(manipulation: Manipulation, arguments: str) -> str | None:
-    """Chooses the robot by its name."""
+    """Select the robot by name."""
     return "" if manipulation.choose(arguments.strip()) else None
 
 
 def _move_active_joints(base: BaseManipulation, arguments: str) -> str:
-    """Moves the active DOFs to one of several goals without collisions."""
+    """Move the active DOFs to one of several goals without collisions."""
     dof = base.robot.GetActiveDOF()
     readers = {**_SEARCH, **_goals(dof), "initialconfigs": _rows(dof), "postprocessingplanner": text}
     options = read_options(arguments, readers)
@@ -221,14 +236,14 @@ def _move_active_joints(base: BaseManipulation, arguments: str) -> str:
 
 
 def _move_manipulator(base: BaseManipulation, arguments: str) -> str:
-    """Moves the arm of the active manipulator to one of several goals without collisions."""
+    """Move the active manipulator's arm to one of several goals without collisions."""
     options = read_options(arguments, {**_SEARCH, **_goals(base.arm().GetArmDOF())})
     goals = [*options.get("goal", ()), *options.get("goals", ())]
     return _reply(base, base.move_manipulator(goals, chosen(JointMotion, options)), options)
 
 
 def _move_to_hand_position(base: BaseManipulation, arguments: str) -> str:
-    """Moves the tool of the active manipulator to one of several poses without collisions."""
+    """Move the active manipulator's tool to one of several poses without collisions."""
     readers: dict[str, Reader] = {**_SEARCH, **_TOOL_GOAL}
     readers |= {name: _several(_TOOL_GOAL[one]) for name, one in _TOOL_GOALS.items()}
     readers |= {"goalmaxsamples": Tokens.integer, **readers_of(ToolMotion)}
@@ -239,13 +254,13 @@ def _move_to_hand_position(base: BaseManipulation, arguments: str) -> str:
     goals += [goal for name in _TOOL_GOALS for goal in options.get(name, ())]
     if "goalmaxsamples" in options:
         options.setdefault("goalsamples", options["goalmaxsamples"])
-    starts, constraint = options.get("initialconfigs", ()), tool_constraint(options)
-    traj = base.move_to_hand_position(goals, chosen(ToolMotion, options), constraint=constraint, starts=starts)
+    starts, sets = options.get("initialconfigs", ()), MotionSets(constraints=tool_constraints(options))
+    traj = base.move_to_hand_position(goals, chosen(ToolMotion, options), sets=sets, starts=starts)
     return _reply(base, traj, options, "1 " if options.get("outputtraj") else "1")
 
 
 def _move_hand_straight(base: BaseManipulation, arguments: str) -> str:
-    """Moves the tool of the active manipulator along a straight line."""
+    """Move the active manipulator's tool along a straight line."""
     readers: dict[str, Reader] = {**_OUTPUT, "direction": lambda tokens: tokens.numbers(3), "greedysearch": flag}
     readers |= {**readers_of(StraightMotion), "starteematrix": Tokens.matrix}
     readers |= dict.fromkeys(("maxdeviationangle", "steplength"), Tokens.number)
@@ -255,7 +270,7 @@ def _move_hand_straight(base: BaseManipulation, arguments: str) -> str:
 
 
 def _move_unsync_joints(base: BaseManipulation, arguments: str) -> str:
-    """Moves the active DOFs to where other joints can move to values without collisions."""
+    """Move the active DOFs to a configuration from which other joints can reach values without collisions."""
     readers: dict[str, Reader] = {**_OUTPUT, "handjoints": _hand, **readers_of(UnsyncMotion)}
     options = read_options(arguments, readers)
     hand, indices = options.get("handjoints", (np.zeros(0), []))
@@ -263,9 +278,16 @@ def _move_unsync_joints(base: BaseManipulation, arguments: str) -> str:
 
 
 def _jitter_active(base: BaseManipulation, arguments: str) -> str:
-    """Moves the active DOFs a little, out of collision."""
+    """Move the active DOFs slightly, out of collision."""
     options = read_options(arguments, {**_OUTPUT, **readers_of(JitterMotion), "outputfinal": switch})
     return _final_and_reply(base, base.jitter_active(chosen(JitterMotion, options)), options)
+
+
+def _set_minimum_goal_paths(base: BaseManipulation, arguments: str) -> str:
+    """Set the minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
+    del base
+    Tokens(arguments).count()
+    return ""
 
 
 BASE_COMMANDS: Mapping[str, Callable[[BaseManipulation, str], str | None]] = {
@@ -275,6 +297,7 @@ BASE_COMMANDS: Mapping[str, Callable[[BaseManipulation, str], str | None]] = {
     "MoveHandStraight": _move_hand_straight,
     "MoveUnsyncJoints": _move_unsync_joints,
     "JitterActive": _jitter_active,
+    "SetMinimumGoalPaths": _set_minimum_goal_paths,
     "SetRobot": _set_robot,
 }
 """The commands of ``BaseManipulation``."""
@@ -290,20 +313,22 @@ def _gripper_options(task: TaskManipulation, arguments: str) -> dict[str, Any]:
 
 
 def _close_fingers(task: TaskManipulation, arguments: str) -> str:
-    """Closes the gripper until its fingers touch something."""
+    """Close the gripper until its fingers touch something."""
     options = _gripper_options(task, arguments)
-    return _final_and_reply(task, task.close_fingers(options.get("movingdir"), options.get("offset")), options)
+    found = task.close_fingers(options.get("movingdir"), options.get("offset"), finger_steps(options))
+    return _final_and_reply(task, found, options)
 
 
 def _release_fingers(task: TaskManipulation, arguments: str) -> str:
-    """Opens the gripper, and lets go of a body."""
+    """Open the gripper and release a body."""
     options = _gripper_options(task, arguments)
     target = task.env.GetKinBody(options["target"]) if "target" in options else None
-    return _final_and_reply(task, task.release_fingers(options.get("movingdir"), target), options)
+    found = task.release_fingers(options.get("movingdir"), target, finger_steps(options))
+    return _final_and_reply(task, found, options)
 
 
 def _release_active(task: TaskManipulation, arguments: str) -> str:
-    """Moves the active joints to one side until they touch something."""
+    """Move the active joints in one direction until they touch something."""
     dof = task.robot.GetActiveDOF()
     readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "movingdir": lambda tokens: tokens.numbers(dof)}
     readers |= dict.fromkeys(("finestep", "translationstepmult"), Tokens.number)
@@ -312,20 +337,20 @@ def _release_active(task: TaskManipulation, arguments: str) -> str:
 
 
 def _grasp_planning(task: TaskManipulation, arguments: str) -> str:
-    """Moves the arm to one of given grasps."""
+    """Move the arm to one of given grasps."""
     options = read_options(arguments, {**_GRASPS, **_OUTPUT})
     target = task.env.GetKinBody(options.get("target", ""))
     if target is None:
         raise PlanningError(f"there is no body '{options.get('target', '')}'")
-    indices, places = _some(options, *GRASP_COLUMNS), [*options.get("posedests", ()), *options.get("matdests", ())]
+    indices, places = some(options, *GRASP_COLUMNS), [*options.get("posedests", ()), *options.get("matdests", ())]
     grasps = options.get("grasps", np.zeros((0, 0)))
-    plan = task.plan_grasp(GraspQuery(target, grasps, indices, places, chosen(GraspMotion, options)))
+    plan = task.plan_grasp(GraspQuery(target, GraspTable(grasps, indices), places, chosen(GraspMotion, options)))
     goals = "".join(f"{goal} " for goal in plan.goals)
     return _reply(task, plan.traj, options, f"{len(plan.goals)} {goals}{plan.number} {plan.seconds!r} ")
 
 
 def _evaluate_constraints(task: TaskManipulation, arguments: str) -> str:
-    """Projects configurations onto a constraint of the tool, and returns the number of steps for each."""
+    """Project configurations onto a tool constraint, and return the number of steps for each."""
     dof = task.robot.GetActiveDOF()
     configurations: list[Floats] = []
     config: Mapping[str, Reader] = {"config": lambda tokens: configurations.append(tokens.numbers(dof))}
@@ -359,7 +384,7 @@ def _pose(tokens: Tokens) -> Floats:
 
 
 def _several(reader: Reader) -> Reader:
-    """Return a reader of a list: how many there are, then each."""
+    """Return a reader of a list, preceded by its count."""
     return lambda tokens: [reader(tokens) for _ in range(tokens.count())]
 
 
@@ -386,23 +411,23 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
     "rotation": lambda tokens: IkParameterization(tokens.numbers(4), _KIND.Rotation3D),
     "ikparam": lambda tokens: IkParameterization.take(tokens.words),
 }
-"""Arguments that are one goal of the tool."""
+"""Arguments with one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
-"""Arguments that are several goals of the tool, and what each of these is."""
+"""Arguments with several tool goals, and the argument with one of these."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),
     **dict.fromkeys(("constraintpose", "constrainttaskpose"), _pose),
     **{"constraintfreedoms": lambda tokens: tokens.numbers(6), "constrainterrorthresh": Tokens.number},
 }
-"""Arguments of a constraint of the tool."""
+"""Arguments of a tool constraint."""
 
 GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),
     *("igrasppos", "igrasproll", "igraspstandoff"),
 )
-"""Names of columns in a list of grasps; the last three are for programs that close the hand, and have no effect."""
+"""Column names of a grasp table; the last three are for programs that close the hand, and have no effect."""
 
 _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),

@@ -1,28 +1,30 @@
-"""Motions of fingers, and of arms to grasps: the module ``TaskManipulation``."""
+"""Gripper motions, and arm motions to grasps: the module ``TaskManipulation``."""
 
 import time
-from collections.abc import Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ravemj.core.blocks import block
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.arm_search import ArmSearch
+from ravemj.manipulation.grasping.closing import STEPS, Approach, Steps
+from ravemj.manipulation.grasping.hands import grasp, hand_of
+from ravemj.manipulation.grasps import Grasp, GraspingArm, GraspSearch, GraspTable
 from ravemj.manipulation.motions import move_until_contact
 from ravemj.manipulation.options import GraspMotion, JointMotion
 from ravemj.manipulation.tool import ToolConstraint
 from ravemj.planning.projection import PROJECTION_STEPS, project
-from ravemj.rave.enums import IkFilterOptions, SaveParameters
+from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.modules.base_manipulation import BaseManipulation, Manipulation
+from ravemj.rave.modules.base_manipulation import BaseManipulation, Manipulation, Options
+from ravemj.rave.planning import values as problems
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.planner import PlanningError
-from ravemj.rave.planning.values import hand_of
-from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
@@ -30,43 +32,30 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-_LINE_STEP = 0.01
-"""The distance of the tested poses on the line from the approach to the grasp [m]."""
-
-_IN_LIMITS = 1e-3
-"""The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
-
 _CHECKED = int(IkFilterOptions.CheckEnvCollisions)
-_SAVED = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
 
 
-@dataclass(frozen=True)
-class GraspQuery:
-    """A list of grasps, and how to choose from it.
+class GraspQuery(NamedTuple):
+    """Grasp table, and the options of choosing a grasp.
 
     Attributes:
         target: The body to grasp.
-        grasps: One grasp in each row, shape (n, m).
-        indices: The first column of each property of a grasp, by OpenRAVE's names: ``igrasptrans`` (``T_target_tool``,
-            12 numbers by columns) or ``grasptrans_nocol``, which has precedence; ``igraspdir`` (the approach direction
-            of the hand in the target frame), ``imanipulatordirection`` (the same in the tool frame), ``igrasppreshape``
-            (the values of the gripper).
-        places: ``T_world_target`` of places to put the target down; a grasp has to reach one of them.
-        options: How to choose.
+        table: The grasps.
+        places: ``T_world_target`` of poses to put the target down; a grasp has to reach one of them.
+        options: The options of the choice.
     """
 
     target: KinBody
-    grasps: Floats
-    indices: Mapping[str, int]
+    table: GraspTable
     places: Sequence[Floats]
     options: GraspMotion
 
 
 class GraspPlan(NamedTuple):
-    """A motion to a grasp.
+    """Motion to a grasp.
 
     Attributes:
-        goals: The goals of the tool at the places, for this grasp.
+        goals: The tool goals for putting the target down with this grasp.
         number: The index of the grasp.
         seconds: The time that the planner took [s].
         traj: The motion of the arm, and of those gripper joints whose values change.
@@ -78,21 +67,11 @@ class GraspPlan(NamedTuple):
     traj: Trajectory
 
 
-@dataclass
-class _Candidate:
-    """A reachable grasp: its index, values of the gripper, of the arm there, and goals of the tool at the places."""
-
-    index: int
-    preshape: Floats
-    rows: list[Floats] = field(default_factory=lambda: [])
-    goals: list[IkParameterization] = field(default_factory=lambda: [])
-
-
 def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
     """Return a motion of the arm to one of several grasps.
 
     Raises:
-        ArgumentError: the list of grasps has no poses, or the robot holds the target already.
+        ArgumentError: the table has no grasp poses, or the robot has grabbed the target already.
         PlanningError: no grasp can be reached.
     """
     manip = base.arm()
@@ -101,8 +80,8 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
     if manip.GetIkSolver() is None:
         raise PlanningError(f"manipulator '{manip.GetName()}' has no solver of inverse kinematics (IK)")
     seconds, reachable, refused = 0.0, 0, "no grasp can be reached without collisions"
-    found = _Candidates(base, manip, query).all()
-    while batch := _first(found, max(1, query.options.seedgrasps)):
+    found = _reachable(base, manip, query)
+    while batch := list(islice(found, max(1, query.options.seedgrasps))):
         reachable += len(batch)
         begin = time.perf_counter()
         try:
@@ -113,18 +92,22 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
             continue
         finally:
             seconds += time.perf_counter() - begin
-        return GraspPlan(chosen.goals, chosen.index, seconds, traj)
+        return GraspPlan([_goal(T) for T in chosen.T_world_goals], chosen.number, seconds, traj)
     raise PlanningError(refused)
 
 
-def _first(found: Iterator[_Candidate], count: int) -> list[_Candidate]:
-    return [one for _, one in zip(range(count), found, strict=False)]
+def _reachable(base: BaseManipulation, manip: Manipulator, query: GraspQuery) -> Iterator[Grasp]:
+    def search(T_world_tool: Floats) -> ArmSearch:
+        return manip.search(_goal(T_world_tool), _CHECKED)
+
+    state, arm, space = base.robot.simulation_state, manip.description, base.stated(manip.description.arm_dofs).space()
+    hand = GraspingArm(state, arm, space, base.env.GetCollisionChecker, search)
+    return GraspSearch(hand, query.target.simulation_state, query.table, query.places, query.options).all()
 
 
 def _planned(
-    base: BaseManipulation, manip: Manipulator, batch: Sequence[_Candidate], options: JointMotion
-) -> tuple[Trajectory, _Candidate]:
-    """Return a motion to one of the candidates, and that candidate."""
+    base: BaseManipulation, manip: Manipulator, batch: Sequence[Grasp], options: JointMotion
+) -> tuple[Trajectory, Grasp]:
     robot = base.robot
     gripper = manip.GetGripperIndices()
     changed = np.array([one.preshape != robot.GetDOFValues(gripper) for one in batch]).any(axis=0)
@@ -136,143 +119,33 @@ def _planned(
     return traj, owners[int(np.argmin([np.abs(goal - last).max() for goal in goals]))]
 
 
-class _Candidates:
-    """Finds the reachable grasps of a list."""
-
-    def __init__(self, base: BaseManipulation, manip: Manipulator, query: GraspQuery) -> None:
-        self._base, self._manip, self._query = base, manip, query
-        self._random = np.random.default_rng(0)
-        names = [name for name in ("grasptrans_nocol", "igrasptrans") if query.indices.get(name, -1) >= 0]
-        if not names:
-            raise ArgumentError("graspindices: should have 'igrasptrans' or 'grasptrans_nocol', the pose of the tool")
-        self._pose = names[0]
-
-    def all(self) -> Iterator[_Candidate]:
-        """Yield the reachable grasps. Between two of them, the robot and the target are in their original state."""
-        count, query = len(self._query.grasps), self._query
-        for index in self._random.permutation(count).tolist() if query.options.randomgrasps else range(count):
-            with _kept(self._base.robot, query.target):
-                candidate = self._candidate(index)
-            if candidate is not None:
-                yield candidate
-
-    def _numbers(self, index: int, name: str, count: int) -> Floats | None:
-        """Return the numbers of a property of a grasp, or None if grasps do not have it."""
-        start = self._query.indices.get(name, -1)
-        row = self._query.grasps[index]
-        if start < 0:
-            return None
-        if start + count > len(row):
-            raise ArgumentError(f"graspindices: '{name}' is {start}, and grasps have {len(row)} numbers")
-        numbers = row[start : start + count]
-        if not np.isfinite(numbers).all():
-            raise ArgumentError(f"grasps: '{name}' of grasp {index} is {numbers.tolist()}, and should be finite")
-        return numbers
-
-    def _candidate(self, index: int) -> _Candidate | None:
-        """Return a grasp if it is reachable, else None. The robot and the target are moved."""
-        query, manip = self._query, self._manip
-        gripper = manip.GetGripperIndices()
-        given = self._numbers(index, "igrasppreshape", len(gripper))
-        preshape = self._base.robot.GetDOFValues(gripper) if given is None else given
-        if len(gripper):
-            lower, upper = self._base.robot.GetDOFLimits(gripper)
-            if (preshape < lower - _IN_LIMITS).any() or (preshape > upper + _IN_LIMITS).any():
-                return None
-            preshape = np.clip(preshape, lower, upper)
-            self._base.robot.SetDOFValues(preshape, gripper)
-        T_target_tool = np.eye(4)
-        numbers = self._numbers(index, self._pose, 12)
-        assert numbers is not None, "the name is one of those that are there"
-        T_target_tool[:3] = numbers.reshape(4, 3).T
-        T_world_tool = query.target.GetTransform() @ T_target_tool
-        found = _Candidate(index, preshape)
-        found.rows = self._approaches(T_world_tool, self._direction(index, T_world_tool))
-        if found.rows and query.places:
-            found.goals = self._goals(T_target_tool)
-        return found if found.rows and (found.goals or not query.places) else None
-
-    def _direction(self, index: int, T_world_tool: Floats) -> Floats:
-        """Return the approach direction of the hand, a unit vector in the world."""
-        in_target = self._numbers(index, "igraspdir", 3)
-        if in_target is not None:
-            direction = self._query.target.GetTransform()[:3, :3] @ in_target
-        else:
-            in_tool = self._numbers(index, "imanipulatordirection", 3)
-            in_tool = self._manip.GetLocalToolDirection() if in_tool is None else in_tool
-            direction = T_world_tool[:3, :3] @ in_tool
-        return direction / (np.linalg.norm(direction) or 1.0)
-
-    def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
-        """Return the values of the arm before a grasp from which the tool reaches it along a straight line."""
-        start = T_world_tool.copy()
-        start[:3, 3] -= self._query.options.approachoffset * direction
-        rows: list[Floats] = []
-        for row in self._manip.search(_goal(start), _CHECKED).every():
-            if self._gets_there(row, start, direction):
-                rows.append(row)
-            if len(rows) == self._query.options.seedik > 0:
-                break
-        return rows
-
-    def _gets_there(self, row: Floats, start: Floats, direction: Floats) -> bool:
-        count = int(np.ceil(self._query.options.approachoffset / _LINE_STEP))
-        enabled = self._query.target.GetLinkEnableStates()
-
-        def pose(number: int) -> tuple[Floats, bool]:
-            T_world_goal = start.copy()
-            T_world_goal[:3, 3] += direction * (self._query.options.approachoffset * number / count)
-            return T_world_goal, True
-
-        self._query.target.Enable(False)  # the hand may touch the body that it is about to grasp
-        try:
-            return len(self._base.follow(self._manip, pose, count, row)) == count + 1
-        finally:
-            self._query.target.SetLinkEnableStates(enabled)
-
-    def _goals(self, T_target_tool: Floats) -> list[IkParameterization]:
-        """Return the goals of the tool at the places where the target can be put down with a grasp."""
-        query, found = self._query, list[IkParameterization]()
-        count = len(query.places)
-        for place in self._random.permutation(count).tolist() if query.options.randomdests else range(count):
-            T_world_target = query.places[place]
-            goal = _goal(T_world_target @ T_target_tool)
-            if self._is_free(T_world_target) and self._is_reached(goal):
-                found.append(goal)
-            if len(found) == query.options.seeddests > 0:
-                break
-        return found
-
-    def _is_free(self, T_world_target: Floats) -> bool:
-        """Return whether the target at a place collides with nothing but the robot."""
-        with _kept(self._base.robot, self._query.target):
-            self._base.robot.Enable(False)
-            self._query.target.SetTransform(T_world_target)
-            return not self._base.env.CheckCollision(self._query.target)
-
-    def _is_reached(self, goal: IkParameterization) -> bool:
-        with _kept(self._base.robot, self._query.target):
-            self._query.target.Enable(False)
-            return len(self._manip.search(goal, _CHECKED).every()) > 0
-
-
 def _goal(T_world_tool: Floats) -> IkParameterization:
     return IkParameterization(T_world_tool, IkParameterization.Type.Transform6D)
 
 
-@block
-def _kept(robot: Robot, target: KinBody) -> Generator[None]:
-    """Restore the robot and the target on leaving."""
-    with robot.CreateRobotStateSaver(_SAVED), target.CreateKinBodyStateSaver(_SAVED):
-        yield
-
-
 _STEP = 0.01
-"""The step in which joints move between two collision tests [rad or m]."""
+"""Step size of joint motions between two collision checks [rad or m]."""
+
+
+_ANY = np.array([0.0, 0.0, 1.0])
+"""Direction of approach where the hand does not fly."""
+
+
+def _check_motion(directions: Floats, step: float) -> None:
+    if not (np.isfinite(directions).all() and np.isfinite(step) and step > 0):
+        wanted = "finite directions, and a step above 0"
+        raise ArgumentError(f"movingdir is {directions.tolist()} with steps of {step:g}, and should be {wanted}")
+
+
+def finger_steps(options: Options) -> Steps:
+    """Return the step lengths of options; a coarse step alone makes the fine one a hundredth of it, as in OpenRAVE."""
+    coarse = options.get("coarsestep", STEPS.coarse)
+    fine = options.get("finestep", coarse / 100)
+    return Steps(coarse, fine, options.get("translationstepmult", STEPS.per_radian))
 
 
 class TaskManipulation(Manipulation):
-    """Opens and closes grippers, and moves arms to grasps."""
+    """Gripper motions, and arm motions to grasps, of one robot."""
 
     def __init__(self, env: "Environment") -> None:
         super().__init__(env)
@@ -291,59 +164,80 @@ class TaskManipulation(Manipulation):
     def evaluate_constraints(
         self, constraint: ToolConstraint, configurations: Sequence[Floats]
     ) -> tuple[list[int], list[Floats]]:
-        """Project configurations of the active DOFs, those of the arm, onto a constraint.
+        """Project configurations of the active DOFs, which are the arm's, onto a constraint.
 
-        Return the number of steps for each, -1 if it does not reach the constraint, and the results.
+        Return the number of steps for each, -1 if the projection fails, and the results.
 
         Raises:
-            ArgumentError: the active DOFs are not the joints of the arm, or the constraint has numbers of none.
+            ArgumentError: the active DOFs are not the joints of the arm, or the constraint is invalid.
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
         values = params.resolved()
-        tool = hand_of(self.env, values).tool
-        error, threshold = tool.to_constraint(constraint)
+        tool = problems.hand_of(self.env, values).tool
+        error, threshold, _ = tool.to_constraint(constraint)
         with tool.bodies.kept():
             found = [project(one, error, values.space(), threshold, PROJECTION_STEPS) for one in configurations]
         return [steps for steps, _ in found], [row for _, row in found]
 
     def close_fingers(
-        self, directions: Floats | None = None, offsets: Floats | None = None, step: float = _STEP
+        self, directions: Floats | None = None, offsets: Floats | None = None, steps: Steps = STEPS
     ) -> tuple[Floats, Trajectory]:
-        """Close the gripper: return the last values of its joints, and the motion.
+        """Close the gripper, one finger after the other: return the values at contacts and limits, and the motion.
 
-        Joints stop at contacts and limits. Each direction is the sign of the motion of a joint, by default the closing
-        direction; offsets are how far joints move back from there [rad or m].
+        Args:
+            directions: Sign of the motion of each joint; None: the closing direction.
+            offsets: How far the motion goes on from there, in the direction of each joint [rad or m].
+            steps: Step lengths.
 
         Raises:
             PlanningError: the robot has no gripper.
         """
         dofs, closing = self._gripper()
         directions = closing if directions is None else directions
-        final = self._until_contact(dofs, directions, step)
+        final = end = self._fingers(dofs, directions, steps, Approach(_ANY, _ANY, flies=False, only_target=False))
         if offsets is not None:
             lower, upper = self.robot.GetDOFLimits(dofs)
-            final = np.clip(final - np.sign(directions) * offsets, lower, upper)
-        return final, self._motion(dofs, final)
+            end = np.clip(final + np.sign(directions) * offsets, lower, upper)
+        return final, self._motion(dofs, end)
 
     def release_fingers(
-        self, directions: Floats | None = None, target: KinBody | None = None, step: float = _STEP
+        self, directions: Floats | None = None, target: KinBody | None = None, steps: Steps = STEPS
     ) -> tuple[Floats, Trajectory]:
-        """Open the gripper, and let a target go: return the last values of its joints, and the motion.
+        """Open the gripper, one finger after the other, and release a target: return the last values and the motion.
 
-        Each direction is the sign of the motion of a joint, by default against the closing direction.
+        Fingers leave the contact that they start in, and stop before they touch anything else.
+
+        Args:
+            directions: Sign of the motion of each joint; None: against the closing direction.
+            target: A grabbed body to release.
+            steps: Step lengths.
 
         Raises:
-            PlanningError: the robot has no gripper.
+            PlanningError: the robot has no gripper, or a finger cannot leave its contact.
         """
         dofs, closing = self._gripper()
         if target is not None:
             self.robot.Release(target)
-        final = self._until_contact(dofs, -closing if directions is None else directions, step)
+        approach = Approach(_ANY, _ANY, flies=False, only_target=False, avoid_contact=True, leaves_contact=True)
+        final = self._fingers(dofs, -closing if directions is None else directions, steps, approach)
         return final, self._motion(dofs, final)
 
+    def _fingers(self, dofs: Sequence[int], directions: Floats, steps: Steps, approach: Approach) -> Floats:
+        """Return the values at which fingers stop that move one after the other."""
+        _check_motion(directions, min(steps))
+        manip, state = self.robot.GetActiveManipulator(), self.robot.simulation_state
+        assert manip is not None, "it has a gripper"
+        with self.env.simulation.lock:
+            hand = hand_of(state, manip.description, dict(zip(dofs, directions.tolist(), strict=True)))
+            world = self.env.GetCollisionChecker().world()
+            closed = grasp(world, state, hand, None, approach, steps).closed
+        if closed.reason is not None and closed.reason.kind != "self-collision":
+            raise PlanningError(closed.reason)
+        return closed.values[list(dofs)]
+
     def release_active(self, directions: Floats, step: float = _STEP) -> tuple[Floats, Trajectory]:
-        """Move each active joint to the side of its sign in ``directions``; return the last values and the motion."""
+        """Move each active joint in the direction of its sign in ``directions``; return last values and motion."""
         dofs = [int(dof) for dof in self.robot.GetActiveDOFIndices()]
         if len(directions) != len(dofs):
             raise ArgumentError(f"movingdir: has {len(directions)} numbers, and there are {len(dofs)} active joints")
@@ -362,9 +256,7 @@ class TaskManipulation(Manipulation):
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
         """Return the values at which joints stop."""
-        if not (np.isfinite(directions).all() and np.isfinite(step) and step > 0):
-            wanted = "finite directions, and a step above 0"
-            raise ArgumentError(f"movingdir is {directions.tolist()} with steps of {step:g}, and should be {wanted}")
+        _check_motion(directions, step)
         return move_until_contact(
             self.bodies_of(dofs),
             self.robot.GetDOFLimits(dofs),
@@ -374,8 +266,9 @@ class TaskManipulation(Manipulation):
         )
 
     def _touches(self, dof: int) -> bool:
-        """Return whether a link that a joint moves touches another body, or a link that does not move with it."""
+        """Return whether a link moved by a DOF touches another body, or a link not moved by that DOF."""
         state, simulation = self.robot.simulation_state, self.env.simulation
         moved = MovedBy((dof,))
-        with simulation.lock, self.env.GetCollisionChecker().world() as world:
+        with simulation.lock:
+            world = self.env.GetCollisionChecker().world()
             return world.collide(body_and_others(world, state, moved)) or world.collide(itself(world, state, moved))

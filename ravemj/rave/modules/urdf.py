@@ -1,4 +1,4 @@
-"""The module ``urdf`` of the plugin or_urdf, which many scripts use to load robots of ROS."""
+"""The module ``urdf`` of the plugin or_urdf, which ROS scripts use to load robots."""
 
 import json
 import logging
@@ -18,9 +18,9 @@ _LOG = logging.getLogger("ravemj")
 
 
 def urdf_module(env: "Environment", xmlid: str) -> Module:
-    """Make a module that adds robots of URDF files.
+    """Make a module that adds robots from URDF files.
 
-    As or_urdf's, it sorts links and joints by name, names bodies anonymously, makes a KinBody of a URDF without an
+    Like or_urdf's, it sorts links and joints by name, gives bodies unique names, makes a KinBody of a URDF without an
     SRDF, and answers with the name of the body.
     """
 
@@ -37,12 +37,12 @@ def urdf_module(env: "Environment", xmlid: str) -> Module:
         return _added(env, env.ReadKinBodyURI(files[0], _given(files[1:])))
 
     def load(arguments: str) -> str | None:
-        """Do what ``LoadURI`` does; deprecated."""
+        """Deprecated name of ``LoadURI``."""
         _LOG.warning("the command 'load' of the module urdf is deprecated; use LoadURI")
         return load_uri(arguments)
 
     def load_string(arguments: str) -> str | None:
-        """Add a robot of a text: ``LoadString {"urdf": "<robot …>", "srdf": "<robot …>"}``."""
+        """Add a robot from text: ``LoadString {"urdf": "<robot …>", "srdf": "<robot …>"}``."""
         try:
             texts = json.loads(arguments)
             urdf, srdf = texts["urdf"], texts.get("srdf", "")
@@ -63,7 +63,7 @@ def _file(uri: str) -> str:
     """Return the file of a URI; a path stays as it is.
 
     Raises:
-        SourceError: there is no such package.
+        SourceError: the package does not exist.
     """
     if "://" not in uri:
         return uri
@@ -74,7 +74,7 @@ def _file(uri: str) -> str:
 
 
 def _added(env: "Environment", body: KinBody | None) -> str | None:
-    """Add a body under a free name, and return that."""
+    """Add a body, renamed if its name is taken, and return its name."""
     if body is None:
         return None
     env.Add(body, True)

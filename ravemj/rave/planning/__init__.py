@@ -1,8 +1,7 @@
 """Planners and their parameters, under OpenRAVE's names.
 
-``parameters`` states a planning problem and ``bodies`` the bodies that it moves. ``planner`` is the base class of all
-planners; ``path_planners``, ``hand_planners``, ``retimers`` and ``smoothers`` hold its kinds, and ``names`` makes a
-planner from its name.
+``parameters`` and ``values`` describe a planning problem. ``planner`` is the base class of all planners;
+``path_planners``, ``hand_planners`` and ``processing`` contain them, and ``names`` makes a planner by name.
 """
 
 from ravemj.rave.planning.names import RaveCreatePlanner

@@ -1,4 +1,4 @@
-"""Planners for the motion of a hand: along a given trajectory of the hand, and to one of several grasps."""
+"""Planners of hand motions: along a given hand trajectory, and to one of several grasps."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -25,19 +25,19 @@ from ravemj.trajectories import extraction
 from ravemj.trajectories.groups import AFFINE
 
 _MOST_GOALS = 100_000
-"""The most goals of one trajectory of the hand. Each takes half a millisecond, so these take a minute."""
+"""Maximum number of goals of a hand trajectory. At half a millisecond each, these take a minute."""
 
 _REACHED = 1e-6
-"""The tolerance with which the hand has to reach a grasp [m and rad]."""
+"""Tolerance of reaching a grasp [m and rad]."""
 
 
 class WorkspaceTrajectoryTracker(Planner):
-    """``WorkspaceTrajectoryTracker``: the hand follows a given trajectory, and the joints make no jumps.
+    """``WorkspaceTrajectoryTracker``: the hand follows a given trajectory without jumps of the joints.
 
     The trajectory is sampled in steps of ``_fsteplength`` [s]; each sample is a goal of inverse kinematics. The motion
-    begins in the current configuration of the robot if that reaches the first goal and can be continued, else in
-    another solution. A smoother would make the hand leave the given trajectory, so ``LinearTrajectoryRetimer`` gives
-    the result its times, unless the parameters name another planner.
+    begins in the current configuration of the robot if that reaches the first goal and has a continuation, else in
+    another solution. A smoother would leave the given trajectory, so ``LinearTrajectoryRetimer`` retimes the result,
+    unless the parameters name another planner.
     """
 
     _defaults: ClassVar[Mapping[str, str]] = {
@@ -109,7 +109,7 @@ class WorkspaceTrajectoryTracker(Planner):
     def _solutions(
         self, values: Values, hand: Hand, goal: IkParameterization, near: Floats, *, check: bool
     ) -> list[Floats]:
-        """Return the configurations that reach a goal, the nearest to ``near`` first; a greedy search gets only one."""
+        """Return the configurations that reach a goal, the nearest to ``near`` first; greedy searches need only one."""
         hand.tool.bodies.move(near)
         found: list[Floats] = []
         for row in hand.manip.FindIKSolutions(goal, 0):
@@ -124,8 +124,8 @@ class WorkspaceTrajectoryTracker(Planner):
     def _connection(self, values: Values, hand: Hand, times: Floats) -> Callable[[int, Floats, Floats], bool]:
         """Return a test of the joint-space line between two consecutive solutions.
 
-        The line is refused if a joint jumps or is too fast, if the hand turns by more than ``maxdeviationangle``
-        in half of the line, or if the robot collides on it.
+        The line is rejected if a joint jumps or is too fast, if the hand turns by more than ``maxdeviationangle`` in
+        half of the line, or if the robot collides on it.
         """
         edges, largest_turn = (
             Edges(values.space(), values.conditions.allowed()),
@@ -164,7 +164,6 @@ class WorkspaceTrajectoryTracker(Planner):
 
 
 def _goal(traj: Trajectory, time: float, hand: Hand) -> IkParameterization:
-    """Return the goal that a trajectory of the hand has at a time [s]."""
     spec, row = traj.GetConfigurationSpecification(), traj.Sample(time) if len(traj) > 1 else traj.GetWaypoint(0)
     goal = spec.ExtractIkParameterization(row)
     if goal is not None:
@@ -179,12 +178,11 @@ def _goal(traj: Trajectory, time: float, hand: Hand) -> IkParameterization:
 
 
 def _angle(one: Floats, other: Floats) -> float:
-    """Return the angle between two rotations [rad]."""
     return float(np.arccos(np.clip((np.trace(one.T @ other) - 1) / 2, -1.0, 1.0)))
 
 
 class GraspGradient(PathPlanner):
-    """``GraspGradient``: the hand descends the gradient of its distance to a grasp, the nearest grasp first.
+    """``GraspGradient``: the hand descends the gradient of its distance to grasps, starting with the nearest.
 
     ``<target>`` names the body to grasp. ``<grasps>`` has the number of grasps, then seven numbers for each: the pose
     ``T_target_tool`` as quaternion (wxyz) and position [m].

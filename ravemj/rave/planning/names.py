@@ -1,4 +1,4 @@
-"""Makes planners from their names, and runs them."""
+"""Factory of planners by name, and functions that run them."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -10,6 +10,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.manipulation.processing import TOPP_RA
 from ravemj.planning.retiming import topp_ra
 from ravemj.rave.interface import asked_for
+from ravemj.rave.planning.grasper import Grasper
 from ravemj.rave.planning.hand_planners import GraspGradient, WorkspaceTrajectoryTracker
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
@@ -32,12 +33,10 @@ PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
     "rastar": RaStar,
     "workspacetrajectorytracker": WorkspaceTrajectoryTracker,
     "graspgradient": GraspGradient,
+    "grasper": Grasper,
     **TRAJECTORY_PLANNERS,
 }
-"""The classes of planners, by their names in lower case."""
-
-MISSING: Mapping[str, str] = {"grasper": "planning of grasps"}
-"""Planners of OpenRAVE that ravemj lacks: their names in lower case, and the missing feature."""
+"""Factories of planners by name in lower case."""
 
 
 def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
@@ -46,7 +45,7 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
     Args:
         env: The environment.
         name: The name, in any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``,
-            ``WorkspaceTrajectoryTracker``, ``GraspGradient``; the retimers
+            ``WorkspaceTrajectoryTracker``, ``GraspGradient``, ``Grasper``; the retimers
             ``LinearTrajectoryRetimer``, ``ParabolicTrajectoryRetimer``, ``CubicTrajectoryRetimer``,
             ``QuinticTrajectoryRetimer``, and with the extra ``retiming`` ``ToppraTrajectoryRetimer``; the smoothers
             ``LinearSmoother``, ``shortcut_linear``, ``ParabolicSmoother``, ``CubicSmoother``, ``QuinticSmoother``;
@@ -54,24 +53,26 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
             ``OMPL_PRM`` and so on.
 
     Returns:
-        The planner, or None for a name that OpenRAVE does not know either.
-
-    Raises:
-        UnsupportedError: OpenRAVE has this planner, and ravemj does not.
+        The planner, or None for a name that is unknown to OpenRAVE, too.
 
     Example:
         >>> planner = RaveCreatePlanner(env, "birrt")
     """
-    word = asked_for(env, name, "RaveCreatePlanner", MISSING)[0]
+    word = asked_for(env, name, "RaveCreatePlanner")[0]
     make = _maker(word)
     if make is None:
-        _LOG.warning("there is no planner '%s'", name)
+        _LOG.warning("%s", _unknown(name))
         return None
     return make(env, word)
 
 
+def _unknown(name: str) -> str:
+    problem = f"there is no planner '{name}'" if name.strip() else "the name of the planner is empty"
+    return f"{problem}; RaveGetLoadedInterfaces()[InterfaceType.planner] lists the names"
+
+
 def is_planner(name: str) -> bool:
-    """Return whether there is a planner of a name."""
+    """Return whether a planner of this name exists."""
     return _maker(name) is not None
 
 
@@ -87,14 +88,14 @@ def _maker(name: str) -> "Callable[[Environment, str], Planner] | None":
 
 
 def needed_planner(env: "Environment", name: str) -> Planner:
-    """Return a planner by its name.
+    """Return a planner by name, or raise an error.
 
     Raises:
-        RavemjError: there is no planner of that name.
+        RavemjError: the planner does not exist.
     """
     planner = RaveCreatePlanner(env, name)
     if planner is None:
-        raise RavemjError(f"there is no planner '{name}'", ErrorCode.Assert)
+        raise RavemjError(_unknown(name), ErrorCode.Assert)
     return planner
 
 
@@ -102,7 +103,7 @@ def run_planner(traj: Trajectory, params: PlannerParameters, name: str) -> Plann
     """Run a planner on a trajectory.
 
     Raises:
-        RavemjError: there is no planner of that name.
+        RavemjError: the planner does not exist.
     """
     planner = needed_planner(traj.GetEnv(), name)
     planner.InitPlan(None, params)
@@ -112,7 +113,7 @@ def run_planner(traj: Trajectory, params: PlannerParameters, name: str) -> Plann
 def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.0), extra: str = "") -> PlannerStatus:
     """Run a retimer or a smoother on a trajectory of any bodies, in place.
 
-    The factors are of the velocity and of the acceleration limits; ``extra`` are further parameters as XML text.
+    ``factors`` scale the velocity and acceleration limits; ``extra`` are further parameters as XML text.
     """
     return run_planner(traj, of_bodies(traj, extra, *factors), name)
 
@@ -120,7 +121,7 @@ def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.
 def of_bodies(
     traj: Trajectory, extra: str = "", maxvelmult: float = 1.0, maxaccelmult: float = 1.0
 ) -> PlannerParameters:
-    """Return planner parameters for the joints and poses that a trajectory moves; see ``scaled``."""
+    """Return planner parameters for the joints and poses in a trajectory; see ``scaled``."""
     spec = ConfigurationSpecification.of(traj.GetConfigurationSpecification().GetGroups())
     for group in spec.GetGroups():
         if not is_position(group):
@@ -147,5 +148,5 @@ def scaled(params: PlannerParameters, extra: str, maxvelmult: float, maxaccelmul
 
 
 def alone(extra: str) -> str:
-    """Return XML parameters for a retimer that is called by itself: its times are not rounded to a step length."""
+    """Return XML parameters for a directly called retimer, which does not round times to a step length."""
     return f"<_fsteplength>0</_fsteplength>{extra}"

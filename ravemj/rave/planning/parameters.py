@@ -1,8 +1,8 @@
-"""Parameters of planners, and their form as OpenRAVE's XML."""
+"""Planner parameters, and their XML form in OpenRAVE."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,11 +13,17 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_number, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.findings import Findings
-from ravemj.errors import ArgumentError, ErrorCode
-from ravemj.manipulation.bodies import ALL, FREE, Bodies, Constraint
-from ravemj.planning.rrt import MoreGoals
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.manipulation.bodies import ALL, FREE, Bodies
+from ravemj.manipulation.options import Certify
+from ravemj.manipulation.roots import FunctionRoots, Sampler
 from ravemj.rave.enums import Interval
-from ravemj.rave.planning.values import Values, parameters_text
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.planning.path_constraints import TOLERANCE, constrain
+from ravemj.rave.planning.region_goals import region_roots
+from ravemj.rave.planning.values import Values, hand_of, parameters_text
+from ravemj.rave.region import RegionLike, is_region, regions_of
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification
@@ -27,11 +33,31 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
+RootSets = Callable[[], Floats | None] | RegionLike | Sequence[RegionLike] | None
+"""Source of starts or goals: a function that returns one, or regions."""
+
+
+def check_movable(robot: Robot) -> None:
+    """Check that the active joints of a robot do not move a static link.
+
+    Raises:
+        RavemjError: a joint moves a static link (``InvalidState``).
+    """
+    static = [link for link in robot.GetLinks() if link.IsStatic()]
+    for dof in robot.GetActiveDOFIndices() if static else ():
+        joint = robot.GetJointFromDOFIndex(dof)
+        for link in static:
+            if robot.DoesAffect(joint.GetJointIndex(), link.GetIndex()):
+                message = f"link '{link.GetName()}' of '{robot.GetName()}' is static, and the active joint"
+                hint = "call link.SetStatic(False) or choose other joints"
+                raise RavemjError(f"{message} '{joint.GetName()}' would move it; {hint}", ErrorCode.InvalidState)
+
+
 class PlannerParameters(ApiObject):
-    """A planning problem: the joints that move, the start, the goals and the limits.
+    """Planning problem: the joints to move, starts, goals and limits.
 
     Args:
-        other: Parameters to copy. Without them, everything has OpenRAVE's defaults, and no joint moves yet.
+        other: Parameters to copy. By default, OpenRAVE's defaults without joints to move.
 
     Example:
         >>> params = Planner.PlannerParameters()
@@ -57,23 +83,27 @@ class PlannerParameters(ApiObject):
 
     @classmethod
     def of(cls, values: Values, defaults: Mapping[str, str]) -> "PlannerParameters":
-        """Return parameters with some values, and with default texts for the tags that the values lack."""
+        """Return parameters with values, and with default texts for missing tags."""
         params = cls()
         params.given = values.copied()
         params._extra = "\n".join(f"<{name}>{text}</{name}>" for name, text in {**defaults, **values.tags}.items())
         return params
 
     def resolved(self) -> Values:
-        """Return the values. Elements of the extra text replace what setters have set."""
+        """Return the values; elements of the extra text override those of setters."""
         return self.given.with_tags(self._extra)
 
     def SetRobotActiveJoints(self, robot: Robot) -> None:
         """Plan for the active DOFs of a robot, with their current values, limits, weights and resolutions.
 
         Args:
-            robot: The robot. Later changes of it have no effect on these parameters.
+            robot: The robot. Its later changes have no effect on these parameters.
+
+        Raises:
+            openrave_exception: an active joint moves a link that is static (``InvalidState``).
         """
         checked_kind(robot, Robot, "SetRobotActiveJoints: robot")
+        check_movable(robot)
         self.SetConfigurationSpecification(robot.GetEnv(), robot.GetActiveConfigurationSpecification())
 
     def SetConfigurationSpecification(self, env: "Environment", spec: ConfigurationSpecification) -> None:
@@ -81,7 +111,7 @@ class PlannerParameters(ApiObject):
 
         Args:
             env: The environment that contains the bodies.
-            spec: The joint values and poses; other groups are left out.
+            spec: The joint values and poses; other groups are ignored.
         """
         checked_kind(spec, ConfigurationSpecification, "SetConfigurationSpecification: spec")
         self._env = env
@@ -127,7 +157,7 @@ class PlannerParameters(ApiObject):
         self._set("_vconfigjerklimit", jerks)
 
     def SetConfigResolution(self, resolution: ArrayLike) -> None:
-        """Set the ``resolution`` of collision tests of lines, a step for each value [rad or m], shape (GetDOF(),)."""
+        """Set the ``resolution`` of edge collision checks, a step for each value [rad or m], shape (GetDOF(),)."""
         self._set("_vconfigresolution", resolution)
 
     def GetConfigVelocityLimit(self) -> Floats:
@@ -143,22 +173,22 @@ class PlannerParameters(ApiObject):
         return self.given.vectors["_vconfigjerklimit"].copy()
 
     def GetConfigResolution(self) -> Floats:
-        """Return the steps in which planners test a line for collisions [rad or m], shape (dof,)."""
+        """Return the steps of edge collision checks [rad or m], shape (dof,)."""
         return self.given.vectors["_vconfigresolution"].copy()
 
     def SetMaxIterations(self, nMaxIterations: int) -> None:
-        """Set the maximum number of iterations, ``nMaxIterations``; 0 selects the planner's own."""
+        """Set the maximum number of iterations, ``nMaxIterations``; 0 means the planner's default."""
         self.given.numbers["_nmaxiterations"] = _whole(nMaxIterations, "nMaxIterations")
 
     def SetMaxPlanningTime(self, nMaxPlanningTime: int) -> None:
-        """Set the maximum time of the planner, ``nMaxPlanningTime`` [ms]; 0 sets no limit."""
+        """Set the time limit of the planner, ``nMaxPlanningTime`` [ms]; 0 means none."""
         self.given.numbers["_nmaxplanningtime"] = _whole(nMaxPlanningTime, "nMaxPlanningTime")
 
     def SetStepLength(self, fStepLength: float) -> None:
         """Set the step length ``fStepLength``.
 
-        Trees grow in steps of it, a weighted distance of configurations (``DistMetricFn``); 0 selects OpenRAVE's 0.04.
-        Retimers that are called directly round times [s] up to multiples of it; 0 leaves them as they are.
+        It is the weighted distance (``DistMetricFn``) by which trees grow; 0 means OpenRAVE's 0.04. Retimers that are
+        called directly round times [s] up to multiples of it; 0 means no rounding.
         """
         self.given.numbers["_fsteplength"] = checked_vector([fStepLength], 1, "fStepLength").item()
 
@@ -167,11 +197,10 @@ class PlannerParameters(ApiObject):
         self.given.numbers["_nrandomgeneratorseed"] = _whole(seed, "seed")
 
     def SetPostProcessing(self, plannername: str, plannerparameters: str) -> None:
-        """Choose the planner that processes the path.
+        """Set the planner that post-processes the path.
 
         Args:
-            plannername: The name of a smoother or retimer. If it is empty, the path stays as it is found, without
-                times.
+            plannername: The name of a smoother or retimer. If it is empty, the path is neither smoothed nor timed.
             plannerparameters: Its parameters as XML text.
         """
         checked_kind(plannername, str, "SetPostProcessing: plannername", "a text")
@@ -179,29 +208,117 @@ class PlannerParameters(ApiObject):
         self.given.postprocessing = plannername, plannerparameters
 
     def SetExtraParameters(self, extra: str) -> None:
-        """Set further parameters as XML text, in place of an earlier text.
+        """Set further parameters as XML text, which replaces an earlier one.
 
         Args:
-            extra: Elements such as ``<_nmaxiterations>100</_nmaxiterations>``. They win over the setters.
+            extra: Elements such as ``<_nmaxiterations>100</_nmaxiterations>``. They override the setters.
         """
         self._extra = checked_kind(extra, str, "SetExtraParameters: extra", "a text")
 
-    def add_constraint(self, constraint: Constraint) -> None:
-        """Allow only configurations for which a function returns True.
+    def add_constraint(
+        self,
+        constraint: object,
+        *,
+        manip: Manipulator | None = None,
+        tolerance: float = TOLERANCE,
+        holding: KinBody | None = None,
+    ) -> None:
+        """Add a constraint on the configurations along the whole path.
 
-        When ``constraint`` is called with a configuration, shape (dof,), the robot is there.
-        """
-        self.given.conditions.constraints.append(constraint)
-
-    def set_goal_sampler(self, sample: Callable[[], Floats | None] | None, probability: float = 0.1) -> None:
-        """Let a function give further goals while ``birrt`` plans.
+        All constraints must hold. Planners project configurations onto regions, and the motion then passes many
+        configurations in them without stops; with other constraints they only reject configurations. OMPL's planners do
+        not support regions.
 
         Args:
-            sample: A function that returns a goal of shape (dof,), or None if it has no goal at this time. Goals in
-                collision are left out. None removes the function.
-            probability: The fraction of the iterations that ask the function. While there is no goal, each one does.
+            constraint: A ``Region`` for the tool; a function of a configuration, shape (dof,), that returns whether it
+                is allowed; an object with such a function ``contains``; or several combined by ``all_of`` or
+                ``any_of``. The robot is at the configuration when a function is called.
+            manip: The manipulator of the tool for regions; by default the active one of the moving robot.
+            tolerance: Tolerance of regions: the maximum norm of ``region.displacement`` [m and rad].
+            holding: A body grabbed by the tool, to which regions refer instead of the tool.
+
+        Raises:
+            ArgumentError: the constraint has another type, or the planned joints do not move the tool.
+
+        Example:
+            Carry a glass upright, tilted by at most 5 degrees:
+
+            >>> bounds = [[-np.inf, np.inf]] * 3 + [[0, 0], [0, 0], [-np.pi, np.pi]]
+            >>> params.add_constraint(ravemj.Region(Bw=bounds, lean=np.radians(5)), holding=glass)
         """
-        self.given.goal_sampler = None if sample is None else MoreGoals(sample, probability)
+        constrain(self.given, constraint, lambda: manip or self._manipulator(), tolerance, holding)
+
+    def _manipulator(self) -> Manipulator:
+        bodies, env = self._bodies(), self._env
+        robots = [body for body in map(env.wrap, bodies.bodies) if isinstance(body, Robot)] if env else []
+        manip = robots[0].GetActiveManipulator() if len(robots) == 1 else None
+        if manip is None:
+            raise ArgumentError(
+                "regions are about a tool: give manip, or plan for one robot with an active manipulator"
+            )
+        return manip
+
+    def set_goal_sampler(self, sample: RootSets, probability: float = 0.1, *, holding: KinBody | None = None) -> None:
+        """Set regions or a function as a source of goals, in addition to those of ``SetGoalConfig``.
+
+        All planners sample some configurations of the regions before planning; ``birrt`` also samples during planning,
+        from all IK branches of random poses with their nearest turns. The problem must move the arm joints of the
+        active manipulator, and its gripper joints if regions have a ``preshape``.
+
+        Args:
+            sample: One or more regions, one of which the tool must reach; or a function that returns a goal of shape
+                (dof,), or None if it has no goal at this time. Goals in collision are rejected. None removes the
+                sampler.
+            probability: Probability of sampling a goal in an iteration; 1 until there is a goal.
+            holding: A body grabbed by the tool, which must reach the regions instead of the tool.
+
+        Raises:
+            ArgumentError: the list is empty, a length of a region has no bounds, or other joints move.
+        """
+        self.given.goal_sampler = self._sampler(sample, probability, holding, "set_goal_sampler: sample")
+
+    def set_start_sampler(self, sample: RootSets, probability: float = 0.1, *, holding: KinBody | None = None) -> None:
+        """Set regions or a function as a source of starts, in addition to those of ``SetInitialConfig``.
+
+        After ``SetInitialConfig([])`` only the sampler gives starts; otherwise the current configuration is a start,
+        too.
+
+        Args:
+            sample: As for ``set_goal_sampler``.
+            probability: Probability of sampling a start in an iteration.
+            holding: A body grabbed by the tool, which starts in the regions instead of the tool.
+        """
+        self.given.start_sampler = self._sampler(sample, probability, holding, "set_start_sampler: sample")
+
+    def _sampler(self, sample: RootSets, probability: float, holding: KinBody | None, name: str) -> Sampler | None:
+        if sample is None:
+            return None
+        if callable(sample) and not is_region(sample):
+            return Sampler(FunctionRoots(sample), probability)
+        regions = regions_of(sample, name)
+        env = self._env
+        self._bodies()
+        assert env is not None, "the bodies are of an environment"
+        return Sampler(region_roots(self.given, hand_of(env, self.given, gripper=True), regions, holding), probability)
+
+    def set_certify(self, certify: Certify = True) -> None:
+        """Set whether path planners certify that motions are free of collisions at all times.
+
+        ``trajectory.certificate`` has the result. A path or shortcut that cannot be certified is replaced by one that
+        can, if one is found.
+
+        Args:
+            certify: Whether to certify; ``"required"`` makes uncertified motions failures.
+
+        Raises:
+            ArgumentError: the value is invalid.
+
+        Example:
+            >>> params.set_certify()
+        """
+        if certify not in (True, False, "required"):
+            raise ArgumentError(f"certify: is {certify!r}, and should be True, False or 'required'")
+        self.given.certify = certify
 
     def _bodies(self) -> Bodies:
         bodies = self.given.bodies
@@ -229,18 +346,18 @@ class PlannerParameters(ApiObject):
         """Return the current configuration of the bodies, shape (dof,).
 
         Raises:
-            ArgumentError: no joint moves yet.
+            ArgumentError: there are no joints to move.
         """
         return self._bodies().values()
 
     GetStateValues = GetStateFn
 
     def HasNeighStateFn(self) -> bool:
-        """Return whether ``NeighStateFn`` can be called, which needs joints that move."""
+        """Return whether ``NeighStateFn`` can be called: whether there are joints to move."""
         return self.given.bodies is not None
 
     def NeighStateFn(self, values: ArrayLike, delta: ArrayLike, fromgoal: int = 0) -> dict[str, Any]:
-        """Return the sum of a configuration and a displacement, set to the limits where it is outside of them.
+        """Return the sum of a configuration and a displacement, clamped to the limits.
 
         Args:
             values: The configuration, shape (GetDOF(),).
@@ -255,7 +372,7 @@ class PlannerParameters(ApiObject):
         return {"configuration": moved, "returncode": 1}
 
     def DistMetricFn(self, values0: ArrayLike, values1: ArrayLike) -> float:
-        """Return the distance of two configurations: the square root of the sum of (weight * difference)^2.
+        """Return the weighted distance of two configurations: the square root of the sum of (weight * difference)^2.
 
         Args:
             values0: One configuration, shape (GetDOF(),).
@@ -289,16 +406,16 @@ class PlannerParameters(ApiObject):
         options: int = ALL,
         filterreturn: bool = False,
     ) -> int:
-        """Test the straight line between two configurations. The robot moves along it, and stays where the test ends.
+        """Test the straight line between two configurations. The robot stays where the test ends.
 
         Args:
             q0: The start of the line, shape (GetDOF(),).
             q1: The end of the line, shape (GetDOF(),).
             dq0: Velocities at the start; not used.
             dq1: Velocities at the end; not used.
-            timeelapsed: How long the motion takes; not used.
-            interval: Which ends of the line count, an ``Interval``.
-            options: Which tests to run, bits of ``ConstraintFilterOptions``.
+            timeelapsed: Duration of the motion; not used.
+            interval: The end points to include, an ``Interval``.
+            options: The tests to run, bits of ``ConstraintFilterOptions``.
             filterreturn: Not used.
 
         Returns:
@@ -319,7 +436,7 @@ class PlannerParameters(ApiObject):
         return FREE
 
     def report(self, values: Floats, options: int) -> CollisionReport:
-        """Move the bodies to a configuration, and return the collision there; empty if there is none."""
+        """Move the bodies to a configuration and return the collision report; empty if there is no collision."""
         told: list[Findings] = []
         self.resolved().conditions.violation(values, options, told)
         if self._env is None or not told:

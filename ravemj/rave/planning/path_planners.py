@@ -1,8 +1,8 @@
-"""Planners that find a path without collisions."""
+"""Planners of collision-free paths."""
 
 import logging
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -10,11 +10,12 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.manipulation.motions import RefusedError, allowed_ends, find_path, refusal
-from ravemj.planning.edges import Allowed
+from ravemj.manipulation.motions import find_path
+from ravemj.manipulation.refusals import Blocked, RefusedError, allowed_ends, refusal
+from ravemj.manipulation.roots import FIRST_ROOTS, Refuse, RootSource, Sampler
 from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
 from ravemj.planning.randomized_astar import search_by_cost
-from ravemj.planning.rrt import Budget, End, MoreGoals, Problem, Search, connect, explore, single
+from ravemj.planning.rrt import Budget, End, MoreRoots, Problem, Search, connect, explore, single
 from ravemj.rave.enums import PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.processing import post_process
@@ -26,15 +27,23 @@ _ITERATIONS = 10000
 """OpenRAVE's default for the maximum number of iterations."""
 
 _SPACING = 10
-"""The largest distance of the waypoints of a path that no planner processes, in step lengths."""
+"""Maximum distance between waypoints of a path without post-processing, in step lengths."""
+
+
+_OTHER_SHORTCUTS = 2
+"""Number of retries with other shortcuts before each shortcut has to be certified."""
+
+
+_STRICT_ITERATIONS, _STRICT_EFFORT = 50, 4
+"""Minimum number of iterations, and multiple of those of the first search, if each edge has to be certified."""
 
 
 class PathPlanner(Planner):
-    """A planner that finds a path without collisions from one of several starts to one of several goals."""
+    """Base class of planners of collision-free paths from one of several starts to one of several goals."""
 
     _needs_goal: ClassVar[bool] = True
-    _samples_goals: ClassVar[bool] = False
-    """Whether a goal sampler can take the place of goals."""
+    _samples_roots: ClassVar[bool] = False
+    """Whether starts and goals are sampled during the search."""
 
     def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - passed on
         super().__init__(*arguments)
@@ -52,59 +61,138 @@ class PathPlanner(Planner):
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
         with values.conditions.kept():
-            problem = self._stated(values)
+            problem = self._stated(values, enough=1)
         return problem if isinstance(problem, PlannerStatus) else None
 
     def _check(self, values: Values) -> None:
-        """Check the parameters; starts and goals come later."""
+        """Check the parameters except for starts and goals."""
         values.check()
 
-    def _stated(self, values: Values) -> Problem | PlannerStatus:
-        """Return the problem, or why no start or goal is allowed. Use it within ``conditions.kept``."""
+    def _stated(self, values: Values, enough: int) -> Problem | PlannerStatus:
+        """Return the problem, or the status if no start or no goal is allowed. Use it within ``conditions.kept``.
+
+        ``enough`` is the number of starts and of goals to sample from regions.
+        """
         try:
             self._check(values)
             starts, goals = values.configurations("_vinitialconfig"), values.configurations("_vgoalconfig")
         except ArgumentError as error:
             return self._failed(error.message)
-        needs_goal = self._needs_goal and not (self._samples_goals and values.goal_sampler is not None)
         space, conditions = values.space(), values.conditions
-        allowed = conditions.allowed()
+        allowed, random = conditions.allowed(), values.random()
+
+        def refuse(root: Floats) -> RefusedError | None:
+            return refusal(conditions, space, allowed, root, "goal")
+
+        def draw(source: RootSource) -> list[Floats]:
+            return source.first(refuse, random, enough=enough)
+
+        samplers = values.start_sampler, values.goal_sampler
+        needs = tuple(sampler is None or not self._samples_roots for sampler in samplers)
         try:
-            ends = allowed_ends(conditions, space, allowed, (list(starts), list(goals)), needs_goal=needs_goal)
+            given = _with_first_roots(samplers, (starts, goals), draw)
+            ends = allowed_ends(conditions, space, allowed, given, needs=(needs[0], needs[1] and self._needs_goal))
         except RefusedError as error:
-            status = self._failed(str(error))
-            status.jointValues = error.values
-            if error.findings is not None:
-                status.report = self._env.GetCollisionChecker().report(error.findings)
-            return status
+            return self._refused(error)
         iterations = int(values.numbers["_nmaxiterations"]) or _ITERATIONS
         budget = Budget(iterations, values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
-        near = conditions.near_others(space, np.array([*ends[0], *ends[1]]))
-        edges = conditions.edges(near, allowed, values.numbers["_fsteplength"])
-        return Problem(edges, *ends, budget, values.random(), _more_goals(values, allowed))
+        configurations = [*ends[0], *ends[1]]
+        near = conditions.near_others(space, np.array(configurations))
+        edges = conditions.edges(near, allowed, values.numbers["_fsteplength"], configurations)
+        more = [_further(sampler, refuse) for sampler in samplers]
+        return Problem(edges, *ends, budget, random, more)
+
+    def _refused(self, error: RefusedError) -> PlannerStatus:
+        status = self._failed(str(error))
+        status.jointValues = error.values
+        if error.findings is not None:
+            status.report = self._env.GetCollisionChecker().report(error.findings)
+        status.tally = error.tally
+        return status
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
-        """Find a path, and process it."""
+        """Find a path and post-process it."""
         self._action = 0
+        found = self._found(values)
+        if isinstance(found, PlannerStatus):
+            return found
+        status = self._completed(values, traj, found)
+        return self._certified(values, traj, status) if status and values.certify else status
+
+    def _found(self, values: Values, *, strict_iterations: int = 0) -> Search | PlannerStatus:
+        """Return a search that found a path, or the failure.
+
+        With ``strict_iterations``, each edge of the path is certified, and this is the maximum number of iterations.
+        """
         with values.conditions.kept():
-            problem = self._stated(values)
+            problem = self._stated(values, enough=FIRST_ROOTS)
             if isinstance(problem, PlannerStatus):
                 return problem
+            if strict_iterations:
+                problem.edges.is_strict = True
+                problem.budget.iterations = min(problem.budget.iterations, strict_iterations)
+            problem.edges.allowed = blocked = Blocked(problem.edges.allowed)
             spacing = 0.0 if values.postprocessing[0] else _SPACING * values.numbers["_fsteplength"]
             search = find_path(problem, lambda problem: self._search(problem, values), spacing)
+            stopped = "" if search.path is not None else blocked.most_frequent(values.conditions)
         self._search_made = search
-        if search.path is None:
-            return self._ended(search)
+        return search if search.path is not None else self._told(values, self._ended(search, stopped))
+
+    def _told(self, values: Values, status: PlannerStatus) -> PlannerStatus:
+        status.tally = None if values.goal_sampler is None else values.goal_sampler.source.tally
+        return status
+
+    def _completed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
+        """Write a found path into a trajectory, and post-process it."""
+        assert search.path is not None, "it was found"
         traj.set_waypoints(Waypoints(values.groups, search.path))
-        return self._processed(values, traj, search)
+        status = self._processed(values, traj, search)
+        status.start_index = values.index_of(0, search.path[0])
+        status.goal_index = values.index_of(1, search.path[-1])
+        return self._told(values, status)
+
+    def _certified(self, values: Values, traj: Trajectory, status: PlannerStatus) -> PlannerStatus:
+        """Certify a motion; if that fails, search for one that can be certified."""
+        search, certificate = self._search_made, traj.certify()
+        for found, others in self._alternatives(values, search):
+            if certificate.certified or certificate.reason:
+                break
+            other = Trajectory(self._env, "")
+            done = self._completed(others, other, found)
+            if done and other.certify().certified:
+                traj.take(other)
+                search, certificate, status = found, traj.certificate or certificate, done
+        self._search_made = search
+        return status if certificate.certified or values.certify != "required" else self._failed(str(certificate))
+
+    def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
+        """Yield alternative paths with their post-processing parameters, the quick ones first.
+
+        Other shortcuts of the same path mostly succeed. Otherwise each shortcut is certified, then also each edge of a
+        new
+        path.
+        """
+        assert search is not None, "it has found the motion"
+        proving = replace(values, conditions=replace(values.conditions, proves=True))
+        for number in range(1, _OTHER_SHORTCUTS + 1):
+            seed = values.numbers["_nrandomgeneratorseed"] + number
+            yield search, replace(values, numbers={**values.numbers, "_nrandomgeneratorseed": seed})
+        yield search, proving
+        most = max(_STRICT_ITERATIONS, _STRICT_EFFORT * search.iterations)
+        found = self._found(proving, strict_iterations=most)
+        if isinstance(found, Search):
+            yield found, proving
 
     @abstractmethod
     def _search(self, problem: Problem, values: Values) -> Search: ...
 
-    def _ended(self, search: Search) -> PlannerStatus:
-        size = sum(tree.count for tree in search.trees)
-        grown = f", with {size} configurations" if search.trees else ""
-        status = self._failed(f"{search.end.value} after {search.iterations} iterations{grown}")
+    def _ended(self, search: Search, stopped: str) -> PlannerStatus:
+        sizes = " and ".join(str(tree.count) for tree in search.trees)
+        grown = f", with trees of {sizes} configurations" if len(search.trees) > 1 else ""
+        grown = f", with {sizes} configurations" if len(search.trees) == 1 else grown
+        blocked = f"; most lines were stopped by {stopped}" if stopped else ""
+        hint = "; raise maxiter (_nmaxiterations) or steplength" if search.end is End.iterations else ""
+        status = self._failed(f"{search.end.value} after {search.iterations} iterations{grown}{blocked}{hint}")
         if search.end is End.interrupted:
             status.statusCode = PlannerStatusCode.Interrupted
         return status
@@ -119,7 +207,7 @@ class PathPlanner(Planner):
         return self._solved(f"found after {search.iterations} iterations")
 
     def _ends(self) -> tuple[int, int]:
-        """Return the indices of the start and of the goal that the last path connects; -1 where there is none."""
+        """Return the indices of the start and the goal of the last path; -1 without a path."""
         return (-1, -1) if self._search_made is None else (self._search_made.start, self._search_made.goal)
 
     _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {
@@ -133,7 +221,7 @@ class BiRrt(PathPlanner):
     """``birrt``: bidirectional RRT-Connect; trees from all starts and all goals grow towards each other."""
 
     _defaults: ClassVar[Mapping[str, str]] = {"minimumgoalpaths": "1"}
-    _samples_goals: ClassVar[bool] = True
+    _samples_roots: ClassVar[bool] = True
 
     def _search(self, problem: Problem, values: Values) -> Search:
         del values
@@ -142,7 +230,7 @@ class BiRrt(PathPlanner):
 
 
 class BasicRrt(PathPlanner):
-    """``BasicRRT``: one tree grows from the starts; with the probability ``goalbias`` it grows towards a goal."""
+    """``BasicRRT``: one tree grows from the starts, with the probability ``goalbias`` towards a goal."""
 
     _defaults: ClassVar[Mapping[str, str]] = {"goalbias": "0.05", "nrrtextenttype": "0", "nminiterations": "0"}
 
@@ -172,33 +260,41 @@ class ExplorationRrt(PathPlanner):
         return Search(End.found, tree.nodes(), 0, -1, tree.count, (tree,))
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
-        """Leave the configurations alone: they are the nodes of a tree, not a path to be smoothed."""
+        """Return the tree's configurations unchanged, since they are not a path to smooth."""
         return self._solved(f"{traj.GetNumWaypoints()} configurations")
 
 
-def _more_goals(values: Values, allowed: Allowed) -> MoreGoals | None:
-    """Return the goal sampler of the parameters, without goals that are not allowed."""
-    if values.goal_sampler is None:
-        return None
-    sampler, space = values.goal_sampler, values.space()
+def _with_first_roots(
+    samplers: Sequence[Sampler | None], ends: Sequence[Floats], draw: Callable[[RootSource], list[Floats]]
+) -> tuple[list[Floats], list[Floats]]:
+    """Return starts and goals, including those drawn by samplers before the search.
 
-    def next_goal() -> Floats | None:
-        goal = sampler.sample()
-        if goal is None or refusal(values.conditions, space, allowed, goal, "goal") is not None:
-            return None
-        return goal
+    Raises:
+        RefusedError: there are no others, and none of the poses sampled from regions can be reached.
+    """
+    every: list[list[Floats]] = []
+    for name, sampler, given in zip(("start", "goal"), samplers, ends, strict=True):
+        drawn = [] if sampler is None else draw(sampler.source)
+        every.append([*given, *drawn])
+        tally = None if sampler is None else sampler.source.tally
+        if tally is not None and not every[-1]:
+            raise tally.error(f"no {name}")
+    return every[0], every[1]
 
-    return MoreGoals(next_goal, sampler.probability)
+
+def _further(sampler: Sampler | None, refuse: Refuse) -> MoreRoots | None:
+    """Return a source of further roots without refused ones."""
+    return None if sampler is None else MoreRoots(lambda: sampler.source.next(refuse), sampler.probability)
 
 
 _LOG = logging.getLogger("ravemj")
 
 PREFIX = "ompl_"
-"""The prefix of the names, in lower case."""
+"""Prefix of the planner names, in lower case."""
 
 
 def is_ompl_planner(name: str) -> bool:
-    """Return whether OMPL has a planner of a name. If OMPL is not installed, log how to install it."""
+    """Return whether OMPL has a planner of this name. If OMPL is not installed, log how to install it."""
     classes = planner_classes()
     if classes is None:
         _LOG.warning("planner '%s' needs OMPL; install it: pip install \"ravemj[planning]\"", name)
@@ -210,12 +306,11 @@ class OmplPlanner(PathPlanner):
     """A path planner of OMPL.
 
     Extra parameters of the planner are XML elements, such as ``<range>0.5</range>`` or ``<goal_bias>0.1</goal_bias>``.
-    ``<time_limit>`` is the time it may take [s], as with or_ompl. Planners that look for the best path use all of their
-    time or iterations.
+    ``<time_limit>`` is the time limit [s], as with or_ompl. Optimizing planners use all of their time or iterations.
     """
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
-        """Find a path, and process it."""
+        """Find a path and post-process it."""
         try:
             return super().run(values, traj)
         except OmplError as error:

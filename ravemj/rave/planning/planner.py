@@ -1,5 +1,6 @@
-"""The base class of planners, their status, and the progress that callbacks get."""
+"""Base class of planners, their status, and the progress passed to callbacks."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -10,6 +11,7 @@ from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.handles import Handle, registered
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
+from ravemj.manipulation.refusals import Tally
 from ravemj.rave.enums import InterfaceType, PlannerAction, PlannerStatusCode
 from ravemj.rave.interface import Interface
 from ravemj.rave.planning.parameters import PlannerParameters
@@ -23,42 +25,24 @@ if TYPE_CHECKING:
     from ravemj.rave.specification import IkParameterization
 
 
-class PlanningError(Exception):
-    """No motion was found. As in OpenRAVE, this is not an ``openrave_exception``.
-
-    Attributes:
-        parameter: The reason.
-        recoverySuggestions: What the caller can do instead.
-    """
-
-    def __init__(self, parameter: object = "", recoverySuggestions: Sequence[object] | None = None) -> None:
-        super().__init__(parameter)
-        self.parameter = parameter
-        self.recoverySuggestions = list(recoverySuggestions or ())
-
-    def __eq__(self, r: object) -> bool:
-        if not isinstance(r, PlanningError):
-            return NotImplemented
-        return (self.parameter, self.recoverySuggestions) == (r.parameter, r.recoverySuggestions)
-
-    def __hash__(self) -> int:
-        return hash(str(self.parameter))
-
-
 class PlannerStatus(ApiObject):
-    """The result of planning, with the reason on failure.
+    """Result of planning, with the reason of a failure.
 
     A status compares with codes and numbers, as in OpenRAVE 0.9: ``status == PlannerStatus.HasSolution``. As a truth
     value it is False without a solution.
 
     Attributes:
         statusCode: The result, a ``PlannerStatusCode``.
-        description: A sentence that says what happened.
+        description: The result as a sentence.
         errorOrigin: The planner that failed.
         jointValues: The configuration that caused the failure; empty if none did.
         ikparam: The goal of inverse kinematics that caused the failure, or None.
         report: The collision that caused the failure, or None.
+        start_index: The index of the start of the motion; regions are counted after configurations; -1 if unknown.
+        goal_index: The index of the goal, likewise.
     """
+
+    _internal = ("tally",)
 
     Failed: ClassVar["PlannerStatus"]
     HasSolution: ClassVar["PlannerStatus"]
@@ -71,6 +55,9 @@ class PlannerStatus(ApiObject):
     jointValues: Floats = np.zeros(0)
     ikparam: "IkParameterization | None" = None
     report: CollisionReport | None = None
+    start_index: int = -1
+    goal_index: int = -1
+    tally: Tally | None = None
 
     def __init__(
         self,
@@ -87,6 +74,27 @@ class PlannerStatus(ApiObject):
         self.jointValues = np.zeros(0) if jointValues is None else jointValues
         self.ikparam = None
         self.report = report
+
+    @property
+    def causes(self) -> dict[str, int]:
+        """Number of poses sampled from goal regions by cause of failure.
+
+        Poses that gave goals are counted as ``reached``, so that the numbers add up to the number of poses.
+        """
+        total = Counter[str]()
+        for counts in self.causes_by_region.values():
+            total.update(counts)
+        return dict(total)
+
+    @property
+    def causes_by_region(self) -> dict[str, dict[str, int]]:
+        """The same for each region by name; empty without regions."""
+        return {} if self.tally is None else self.tally.named()
+
+    @property
+    def examples(self) -> dict[str, Floats]:
+        """A configuration for each cause [rad or m], shape (dof,); empty for poses that are out of reach."""
+        return {} if self.tally is None else {cause.value: one.values for cause, one in self.tally.examples.items()}
 
     def __bool__(self) -> bool:
         return bool(self.statusCode & PlannerStatusCode.HasSolution)
@@ -112,8 +120,37 @@ for _code in PlannerStatusCode.__members__.values():
     setattr(PlannerStatus, str(_code.name), PlannerStatus(f"{_code.name}", _code))
 
 
+class PlanningError(Exception):
+    """Error of a failed motion. As in OpenRAVE, this is not an ``openrave_exception``.
+
+    Attributes:
+        parameter: The reason.
+        recoverySuggestions: Suggestions for the caller.
+        status: The status of the planner that failed last, or None.
+    """
+
+    def __init__(
+        self,
+        parameter: object = "",
+        recoverySuggestions: Sequence[object] | None = None,
+        *,
+        status: PlannerStatus | None = None,
+    ) -> None:
+        super().__init__(parameter)
+        self.parameter, self.status = parameter, status
+        self.recoverySuggestions = list(recoverySuggestions or ())
+
+    def __eq__(self, r: object) -> bool:
+        if not isinstance(r, PlanningError):
+            return NotImplemented
+        return (self.parameter, self.recoverySuggestions) == (r.parameter, r.recoverySuggestions)
+
+    def __hash__(self) -> int:
+        return hash(str(self.parameter))
+
+
 class PlannerProgress(ApiObject):
-    """The progress of a planner, as callbacks of ``planner.RegisterPlanCallback`` get it.
+    """Progress of a planner, the argument of callbacks of ``planner.RegisterPlanCallback``.
 
     Attributes:
         _iteration: The number of finished iterations.
@@ -124,11 +161,11 @@ class PlannerProgress(ApiObject):
 
 
 PlanCallback = Callable[[PlannerProgress], int | None]
-"""A function that is told the progress, and returns a ``PlannerAction``, or None to continue."""
+"""Callback with the progress; returns a ``PlannerAction``, or None to continue."""
 
 
 class Planner(Interface):
-    """A planner: it finds a path, smooths it, or gives it times. ``RaveCreatePlanner`` makes planners."""
+    """Base class of planners, which find, smooth or time paths; ``RaveCreatePlanner`` makes planners."""
 
     PlannerParameters = PlannerParameters
     PlannerStatus = PlannerStatus
@@ -137,9 +174,9 @@ class Planner(Interface):
     _interface_type = InterfaceType.planner
     _internal = ("run",)
     _takes_text: ClassVar[bool] = False
-    """Whether the planner accepts parameters as text. Texts name no bodies, so only retimers and smoothers do."""
+    """Whether the planner accepts parameters as text. Texts do not name bodies, so only retimers and smoothers do."""
     _defaults: ClassVar[Mapping[str, str]] = {}
-    """The extra parameters of this kind of planner: tags, and their default texts."""
+    """Default texts of the planner-specific parameters, by tag."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         super().__init__(env, xmlid)
@@ -153,12 +190,12 @@ class Planner(Interface):
 
         Args:
             robot: Not used, since the problem names the bodies.
-            params: The problem, which is copied. Retimers and smoothers accept its text as well.
+            params: The problem; it is copied. Retimers and smoothers also accept its text.
             releasegil: Not used.
 
         Returns:
-            Whether planning can begin. It is False if there is no start or no goal, or if all starts or all goals
-            collide or are outside the limits; ``PlanPath`` then says which.
+            Whether planning can start. False if there is no start or no goal, or if all starts or all goals collide or
+            are outside the limits; the status of ``PlanPath`` then says which.
 
         Raises:
             TypeError: ``params`` is neither ``PlannerParameters`` nor a text.
@@ -181,10 +218,10 @@ class Planner(Interface):
         return None if self._values is None else PlannerParameters.of(self._values, self._defaults)
 
     def PlanPath(self, traj: Trajectory, releasegil: bool = True) -> PlannerStatus:
-        """Solve the problem. Afterwards the robot is back in its configuration.
+        """Solve the problem. Afterwards the robot's configuration is restored.
 
         Args:
-            traj: Receives the motion; retimers and smoothers read it first. On failure it stays as it is.
+            traj: Receives the motion, and is the input of retimers and smoothers. It is unchanged after a failure.
             releasegil: Not used.
 
         Returns:
@@ -203,14 +240,14 @@ class Planner(Interface):
             return self.run(self._values, traj)
 
     def RegisterPlanCallback(self, callback: PlanCallback) -> Handle:
-        """Have a function called while the planner works.
+        """Register a function that is called during planning.
 
         Args:
             callback: Called with a ``PlannerProgress`` at the beginning and after each iteration. It returns a
                 ``PlannerAction``, or None to continue.
 
         Returns:
-            A handle. The planner calls the function as long as the handle exists.
+            A handle; deleting or closing it removes the callback.
 
         Raises:
             ArgumentError: the callback is not a function.
@@ -222,7 +259,7 @@ class Planner(Interface):
         raise NotImplementedError
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
-        """Return why a problem cannot be solved, or None."""
+        """Return the status if a problem cannot be solved, else None."""
         del values
         return None
 

@@ -1,17 +1,21 @@
-"""Retimers and smoothers as planners, and the chain of them that processes a path."""
+"""Retimers and smoothers as planners, and their sequence in the post-processing of a path."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+
 from ravemj.errors import ArgumentError, ErrorCode
-from ravemj.manipulation.processing import RETIMERS, SMOOTHERS, Processor
-from ravemj.planning.edges import Edges
+from ravemj.manipulation.processing import RETIMERS, SMOOTHERS, SPLINE, Processor
 from ravemj.planning.retiming.segments import OutsideLimitsError, RetimingError
 from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.values import CHAIN, Values
 from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.conversion import FindBody
+from ravemj.trajectories.layout import derived
 from ravemj.trajectories.waypoints import Waypoints
 
 if TYPE_CHECKING:
@@ -27,8 +31,11 @@ TIMING: Mapping[str, str] = {
     "multidofinterp": "0",
     "verifyinitialpath": "1",
 }
-"""The parameters that OpenRAVE's retimers and smoothers share, with its defaults. Of these, ``interpolation``,
-``hastimestamps``, ``hasvelocities``, ``outputaccelchanges`` and ``verifyinitialpath`` have an effect here."""
+"""Common parameters of OpenRAVE's retimers and smoothers, with its defaults.
+
+Of these, only ``interpolation``, ``hastimestamps``, ``hasvelocities``, ``outputaccelchanges`` and ``verifyinitialpath``
+have an effect.
+"""
 
 _CONSTRAINTS: Mapping[str, str] = {
     "maxlinkspeed": "0",
@@ -47,7 +54,7 @@ _CONSTRAINTS: Mapping[str, str] = {
 
 
 class Retimer(Planner):
-    """A planner that gives waypoints times within the velocity and acceleration limits. It ignores collisions."""
+    """Planner that times waypoints within the velocity and acceleration limits. It ignores collisions."""
 
     _takes_text: ClassVar[bool] = True
     _defaults: ClassVar[Mapping[str, str]] = TIMING
@@ -63,7 +70,7 @@ class Retimer(Planner):
 
 
 class Smoother(Retimer):
-    """A planner that replaces parts of a path by shortcuts without collisions, and gives the result times."""
+    """Planner that replaces parts of a path by collision-free shortcuts, and times the result."""
 
     _defaults: ClassVar[Mapping[str, str]] = {**TIMING, **_CONSTRAINTS}
 
@@ -72,7 +79,7 @@ TRAJECTORY_PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
     **dict.fromkeys(RETIMERS, Retimer),
     **dict.fromkeys(SMOOTHERS, Smoother),
 }
-"""The classes of retimers and smoothers, by their names in lower case."""
+"""Retimers and smoothers by name in lower case."""
 
 
 def _processed(
@@ -81,8 +88,8 @@ def _processed(
     """Run a retimer or smoother on a path.
 
     Raises:
-        RetimingError: there is no such motion.
-        ArgumentError: a retimer found a waypoint outside of the limits.
+        RetimingError: the path cannot be retimed.
+        ArgumentError: a waypoint is outside the limits.
     """
     try:
         with values.conditions.kept() if name.lower() in SMOOTHERS else nullcontext():
@@ -95,7 +102,7 @@ def _processed(
                 numbers["_fsteplength"],
                 int(numbers["_nmaxiterations"]),
                 values.random(),
-                lambda: Edges(values.space(), values.conditions.allowed()),
+                lambda points: values.conditions.straight_edges(values.space(), [points[0], points[-1]]),
                 proceed,
             )
             return processor.process(path, env.simulation.body)
@@ -104,7 +111,7 @@ def _processed(
 
 
 def _chain(values: Values) -> Iterator[tuple[str, Values]]:
-    """Yield the retimers and smoothers that parameters name, and the parameters of each."""
+    """Yield the configured retimers and smoothers, with the parameters of each."""
     name, text = values.postprocessing
     if (name, text) == CHAIN and len(values.coordinates().rotation) > 1:
         name, text = "LinearSmoother", ""  # the chain's parabolic smoother cannot interpolate quaternions
@@ -115,8 +122,32 @@ def _chain(values: Values) -> Iterator[tuple[str, Values]]:
         name, text = own.postprocessing
 
 
+def _curved(run: Callable[[str], Waypoints], values: Values, find_body: FindBody) -> Waypoints:
+    """Return a smooth motion through a path on a constraint; with corners if a smooth one would leave the constraint.
+
+    ``run`` retimes the path with the retimer of a name.
+    """
+    try:
+        curve = run(SPLINE)
+        if _is_allowed(curve, values, find_body):
+            return curve
+    except RetimingError:
+        pass  # there are too few waypoints, or a base moves
+    return run("LinearTrajectoryRetimer")
+
+
+def _is_allowed(curve: Waypoints, values: Values, find_body: FindBody) -> bool:
+    """Return whether a motion's cubic segments keep the constraint at their middles, where the deviation is largest."""
+    groups = list(values.groups)
+    points, rates = (curve.as_layout(curve.data, some, find_body) for some in (groups, derived(groups, 1)))
+    deltas = np.diff(curve.times())[:, None]
+    middles = (points[1:] + points[:-1]) / 2 + (rates[:-1] - rates[1:]) * deltas / 8
+    with values.conditions.kept():
+        return all(map(values.conditions.allowed(), middles))
+
+
 def post_process(env: "Environment", values: Values, traj: Trajectory) -> PlannerStatus | None:
-    """Run the planners that parameters name on a path, in place. Return the status of the first that fails, or None."""
+    """Run the configured post-processing on a path in place; return the status of the first failure, or None."""
     path = traj.waypoints
     if values.postprocessing[0] and len(path) == 1:
         values = replace(values, postprocessing=("LinearTrajectoryRetimer", ""))  # nothing to smooth
@@ -124,7 +155,8 @@ def post_process(env: "Environment", values: Values, traj: Trajectory) -> Planne
         if name.lower() not in TRAJECTORY_PLANNERS:
             return PlannerStatus(f"there is no planner '{name}' to process the path", errorOrigin=name)
         try:
-            path = _processed(env, name, own, path, lambda attempt: True)
+            run = partial(_processed, env, values=own, path=path, proceed=lambda attempt: True)
+            path = _curved(run, own, env.simulation.body) if name.lower() == SPLINE else run(name)
         except RetimingError as error:
             return PlannerStatus(str(error), errorOrigin=name)
     traj.set_waypoints(path)

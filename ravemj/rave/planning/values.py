@@ -1,4 +1,4 @@
-"""The numbers of a planning problem: how they are written as text, and the bodies that they refer to."""
+"""Values of a planning problem: their text form, and the bodies that they refer to."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,10 +11,10 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.bodies import Bodies, Conditions, space_of
-from ravemj.manipulation.options import STEP_LENGTH
+from ravemj.manipulation.options import STEP_LENGTH, Certify
+from ravemj.manipulation.roots import Sampler
 from ravemj.manipulation.tool import MovedTool
-from ravemj.planning.retiming.segments import Limits
-from ravemj.planning.rrt import MoreGoals
+from ravemj.planning.retiming.segments import PathLimits
 from ravemj.planning.space import Coordinates, Space
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.robot import Robot
@@ -48,14 +48,17 @@ CHAIN = (
     '<_postprocessing planner="parabolicsmoother"><_nmaxiterations>100</_nmaxiterations>'
     "<verifyinitialpath>0</verifyinitialpath></_postprocessing>",
 )
-"""The default post-processing of paths: the first planner, and its parameters, which name the second planner."""
+"""Default post-processing of paths: the first planner, and its parameters, which name the second."""
+
+_SAME = 1e-9
+"""Tolerance of equal configuration values [rad or m]."""
 
 _ROOT = "plannerparameters"
 _POSTPROCESSING = "_postprocessing"
 
 
 class Tags(NamedTuple):
-    """The content of a text of planner parameters.
+    """Parsed text of planner parameters.
 
     Attributes:
         numbers: Scalars, by the names of ``NUMBERS``.
@@ -93,13 +96,13 @@ def _number_text(number: float) -> str:
 
 @lru_cache(maxsize=64)
 def read_tags(text: str) -> Tags:
-    """Return the content of a text of planner parameters. A text without elements is empty, as in OpenRAVE.
+    """Parse planner parameters. A text without elements is empty, as in OpenRAVE.
 
     Args:
         text: Elements, or a whole ``<plannerparameters>``.
 
     Raises:
-        ArgumentError: the text is not well-formed XML, or an element of numbers contains something else.
+        ArgumentError: the text is not well-formed XML, or a numeric element contains something else.
     """
     groups: list[Group] | None = None
     postprocessing: tuple[str, str] | None = None
@@ -108,6 +111,8 @@ def read_tags(text: str) -> Tags:
         name, content = element.tag, (element.text or "").strip()
         if name in NUMBERS:
             numbers[name] = _numbers(name, content, 1)[0]
+            if math.isinf(numbers[name]):
+                raise ArgumentError(f"<{name}>: '{content}' should be a finite number")
         elif name in VECTORS:
             vectors[name] = np.array(_numbers(name, content))
         elif name == "configuration":
@@ -159,18 +164,19 @@ def _empty() -> Floats:
 
 @dataclass
 class Values:
-    """The numbers of a planning problem, and the bodies that they refer to.
+    """Values of a planning problem, and the bodies that they refer to.
 
     Attributes:
         vectors: Vectors, by the names of ``parameter_text.VECTORS``.
         numbers: Scalars, by the names of ``parameter_text.NUMBERS``.
         groups: The layout of a configuration.
         weights: The weight of each value in distances, shape (n,).
-        postprocessing: The name of the planner that processes the result, and its parameters as text.
-        conditions: The bodies that move, none in problems that are read from text, and the conditions that their
-            configurations have to keep.
+        postprocessing: The name of the post-processing planner, and its parameters as text.
+        conditions: The moving bodies, none in problems read from text, and the constraints on their configurations.
+        start_sampler: A source of further starts.
         goal_sampler: A source of further goals.
-        tags: Further parameters of one kind of planner, as texts.
+        tags: Planner-specific parameters, as strings.
+        certify: Whether to certify that the motion is free of collisions, and to reject uncertified motions.
     """
 
     vectors: dict[str, Floats] = field(default_factory=lambda: {name: np.zeros(0) for name in VECTORS})
@@ -181,11 +187,13 @@ class Values:
     weights: Floats = field(default_factory=_empty)
     postprocessing: tuple[str, str] = CHAIN
     conditions: Conditions = field(default_factory=Conditions)
-    goal_sampler: MoreGoals | None = None
+    start_sampler: Sampler | None = None
+    goal_sampler: Sampler | None = None
     tags: dict[str, str] = field(default_factory=lambda: {})
+    certify: Certify = False
 
     def state(self, env: "Environment", groups: Sequence[Group]) -> None:
-        """Let joints and poses of bodies move, with their current values, limits, weights and resolutions.
+        """Set the joints and body poses to plan for, with their current values, limits, weights and resolutions.
 
         Raises:
             ArgumentError: a group names a body that is not in the environment, or a DOF that its body does not have.
@@ -206,11 +214,11 @@ class Values:
 
     @property
     def bodies(self) -> Bodies | None:
-        """The bodies that move; None in problems that are read from text."""
+        """The moving bodies; None in problems read from text."""
         return self.conditions.bodies
 
     def with_tags(self, text: str) -> "Values":
-        """Return a copy in which the elements of an XML text replace the values of the same names."""
+        """Return a copy in which XML elements override the values of the same names."""
         read = read_tags(text)
         return replace(
             self,
@@ -222,7 +230,7 @@ class Values:
         )
 
     def tag(self, name: str, default: float) -> float:
-        """Return one of the further parameters as a number.
+        """Return a planner-specific parameter as a number.
 
         Raises:
             ArgumentError: the text of the parameter is not a number.
@@ -238,7 +246,7 @@ class Values:
         return np.random.default_rng(abs(int(self.numbers["_nrandomgeneratorseed"])))
 
     def coordinates(self) -> Coordinates:
-        """Return which values of a configuration are circular angles, positions or quaternions."""
+        """Return the type of each value of a configuration: circular angle, position or quaternion."""
         return self.bodies.coordinates() if self.bodies else Coordinates(np.zeros(count(self.groups), dtype=bool))
 
     def space(self) -> Space:
@@ -247,11 +255,11 @@ class Values:
         limits = vector["_vconfiglowerlimit"], vector["_vconfigupperlimit"]
         return space_of(self.coordinates(), *limits, self.weights, vector["_vconfigresolution"])
 
-    def limits(self) -> Limits:
+    def limits(self) -> PathLimits:
         """Return the limits of motions.
 
         Raises:
-            ArgumentError: the number of limits differs from the number of values.
+            ArgumentError: the number of limits is wrong.
         """
         names = ("lower", "upper", "velocity", "acceleration", "jerk")
         dof, found = count(self.groups), [self.vectors[f"_vconfig{name}limit"] for name in names]
@@ -260,10 +268,10 @@ class Values:
         for name, numbers in zip(names, found, strict=True):
             if numbers.shape != (dof,):
                 raise ArgumentError(f"{name} limits: are {len(numbers)}, and there are {dof} values")
-        return Limits(self.coordinates(), *found)
+        return PathLimits(self.coordinates(), *found)
 
     def check(self) -> None:
-        """Check that some joint or body moves, and that each value has limits and a resolution.
+        """Check that there are joints or bodies to move, and that each value has limits and a resolution.
 
         Raises:
             ArgumentError: nothing moves, or a vector of limits or resolutions has another shape or contains NaN.
@@ -275,6 +283,16 @@ class Values:
             is_limit = name.startswith("_vconfig") and (name != "_vconfigjerklimit" or len(numbers))
             if is_limit and (numbers.shape != (dof,) or np.isnan(numbers).any()):
                 raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be {dof} numbers")
+
+    def index_of(self, side: int, end: Floats) -> int:
+        """Return the index of a start (side 0) or goal (1); regions are counted after configurations."""
+        given = self.configurations("_vgoalconfig" if side else "_vinitialconfig")
+        for number, one in enumerate(given):
+            if np.abs(one - end).max() <= _SAME:
+                return number
+        sampler = self.goal_sampler if side else self.start_sampler
+        region = -1 if sampler is None else sampler.source.region_of(end)
+        return region if region < 0 else len(given) + region
 
     def configurations(self, name: str) -> Floats:
         """Return the starts or the goals, shape (number, n).
@@ -289,27 +307,29 @@ class Values:
 
 
 def _setting(env: "Environment", bodies: Bodies, name: str) -> Floats:
-    """Return one setting of each value of a configuration, shape (n,): a number of joints, or of affine DOFs."""
+    """Return a setting of each configuration value, shape (n,), from the joints or the affine DOFs."""
     numbers = bodies.numbers(name)
     for part in bodies.parts:
         if not part.dofs:
             body = env.wrap(part.body)
             kinds = body.affine_kinds if isinstance(body, Robot) else default_kinds()
-            # OpenRAVE has no accelerations and jerks of affine DOFs: its maximum velocities stand for them.
+            # OpenRAVE has no acceleration and jerk limits of affine DOFs, and uses their maximum velocities instead.
             names = {"max_acceleration": "max_velocity", "max_jerk": "max_velocity"}
             numbers[part.columns] = affine_numbers(kinds, part.affine, part.axis, names.get(name, name))
     return numbers
 
 
 class Hand(NamedTuple):
-    """The active manipulator of the one robot that a problem moves, and its tool."""
+    """Active manipulator of the one robot that a problem moves, with its tool."""
 
     manip: Manipulator
     tool: MovedTool
 
 
-def hand_of(env: "Environment", values: Values) -> Hand:
+def hand_of(env: "Environment", values: Values, *, gripper: bool = False) -> Hand:
     """Return the active manipulator of the one robot that a problem moves.
+
+    ``gripper`` allows the gripper joints to move as well.
 
     Raises:
         ArgumentError: the problem moves anything but the arm joints of one robot's active manipulator.
@@ -319,4 +339,4 @@ def hand_of(env: "Environment", values: Values) -> Hand:
     manip = robot.GetActiveManipulator() if isinstance(robot, Robot) else None
     if manip is None or bodies is None:
         raise ArgumentError("the hand of one robot should move, and it should have an active manipulator")
-    return Hand(manip, MovedTool.of(bodies, manip.description))
+    return Hand(manip, MovedTool.for_arm(bodies, manip.description, gripper=gripper))

@@ -12,13 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.core.arrays import checked_indices
+from ravemj.core.arrays import checked_indices, checked_number, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, send_warnings
+from ravemj.engine.snapshot import snapshot
+from ravemj.errors import ArgumentError, Diagnostic, Diagnostics, ErrorCode, RavemjError, send_warning, send_warnings
 from ravemj.geometry_functions import DOFAffine
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import hashes, scene
+from ravemj.model.gains import Gains
 from ravemj.model.manipulators import check_reach, freeze_manipulator
 from ravemj.model.mimic import Equations
 from ravemj.rave.controllers import Controller, IdealController, wait_until
@@ -42,6 +44,9 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.manipulator.arm_ik import IkBatch
 from ravemj.rave.robot.active import ActiveChoice, ActiveDofs, default_kinds
 from ravemj.rave.robot.equipment import AttachedSensor, ConnectedBodies, ConnectedBody, Devices
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.joint_trajectory import JointTrajectory
+from ravemj.trajectories.motion import Motion
 
 if TYPE_CHECKING:
     from ravemj.ik.arms import ArmSolver
@@ -54,7 +59,7 @@ _TOOLS, _ACTIVE_TOOL = int(SaveParameters.ManipulatorsToolTransform), int(SavePa
 
 
 class Robot(ActiveDofs):
-    """A robot: a body with manipulators, sensors and a controller. ``env.GetRobots()`` returns the robots."""
+    """Robot: a body with manipulators, sensors and a controller; ``env.GetRobots()`` returns the robots."""
 
     _internal = (
         "active_choice",
@@ -91,7 +96,7 @@ class Robot(ActiveDofs):
         self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
 
     def set_following(self, index: int, equations: Equations) -> None:
-        """Make a joint a mimic joint, or an ordinary one. If this changes the number of DOFs, all are active again."""
+        """Make a joint a mimic joint, or an ordinary one. If the number of DOFs changes, all DOFs become active."""
         before = self.GetDOF()
         super().set_following(index, equations)
         if self.GetDOF() != before:
@@ -108,15 +113,15 @@ class Robot(ActiveDofs):
         linkstoignore: "Iterable[Link | int | str] | EllipsisType" = ...,
         grabbedUserData: object = ...,
     ) -> bool:
-        """Grab a body, which then moves with the link that holds it.
+        """Grab a body, which then moves with the grabbing link.
 
         OpenRAVE's forms are ``Grab(body)``, ``Grab(body, grablink)``, and the one with all four arguments.
 
         Args:
             body: The body to grab. See ``KinBody.Grab``.
-            grablink: The link of this robot that holds the body; by default the active manipulator's end effector.
-            linkstoignore: Further links of this robot that are not tested against the body.
-            grabbedUserData: Not used; OpenRAVE has it together with ``linkstoignore``.
+            grablink: The link of this robot that grabs the body; by default the active manipulator's end effector.
+            linkstoignore: Further links of this robot whose collisions with the body are ignored.
+            grabbedUserData: Not used; in OpenRAVE it comes with ``linkstoignore``.
 
         Returns:
             False if no link is given and the robot has no active manipulator with an end effector.
@@ -146,7 +151,7 @@ class Robot(ActiveDofs):
     def CheckLinkSelfCollision(
         self, linkindex: int, linktrans: ArrayLike, report: "CollisionReport | None" = None
     ) -> bool:
-        """Return whether one link, moved to another pose, collides with the other links or with held bodies.
+        """Return whether a link at another pose collides with the other links or with grabbed bodies.
 
         Args:
             linkindex: The index of the link.
@@ -159,10 +164,76 @@ class Robot(ActiveDofs):
             link.SetTransform(linktrans)
             return (self._self_checker or self._env.GetCollisionChecker()).CheckSelfCollision(link, report)
 
+    def to_joint_trajectory(
+        self,
+        trajectory: Trajectory | Motion,
+        *,
+        rate: float | None = 100.0,
+        moving: bool = False,
+        start: ArrayLike | None = None,
+    ) -> JointTrajectory:
+        """Return a motion as checked waypoints for the controller of a real robot.
+
+        Every point is within the limits of values, velocities and accelerations, and the motion starts and ends at
+        rest. It does not check collisions. A grabbed body causes a warning, since the message does not contain it.
+
+        Args:
+            trajectory: A trajectory of joints of this robot, which keeps its own times and derivatives; or a ``Motion``
+                of all DOFs, of which the active ones are written. Straight segments have corners, so a ``Motion`` and a
+                trajectory with linear interpolation are retimed: corners are rounded within 0.01 rad or m; if that is
+                not possible, the motion stops at each waypoint.
+            rate: Points per second [Hz], and one at the end; None: a point at each waypoint, with the derivatives
+                that determine the motion between them.
+            moving: Allows motion at the start and the end; straight lines then keep their times and have no
+                velocities.
+            start: The measured joint values, shape (dof,) [rad or m]: the first point has to be within 0.01 of them.
+                Continuous joints are shifted by whole turns to them.
+
+        Raises:
+            ArgumentError: a check fails, and names joint, time, value and limit; or the trajectory moves the base,
+                another robot or no joint.
+
+        Example:
+            >>> points = robot.to_joint_trajectory(trajectory)
+            >>> ravemj.write_joint_trajectory("motion.json", points)
+            PosixPath('motion.json')
+        """
+        from ravemj.manipulation.joint_trajectories import Joints, checked_points  # noqa: PLC0415 - rarely wanted
+
+        body = self.simulation_state
+        if not isinstance(trajectory, Motion):
+            trajectory = checked_kind(trajectory, Trajectory, "to_joint_trajectory: trajectory")
+        motion = trajectory if isinstance(trajectory, Motion) else trajectory.waypoints
+        state = None if start is None else checked_vector(start, body.dof, "start")
+        hertz = None if rate is None else checked_number(rate, "rate", 1e-3, " Hz")
+        active = Joints(body, self.GetActiveDOFIndices().tolist())
+        points = checked_points(active, motion, hertz, state, moving=moving)
+        for held in self.GetGrabbed():
+            message = f"the points do not say that '{self.GetName()}' holds '{held.GetName()}', its load included"
+            send_warning(Diagnostic("warning", "grabbed-body", message, body.scene.source))
+        return points
+
+    def from_joint_trajectory(self, points: JointTrajectory) -> Trajectory:
+        """Return a trajectory with the interpolation of ROS controllers between points; limits are not checked.
+
+        Args:
+            points: The points. The interpolation is quintic if they have accelerations, cubic if they have velocities
+                only, else linear.
+
+        Raises:
+            ArgumentError: this robot has no joint of a name.
+
+        Example:
+            >>> trajectory = robot.from_joint_trajectory(ravemj.read_joint_trajectory("motion.json"))
+        """
+        made = Trajectory(self.GetEnv(), "")
+        made.set_waypoints(points.waypoints(self.GetName(), self.simulation_state.scene.dof_names))
+        return made
+
     def GetController(self) -> Controller | None:
         """Return the robot's controller.
 
-        From the start it is an ``IdealController``; after ``SetController(None)`` it is None.
+        The default is an ``IdealController``; after ``SetController(None)`` it is None.
 
         Example:
             >>> robot.GetController().SetDesired([0.5, -0.5])
@@ -236,7 +307,7 @@ class Robot(ActiveDofs):
         return wait_until(controller.IsDone, timeout, self._simulation.lock, self._env.IsSimulationRunning)
 
     def step_controller(self, timestep: float) -> None:
-        """Advance the controller by a time step [s]. A robot that never had one does not get one for this."""
+        """Advance the controller by a time step [s]; a default controller that was never used is not created."""
         if isinstance(self._controller, Controller):
             self._controller.SimulationStep(timestep)
 
@@ -290,13 +361,13 @@ class Robot(ActiveDofs):
         return True
 
     def remake(self, info: RobotBaseInfo) -> None:
-        """Make the robot anew of a description, but for its file, its id and what can be connected to it."""
+        """Rebuild the robot from a description; keep its file, its id and its connected bodies."""
         super().InitFromKinBodyInfo(replace(info, _uri=self._uri, _id=self._id))
         self._grippers = tuple(info._vGripperInfos)
         self.active_choice = ActiveChoice()
 
     def InitFromRobotInfo(self, info: RobotBaseInfo) -> bool:
-        """Make the robot, including its name, of ``info``, as ``InitFromKinBodyInfo`` does, and return True."""
+        """Rebuild the robot, including its name, from ``info``, as ``InitFromKinBodyInfo`` does, and return True."""
         return self.InitFromKinBodyInfo(info)
 
     def GetRobotStructureHash(self) -> str:
@@ -340,7 +411,7 @@ class Robot(ActiveDofs):
             self.take_choices(ref)
 
     def take_choices(self, other: "Robot") -> None:
-        """Copy active DOFs and manipulator, IK solvers and the state of the sensors of a robot of the same kind."""
+        """Copy active DOFs, active manipulator, IK solvers and sensor states from a robot of the same structure."""
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self.quaternion_limits = other.quaternion_limits.copy()
@@ -350,7 +421,7 @@ class Robot(ActiveDofs):
         self.devices.take_over(other.devices)
 
     def restorers(self, options: int) -> list[Restorer]:
-        """Return functions that restore the current state of this robot, on it or on a robot of the same kind."""
+        """Return functions that restore the current state of this robot, on it or on one of the same structure."""
         found = super().restorers(options)
         if options & _ACTIVE_DOF:
             choice = self.active_choice
@@ -366,19 +437,19 @@ class Robot(ActiveDofs):
         return found
 
     devices: Devices
-    """The sensors that were used; others are not made."""
+    """Sensor objects that were used so far; others are not created."""
     _connected: ConnectedBodies
     ik_solvers: dict[str, IkSolver]
     """The IK solvers, by the names of their manipulators."""
     _active_manipulator: str | None
-    """The name of the active manipulator; None for the first, empty for none."""
+    """Name of the active manipulator; None for the first, empty for none."""
     _manipulators: tuple[Manipulator, ...] = ()
     _grippers: tuple[GripperInfo, ...] = ()
 
     def GetManipulators(self, manipname: str | None = None) -> list[Manipulator]:
         """Return the manipulators, in the order of the file, or only the one called ``manipname``."""
         arms = self._state.scene.manipulators
-        if len(self._manipulators) != len(arms):  # they are made once, as links are
+        if len(self._manipulators) != len(arms):  # created once, like links
             known = self._manipulators[: len(arms)]
             new = (Manipulator(self, self._state, index) for index in range(len(known), len(arms)))
             self._manipulators = (*known, *new)
@@ -400,6 +471,40 @@ class Robot(ActiveDofs):
             return None
         return next(iter(self.GetManipulators(self._active_manipulator)), None)
 
+    def servo_gains(self, timestep: float = 0.002, stands: bool = False) -> Gains:
+        """Return gains with which position servos hold the robot and follow steps of their targets.
+
+        They are computed from the inertias and gravity torques at the present joint values and in 32 random
+        configurations, and from the effort limits; ``ravemj convert --actuators position`` writes the same. A
+        controller gives each DOF the torque ``kp * (target - value) - kv * velocity``. Add the armature to that of each
+        joint in the simulated model.
+
+        Args:
+            timestep: Time step of the simulation [s].
+            stands: Whether the base is free, so that the feet support the weight of the robot.
+
+        Returns:
+            ``kp`` [N m/rad or N/m], ``kv`` [N m s/rad or N s/m] and ``armature`` [kg m^2 or kg], each of shape (dof,).
+
+        Raises:
+            ArgumentError: the time step is not a positive number.
+
+        Example:
+            >>> robot = ravemj.load(ravemj.model_path("puma560")).GetRobots()[0]
+            >>> robot.servo_gains().kp.shape
+            (6,)
+        """
+        from ravemj.engine.servo_gains import loads_of, servo_gains  # noqa: PLC0415 - rarely wanted
+
+        step = checked_number(timestep, "servo_gains: timestep")
+        if step <= 0.0:
+            raise ArgumentError(f"servo_gains: timestep is {step:g}, not above 0")
+        state = self.simulation_state
+        with state.simulation.lock:
+            gravity = state.simulation.gravity
+            loads = loads_of(snapshot(state), state.kinematics.values(), gravity, stands=stands)
+        return servo_gains(loads, step)
+
     def ik(
         self,
         goals: ArrayLike,
@@ -407,7 +512,7 @@ class Robot(ActiveDofs):
         *,
         limits: bool = True,
     ) -> IkBatch:
-        """Return all solutions of inverse kinematics of the active manipulator for many goals; see ``Manipulator.ik``.
+        """Return all IK solutions of the active manipulator for many goals; see ``Manipulator.ik``.
 
         Args:
             goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the values of the goals, shape (N, k).
@@ -415,7 +520,7 @@ class Robot(ActiveDofs):
             limits: Whether only solutions within the limits are valid.
 
         Raises:
-            openrave_exception: no manipulator is active, or it has no inverse kinematics.
+            openrave_exception: no manipulator is active, or its arm cannot be solved.
         """
         arm = self.GetActiveManipulator()
         if arm is None:
@@ -486,7 +591,7 @@ class Robot(ActiveDofs):
 
     @also_named(manip="manipname")
     def SetActiveManipulator(self, manipname: Manipulator | str | int | None) -> Manipulator | None:
-        """Choose the active manipulator. The active DOFs stay as they are.
+        """Set the active manipulator. The active DOFs do not change.
 
         Args:
             manipname: The name, the manipulator, or its index in ``GetManipulators()``; '' for none.
@@ -495,7 +600,7 @@ class Robot(ActiveDofs):
             The active manipulator, or None.
 
         Raises:
-            ArgumentError: the robot has no such manipulator. The active one stays as it was.
+            ArgumentError: the robot has no such manipulator. The active one does not change.
             openrave_exception: the name is None.
 
         Example:
@@ -611,7 +716,7 @@ class Robot(ActiveDofs):
         return True
 
     def GetConnectedBodies(self) -> list[ConnectedBody]:
-        """Return the bodies that can be connected, active or not."""
+        """Return the connected bodies, active or not."""
         return list(self._connected.bodies)
 
     def GetConnectedBody(self, bodyname: str) -> ConnectedBody | None:
@@ -619,11 +724,11 @@ class Robot(ActiveDofs):
         return next((body for body in self._connected.bodies if body.GetName() == bodyname), None)
 
     def GetConnectedBodyActiveStates(self) -> list[int]:
-        """Return for each connected body whether it is active: 1, or 0 for no, -1 for undecided."""
+        """Return the active state of each connected body: 1 for active, 0 for inactive, -1 for undecided."""
         return [body.IsActive() for body in self._connected.bodies]
 
     def SetConnectedBodyActiveStates(self, activestates: Sequence[int]) -> None:
-        """Set for each connected body whether it is active; see ``ConnectedBody.SetActive``.
+        """Set the active state of each connected body; see ``ConnectedBody.SetActive``.
 
         Args:
             activestates: As many states as there are connected bodies.
@@ -635,7 +740,7 @@ class Robot(ActiveDofs):
             body.SetActive(active)
 
     def AddConnectedBody(self, connectedbodyinfo: ConnectedBodyInfo, removeduplicate: bool = False) -> ConnectedBody:
-        """Add a body that can be connected. If it is active, the next ``env.Add`` makes it a part of the robot.
+        """Add a connected body. If it is active, the next ``env.Add`` makes it a part of the robot.
 
         Args:
             connectedbodyinfo: The description of the body.
@@ -660,7 +765,7 @@ class Robot(ActiveDofs):
         return self._connected.add(info, removeduplicate)
 
     def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
-        """Remove ``connectedbody``, and return whether it was one of the bodies that can be connected.
+        """Remove ``connectedbody``, and return whether the robot had it.
 
         Raises:
             openrave_exception: the robot is in an environment (``InvalidState``).
@@ -668,7 +773,7 @@ class Robot(ActiveDofs):
         return self._connected.remove(connectedbody)
 
     def connect(self) -> None:
-        """Make the active connected bodies parts of the robot. The environment calls this before it adds the robot."""
+        """Merge active connected bodies into the robot. The environment calls this before it adds the robot."""
         self._connected.connect()
 
     def disconnect(self) -> None:
@@ -678,10 +783,10 @@ class Robot(ActiveDofs):
     def _place(
         self, name: str, parts: Sequence[scene.Manipulator | scene.AttachedSensor], replaces: bool, caller: str
     ) -> int:
-        """Return the place of a new part: that of the one of its name, or behind all.
+        """Return the index for a new part: that of the part of the same name, or the end.
 
         Raises:
-            ArgumentError: there is one of that name, and the new one does not replace it.
+            ArgumentError: the name is taken, and the new part does not replace the old one.
         """
         index = next((index for index, part in enumerate(parts) if part.name == name), len(parts))
         if index < len(parts) and not replaces:

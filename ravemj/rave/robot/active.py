@@ -27,7 +27,7 @@ Topic = TypeVar("Topic")
 
 @dataclass
 class AffineKind:
-    """The settings of one kind of affine DOFs, arrays of shape (n,)."""
+    """Settings of one type of affine DOFs, arrays of shape (n,)."""
 
     lower: Floats
     upper: Floats
@@ -41,7 +41,7 @@ class _WithKinds(Protocol):
 
 
 class _Kind(NamedTuple):
-    """OpenRAVE's defaults for one kind of affine DOFs, and the words of the docstrings."""
+    """OpenRAVE's defaults for one type of affine DOFs, and words for the docstrings."""
 
     size: int
     limit: float
@@ -65,7 +65,7 @@ _SETTINGS = {
     "Resolution": (("resolution",), "the planners' steps of the base's {values} [{unit}], shape ({size},)."),
     "Weights": (("weight",), "the weights of the base's {values} in distances, shape ({size},)."),
 }
-"""The end of a method's name, the fields of ``AffineKind`` that it handles, and the words of its docstring."""
+"""Suffix of a method name, its fields of ``AffineKind``, and words for its docstring."""
 
 _ARGUMENTS = {
     "MaxVels": "\n\nArgs:\n    {argument}: Largest velocities.",
@@ -84,7 +84,7 @@ def affine_numbers(kinds: Mapping[str, AffineKind], affine: int, axis: Vec3, nam
     """
     parts = [getattr(kinds["Translation"], name)[translation_columns(affine)]]
     if affine & DOFAffine.RotationAxis:
-        # OpenRAVE keeps four numbers for a rotation about an axis: for x, y, z, and for any other axis.
+        # OpenRAVE has four values for rotations about an axis: for x, y, z, and for any other axis.
         number = next((number for number in range(3) if axis[number] == 1.0), 3)
         parts.append(getattr(kinds["RotationAxis"], name)[number : number + 1])
     elif affine & DOFAffine.Rotation3D:
@@ -104,10 +104,10 @@ def default_kinds() -> dict[str, AffineKind]:
 
 
 def with_affine_settings(topic: type[Topic]) -> type[Topic]:
-    """Fill in bodies and docstrings of the methods for affine DOFs, which the class declares by signature only."""
+    """Class decorator that adds bodies and docstrings to affine DOF methods, which are signatures only."""
     for kind, about in _KINDS.items():
         for setting, (fields, what) in _SETTINGS.items():
-            if (kind, setting) == ("RotationQuat", "Limits"):  # one quaternion times an angle, not two limits
+            if (kind, setting) == ("RotationQuat", "Limits"):  # a quaternion times the maximum angle, not two limits
                 continue
             words = what.format(**about._asdict())
             get, set_ = (getattr(topic, f"{verb}Affine{kind}{setting}") for verb in ("Get", "Set"))
@@ -161,16 +161,16 @@ class ActiveChoice(NamedTuple):
 
 @with_affine_settings
 class ActiveDofs(KinBody):
-    """The active DOFs of a robot: some of its joints, then components of its base's pose (affine DOFs)."""
+    """Active DOFs of a robot: some of its joints, then components of its base's pose (affine DOFs)."""
 
     _often_called = ("CalculateActiveJacobian", "SetActiveDOFValues")
 
     active_choice: ActiveChoice
-    """The choice of ``SetActiveDOFs``."""
+    """Choice made by ``SetActiveDOFs``."""
     affine_kinds: dict[str, AffineKind]
     """Limits, resolutions and weights of the affine DOFs."""
     quaternion_limits: Floats
-    """The value of ``SetAffineRotationQuatLimits``."""
+    """Value set by ``SetAffineRotationQuatLimits``."""
 
     def SetActiveDOFs(self, dofindices: ArrayLike, affine: int = 0, rotationaxis: ArrayLike | None = None) -> None:
         """Choose the DOFs that ``SetActiveDOFValues``, trajectories and planners use.
@@ -182,7 +182,7 @@ class ActiveDofs(KinBody):
             rotationaxis: The axis of ``DOFAffine.RotationAxis`` in the world, shape (3,); by default z.
 
         Raises:
-            ArgumentError: there is no such DOF, or the axis is zero. The active DOFs stay as they were.
+            ArgumentError: a DOF does not exist, or the axis is zero. The active DOFs do not change.
 
         Example:
             >>> robot.SetActiveDOFs([1, 0])
@@ -223,7 +223,7 @@ class ActiveDofs(KinBody):
         return self.active_choice.affine
 
     def GetAffineDOFIndex(self, index: int) -> int:
-        """Return the index that a component of the base's pose has among the active values.
+        """Return the index of a base pose component among the active values.
 
         Args:
             index: The component, a single ``DOFAffine``.
@@ -261,7 +261,7 @@ class ActiveDofs(KinBody):
         """Set the active values: joints [rad or m], then the base's X, Y, Z [m] and rotation.
 
         Args:
-            values: The values, shape (n,); further values are ignored. NaN leaves a joint as it is.
+            values: The values, shape (n,); further values are ignored. NaN keeps the value of a joint.
             checklimits: What to do with joint values outside the limits, as in ``SetDOFValues``. Values of the base
                 are not limited.
 
@@ -352,7 +352,6 @@ class ActiveDofs(KinBody):
         return np.concatenate([joints, self._affine_numbers(name)]) if self.active_choice.affine else joints
 
     def _affine_numbers(self, name: str) -> Floats:
-        """Return one setting of all active affine DOFs."""
         return affine_numbers(self.affine_kinds, self.active_choice.affine, self.active_choice.axis, name)
 
     def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
@@ -391,7 +390,7 @@ class ActiveDofs(KinBody):
         return difference
 
     def CalculateActiveJacobian(self, linkindex: int, offset: ArrayLike) -> Floats:
-        """Return the Jacobian of the position of a link's point by the active values.
+        """Return the Jacobian of a link point's position with respect to the active values.
 
         Args:
             linkindex: Index of the link.
@@ -409,12 +408,11 @@ class ActiveDofs(KinBody):
             return np.hstack([joints, self._affine_motion().translation_jacobian(point)])
 
     def _active_columns(self, jacobian: Floats) -> Floats:
-        """Return the columns of the active joints."""
         chosen = self.active_choice.dofs
         return jacobian if chosen is None else jacobian.take(chosen, 1)
 
     def CalculateActiveAngularVelocityJacobian(self, linkindex: int) -> Floats:
-        """Return the Jacobian of a link's angular velocity by the active values.
+        """Return the Jacobian of a link's angular velocity with respect to the active velocities.
 
         Args:
             linkindex: Index of the link.
@@ -429,7 +427,7 @@ class ActiveDofs(KinBody):
             return np.hstack([joints, self._affine_motion().rotation_jacobian()])
 
     def CalculateActiveRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:
-        """Return the Jacobian of a quaternion that turns with a link, by the active values.
+        """Return the Jacobian of a quaternion fixed to a link, with respect to the active values.
 
         Args:
             linkindex: Index of the link.
@@ -442,11 +440,11 @@ class ActiveDofs(KinBody):
         return rates @ self.CalculateActiveAngularVelocityJacobian(linkindex)
 
     def GetAffineRotationQuatLimits(self) -> Floats:
-        """Return the limit of the base's rotation: a quaternion [w, x, y, z] times the largest angle, shape (4,)."""
+        """Return the rotation limit of the base: a quaternion [w, x, y, z] times the maximum angle, shape (4,)."""
         return self.quaternion_limits.copy()
 
     def SetAffineRotationQuatLimits(self, quatangle: ArrayLike) -> None:
-        """Set the limit of the base's rotation. As in OpenRAVE it has no effect: active limits stay -1 and 1.
+        """Set the rotation limit of the base. As in OpenRAVE it has no effect: active limits stay -1 and 1.
 
         Args:
             quatangle: A quaternion [w, x, y, z] times the largest angle from that rotation [rad], shape (4,).
@@ -462,7 +460,7 @@ class ActiveDofs(KinBody):
         return tuple(self._active_dofs())
 
     def moves_as_a_whole(self) -> bool:
-        """Return whether affine DOFs are active, which move the robot as a whole."""
+        """Return whether affine DOFs are active, which move the whole robot."""
         return bool(self.active_choice.affine)
 
     # Settings of the affine DOFs, with bodies and docstrings from the table in ``affine``

@@ -1,4 +1,4 @@
-"""Sensors that a robot carries, and bodies that can be connected to it."""
+"""Attached sensors and connected bodies of a robot."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class AttachedSensor(ApiObject):
-    """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
+    """Sensor mount on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
 
     _internal = ("description", "edit", "state")
 
@@ -47,7 +47,7 @@ class AttachedSensor(ApiObject):
 
     @property
     def description(self) -> scene.AttachedSensor:
-        """The sensor in the description of the robot; an error where the robot no longer has it."""
+        """The attached sensor in the scene; an error if the robot no longer has it."""
         found = next((one for one in self._state.scene.sensors if one.name == self._name), None)
         if found is None:
             raise RavemjError(f"'{self._robot.GetName()}' has no sensor '{self._name}' any more")
@@ -66,7 +66,7 @@ class AttachedSensor(ApiObject):
         return ""
 
     def GetStructureHash(self) -> str:
-        """Return a text that is the same for sensors of the same kind at the same place of a link: 32 digits."""
+        """Return a hash of the sensor type and its pose on the link: 32 hexadecimal digits."""
         sensor = self.description
         return hashes.of_text(repr((sensor.link, sensor.T_link_sensor.numbers().round(8).tolist(), sensor.type)))
 
@@ -87,7 +87,7 @@ class AttachedSensor(ApiObject):
         return self.description.T_link_sensor.matrix()
 
     def SetRelativeTransform(self, transform: ArrayLike) -> None:
-        """Move the sensor on its link to ``transform``, ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
+        """Set the pose on the link to ``transform``, ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
         self.edit(T_link_sensor=pose_of(checked_transform(transform, "SetRelativeTransform: transform")))
 
     def GetTransformPose(self) -> Floats:
@@ -95,7 +95,7 @@ class AttachedSensor(ApiObject):
         return pose_of(self.GetTransform()).numbers()
 
     def GetData(self) -> SensorData:
-        """Return what the device measures; see ``Sensor.GetSensorData``.
+        """Return the measurement of the device; see ``Sensor.GetSensorData``.
 
         Raises:
             openrave_exception: there is no device, or it is off.
@@ -114,11 +114,11 @@ class AttachedSensor(ApiObject):
         return self.GetRelativeTransform() if link is None else link.GetTransform() @ self.GetRelativeTransform()
 
     def GetSensor(self) -> Sensor | None:
-        """Return the device, or None for a mere frame; always the same object."""
+        """Return the device, always the same object; None for a frame without a device."""
         return self._robot.devices.of(self)
 
     def GetInfo(self) -> AttachedSensorInfo:
-        """Return the description of the attached sensor, a copy."""
+        """Return a copy of the description of the attached sensor."""
         return AttachedSensorInfo.of(self._state.scene, self.description)
 
     def UpdateAndGetInfo(self, type: SensorType | None = None) -> AttachedSensorInfo:  # OpenRAVE's name
@@ -140,14 +140,14 @@ class AttachedSensor(ApiObject):
 
 
 class Devices:
-    """One sensor object for each attached sensor of a robot, made when it is first used."""
+    """Sensor objects of a robot's attached sensors, created on first use."""
 
     def __init__(self, robot: "Robot") -> None:
         self._robot = robot
         self._by_name: dict[str, Sensor] = {}
 
     def of(self, attached: AttachedSensor) -> Sensor | None:
-        """Return the sensor of an attached sensor, always the same object; None for a frame without a sensor."""
+        """Return the sensor object of an attached sensor, always the same; None for a frame without a sensor."""
         name, description = attached.GetName(), attached.description
         if description.type is None:
             return None
@@ -158,7 +158,7 @@ class Devices:
             return self._by_name[name]
 
     def step(self, timestep: float, stamp: int) -> None:
-        """Advance the sensors by a time step [s] that ends at a stamp [microseconds]. Unused sensors are not made."""
+        """Advance the sensors by a time step [s] that ends at a stamp [microseconds]; skip unused sensors."""
         for attached in self._robot.GetAttachedSensors():
             if attached.GetName() in self._by_name or attached.description.is_on:
                 sensor = self.of(attached)
@@ -183,10 +183,10 @@ class Devices:
 
 
 class ConnectedBody(ApiObject):
-    """A body that can be connected to a link of a robot; ``robot.AddConnectedBody`` makes it.
+    """Body that can be connected to a link of a robot; ``robot.AddConnectedBody`` makes it.
 
-    While it is active and the robot is in an environment, its links, joints, manipulators, sensors and grippers are
-    the robot's, called like the body, an underscore, and their own name.
+    While it is active and the robot is in an environment, its links, joints, manipulators, sensors and grippers belong
+    to the robot. Their names start with the name of the body and an underscore.
 
     Args:
         robot: The robot.
@@ -198,36 +198,36 @@ class ConnectedBody(ApiObject):
         self._info = deepcopy(info)
 
     def GetName(self) -> str:
-        """Return its name."""
+        """Return the name of the body."""
         return self._info._name or ""
 
     def GetId(self) -> str:
-        """Return the id of its description; empty without one."""
+        """Return the id of the description; empty without one."""
         return self._info._id or ""
 
     def GetInfo(self) -> ConnectedBodyInfo:
-        """Return the description, a copy."""
+        """Return a copy of the description."""
         return deepcopy(self._info)
 
     def GetInfoHash(self) -> str:
-        """Return a text that is the same for descriptions that say the same: 32 hexadecimal digits."""
+        """Return a hash of the description: 32 hexadecimal digits."""
         return hashes.of_text(repr(self._info.SerializeJSON()))
 
     def IsActive(self) -> int:
-        """Return whether it is connected when the robot is added: 1, or 0 for no, -1 for undecided."""
+        """Return whether the body is connected when the robot is added: 1 yes, 0 no, -1 undecided."""
         return self._info._bIsActive
 
     def SetActive(self, active: int) -> bool:
-        """Set whether it is connected when the robot is added.
+        """Set whether the body is connected when the robot is added.
 
         Args:
-            active: 1 or True, 0 or False, or -1 for undecided, which counts as no.
+            active: 1 or True, 0 or False, or -1 for undecided, which means no.
 
         Returns:
-            Whether that is new.
+            Whether the state changes.
 
         Raises:
-            openrave_exception: it is, and the robot is in an environment (``InvalidState``).
+            openrave_exception: the state changes while the robot is in an environment (``InvalidState``).
         """
         if int(active) == self.IsActive():
             return False
@@ -239,7 +239,7 @@ class ConnectedBody(ApiObject):
         """Return the pose in the world, shape (4, 4).
 
         Raises:
-            openrave_exception: the robot has no link of the name that the description gives.
+            openrave_exception: the robot does not have the link named in the description.
         """
         link = self._robot.GetLink(self._info._linkname or "")
         if link is None:
@@ -259,23 +259,23 @@ class ConnectedBody(ApiObject):
         return pose_of(self.GetRelativeTransform()).numbers()
 
     def GetResolvedLinks(self) -> list[Link | None]:
-        """Return its links on the robot; None for each while it is not connected."""
+        """Return the body's links on the robot; None for each while it is not connected."""
         return [self._robot.GetLink(self._resolved(one._name)) for one in self._info._linkInfos]
 
     def GetResolvedJoints(self) -> "list[Joint | None]":
-        """Return its joints on the robot; None for each while it is not connected."""
+        """Return the body's joints on the robot; None for each while it is not connected."""
         return [self._robot.GetJoint(self._resolved(one._name)) for one in self._info._jointInfos]
 
     def GetResolvedManipulators(self) -> "list[Manipulator | None]":
-        """Return its manipulators on the robot; None for each while it is not connected."""
+        """Return the body's manipulators on the robot; None for each while it is not connected."""
         return [self._robot.GetManipulator(self._resolved(one._name)) for one in self._info._manipulatorInfos]
 
     def GetResolvedAttachedSensors(self) -> list[AttachedSensor | None]:
-        """Return its sensors on the robot; None for each while it is not connected."""
+        """Return the body's sensors on the robot; None for each while it is not connected."""
         return [self._robot.GetAttachedSensor(self._resolved(one._name)) for one in self._info._attachedSensorInfos]
 
     def GetResolvedGripperInfos(self) -> list[GripperInfo | None]:
-        """Return the descriptions of its grippers on the robot; None for each while it is not connected."""
+        """Return the body's gripper descriptions on the robot; None for each while it is not connected."""
         return [self._robot.GetGripperInfo(self._resolved(one._name)) for one in self._info._gripperInfos]
 
     def CanProvideManipulator(self, resolvedManipulatorName: str) -> bool:
@@ -283,7 +283,7 @@ class ConnectedBody(ApiObject):
         return resolvedManipulatorName in {self._resolved(one._name) for one in self._info._manipulatorInfos}
 
     def SetLinkEnable(self, enable: bool) -> None:
-        """Let its links collide if ``enable``, while it is connected."""
+        """Enable collisions of its links if ``enable``, while it is connected."""
         for link in filter(None, self.GetResolvedLinks()):
             link.Enable(enable)
 
@@ -300,11 +300,11 @@ class ConnectedBody(ApiObject):
 
 
 class ConnectedBodies:
-    """The bodies that can be connected to a robot, and whether the active ones are parts of it now.
+    """Connected bodies of a robot, with the state whether active ones are merged into it now.
 
     Args:
         robot: The robot.
-        infos: Their descriptions.
+        infos: The descriptions of the bodies.
     """
 
     def __init__(self, robot: "Robot", infos: Iterable[ConnectedBodyInfo] = ()) -> None:
@@ -313,7 +313,7 @@ class ConnectedBodies:
         self.bodies = tuple(ConnectedBody(robot, info) for info in infos)
 
     def copy_for(self, robot: "Robot") -> "ConnectedBodies":
-        """Return the same for a copy of the robot."""
+        """Return a copy of the connected bodies for a copy of the robot."""
         copied = ConnectedBodies(robot, [body.GetInfo() for body in self.bodies])
         copied._own_parts = self._own_parts
         return copied
@@ -332,14 +332,14 @@ class ConnectedBodies:
         return added
 
     def remove(self, gone: ConnectedBody) -> bool:
-        """Forget a body; return whether it was there."""
+        """Remove a body; return whether it existed."""
         _check_removed(self._robot, "RemoveConnectedBody")
         before = len(self.bodies)
         self.bodies = tuple(body for body in self.bodies if body is not gone)
         return len(self.bodies) < before
 
     def connect(self) -> None:
-        """Make the active bodies parts of the robot, which is not in the environment yet."""
+        """Merge the active bodies into the robot, which must not be in an environment."""
         active = [body.GetInfo() for body in self.bodies if body.IsActive() == 1]
         if active and self._own_parts is None:
             own = self._robot.ExtractInfo()
@@ -347,14 +347,14 @@ class ConnectedBodies:
             self._own_parts = own
 
     def disconnect(self) -> None:
-        """Take their parts away from the robot, which is no longer in the environment."""
+        """Remove their parts from the robot, which must not be in an environment."""
         if self._own_parts is not None:
             own = self._robot.ExtractInfo()
             self._own_parts = None
             self._robot.remake(own)
 
     def without_their_parts(self, info: RobotBaseInfo) -> RobotBaseInfo:
-        """Return a description of the robot without what connected bodies are in it."""
+        """Return a description of the robot without the parts of connected bodies."""
         return info if self._own_parts is None else only_parts_of(info, self._own_parts)
 
 

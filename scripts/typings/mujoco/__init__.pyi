@@ -99,6 +99,22 @@ class mjtEq(IntEnum):
     mjEQ_FLEXSTRAIN = 6
     mjEQ_DISTANCE = 7
 
+class mjtTrn(IntEnum):
+    mjTRN_JOINT = 0
+    mjTRN_JOINTINPARENT = 1
+
+class mjtGain(IntEnum):
+    mjGAIN_FIXED = 0
+
+class mjtBias(IntEnum):
+    mjBIAS_NONE = 0
+
+class mjtWrap(IntEnum):
+    mjWRAP_JOINT = 1
+
+class mjtCamLight(IntEnum):
+    mjCAMLIGHT_FIXED = 0
+
 class mjtTexture(IntEnum):
     mjTEXTURE_2D = 0
     mjTEXTURE_CUBE = 1
@@ -198,6 +214,10 @@ class mjtVisFlag(IntEnum):
     mjVIS_SDFITER = 30
     mjNVISFLAG = 31
 
+class mjtCone(IntEnum):
+    mjCONE_PYRAMIDAL = 0
+    mjCONE_ELLIPTIC = 1
+
 class mjtIntegrator(IntEnum):
     mjINT_EULER = 0
     mjINT_RK4 = 1
@@ -226,6 +246,19 @@ class mjtDisableBit(IntEnum):
     mjDSBL_ISLAND = 262144
     mjDSBL_MULTICCD = 524288
     mjNDISABLE = 20
+
+class mjtWarning(IntEnum):
+    mjWARN_INERTIA = 0
+    mjWARN_CONTACTFULL = 1
+    mjWARN_CNSTRFULL = 2
+    mjWARN_BADQPOS = 3
+    mjWARN_BADQVEL = 4
+    mjWARN_BADQACC = 5
+    mjWARN_BADCTRL = 6
+    mjNWARNING = 7
+
+class _MjWarningStatList:
+    number: Ints
 
 class mjtEnableBit(IntEnum):
     mjENBL_OVERRIDE = 1
@@ -709,6 +742,18 @@ class MjModel:
     tex_pathadr: Ints
     tex_type: Ints
     tex_width: Ints
+    hfield_adr: Ints
+    hfield_data: Floats32
+    hfield_ncol: Ints
+    hfield_nrow: Ints
+    hfield_size: Floats
+    pair_geom1: Ints
+    pair_geom2: Ints
+    tendon_adr: Ints
+    tendon_num: Ints
+    wrap_objid: Ints
+    wrap_prm: Floats
+    wrap_type: Ints
 
 class MjContact:
     H: Floats
@@ -752,6 +797,8 @@ class MjData:
     def model(self) -> MjModel: ...
     @property
     def contact(self) -> _MjContactList: ...
+    @property
+    def warning(self) -> _MjWarningStatList: ...
     def actuator(self, name: str | int = ...) -> Any: ...
     def body(self, name: str | int = ...) -> Any: ...
     def cam(self, name: str | int = ...) -> Any: ...
@@ -964,6 +1011,7 @@ class MjSpec:
     excludes: list[Any]
     frames: list[Any]
     geoms: list[Any]
+    hfields: list[Any]
     joints: list[Any]
     keys: list[Any]
     lights: list[Any]
@@ -972,7 +1020,9 @@ class MjSpec:
     pairs: list[Any]
     sensors: list[Any]
     sites: list[Any]
+    skins: list[Any]
     tendons: list[Any]
+    texts: list[Any]
     textures: list[Any]
     assets: dict[str, bytes]
     comment: str
@@ -982,6 +1032,8 @@ class MjSpec:
     meshdir: str
     modelfiledir: str
     modelname: str
+    nconmax: int
+    njmax: int
     option: MjOption
     stat: MjStatistic
     texturedir: str

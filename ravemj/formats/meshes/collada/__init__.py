@@ -1,8 +1,7 @@
 """The reader of COLLADA files as meshes: it flattens the visual scene to one part for each material.
 
-As OpenRAVE's importer does it, the file is scaled by its unit and turned to y up; for a URDF it is not turned. The
-reader of COLLADA's robots does neither, and shares the modules beside this one: ``triangles``, ``materials`` and
-``node_transforms``.
+As in OpenRAVE's importer, the file is scaled by its unit and rotated to y up; for a URDF it is not rotated. The reader
+of COLLADA robots does neither, and shares the modules ``triangles``, ``materials`` and ``node_transforms``.
 """
 
 import numpy as np

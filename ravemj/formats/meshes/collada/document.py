@@ -10,7 +10,7 @@ from lxml import etree
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import Source, SourceError
-from ravemj.formats.limits import Budget
+from ravemj.formats.limits import ParsingBudget
 from ravemj.formats.meshes.number_lists import parse_list
 from ravemj.formats.meshes.parts import MeshPart
 
@@ -23,12 +23,12 @@ class ColladaDocument:
     Attributes:
         path: Where the file lies.
         root: The outermost element.
-        digest: A name for the content: the same for the same bytes.
+        digest: Hash of the content.
         elements: The number of elements, or a little more.
-        meshes: Triangles that were read, by what they depend on.
+        meshes: Cache of triangles.
     """
 
-    def __init__(self, data: bytes, path: str, budget: Budget | None = None) -> None:
+    def __init__(self, data: bytes, path: str, budget: ParsingBudget | None = None) -> None:
         """Parse a file.
 
         Args:
@@ -41,7 +41,7 @@ class ColladaDocument:
         """
         self.path = path
         self.digest = hashlib.sha256(data).hexdigest()
-        self.elements = (budget or Budget()).add_document(data, Source(path))
+        self.elements = (budget or ParsingBudget()).add_document(data, Source(path))
         root = parse_tree(data, path)
         if root is None or local_name(root) != "COLLADA":
             raise SourceError("the root element is not COLLADA", Source(path, 1))
@@ -56,11 +56,11 @@ class ColladaDocument:
         self.meshes: dict[str, tuple[MeshPart, ...]] = {}
 
     def source(self, element: Element) -> Source:
-        """Return the place of an element, for messages."""
+        """Return the source position of an element, for messages."""
         return Source(self.path, element.sourceline or 0)
 
     def place(self, geometry: Element) -> int:
-        """Return which ``<geometry>`` of the file an element is, counted from 0."""
+        """Return the index of a ``<geometry>`` in the file."""
         if not self._places:
             self._places = {element: number for number, element in enumerate(self.root.iter("{*}geometry"))}
         return self._places[geometry]
@@ -73,7 +73,7 @@ class ColladaDocument:
         return self._by_id.get((kind, (url or "").strip().removeprefix("#")))
 
     def identified(self, name: str) -> list[Element]:
-        """Return the elements with an id, one of each kind at most."""
+        """Return the elements with an id, at most one of each kind."""
         if not self._of_any_kind:
             for (_, known), element in self._by_id.items():
                 self._of_any_kind.setdefault(known, []).append(element)
@@ -87,7 +87,7 @@ _COUNTABLE = re.compile(
     rb"|shift_?jis|euc-?\w+|koi8-?\w",
     re.IGNORECASE,
 )
-"""Encodings in which ``<`` is the byte that it is in ASCII, so that elements can be counted before parsing."""
+"""Encodings in which ``<`` has its ASCII code, so that elements can be counted before parsing."""
 
 
 def parse_tree(data: bytes, path: str) -> Element | None:
@@ -122,7 +122,7 @@ def children(element: Element | None, *kinds: str) -> Iterator[Element]:
 
 @functools.cache
 def _patterns(kinds: tuple[str, ...]) -> tuple[str, ...]:
-    """Return what lxml knows elements of some kinds by, in any namespace."""
+    """Return lxml patterns for elements of some kinds in any namespace."""
     return tuple(f"{{*}}{kind}" for kind in kinds)
 
 
@@ -142,7 +142,7 @@ _LEADING_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
 def numbers(element: Element | None) -> Floats:
-    """Return the numbers in an element's text; what is no number is 0, as OpenRAVE's reader has it."""
+    """Return the numbers in an element's text; invalid ones are 0, as in OpenRAVE's reader."""
     text = "" if element is None else element.text or ""
     try:
         return parse_list(text, float)
@@ -156,7 +156,7 @@ def _leading_number(word: str) -> float:
 
 
 def attribute_number(element: Element | None, name: str, default: float) -> float:
-    """Return a number in an attribute, or ``default`` where there is none."""
+    """Return the number in an attribute, or ``default`` without one."""
     try:
         value = float((None if element is None else element.get(name)) or default)
     except ValueError:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, numbers
+from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name, numbers
 from ravemj.model.scene import Rgb
 
 _SHADERS = ("phong", "blinn", "lambert", "constant")
@@ -20,6 +20,8 @@ class ColladaMaterial:
         transparency: The number in ``<transparency>``, which writers mean in opposite ways; None without one.
         transparent: The red, green, blue and alpha that it multiplies; None where the file has none.
         opaque: Which of them counts, and in which sense: ``A_ONE`` unless the file says otherwise.
+        is_phong: True if the shader is a ``<phong>``.
+        alpha: Fourth number of the diffuse colour of a ``<phong>``, else of its ambient colour; 1 without one.
     """
 
     diffuse: Rgb | None = None
@@ -28,6 +30,8 @@ class ColladaMaterial:
     transparency: float | None = None
     transparent: tuple[float, ...] | None = None
     opaque: str = "A_ONE"
+    is_phong: bool = False
+    alpha: float = 1.0
 
     @property
     def opacity(self) -> float:
@@ -55,6 +59,8 @@ def read_material(document: ColladaDocument, material: Element) -> ColladaMateri
     if shader is None:
         return ColladaMaterial()
     transparent = child(shader, "transparent")
+    is_phong = local_name(shader) == "phong"
+    colours = (_rgba(child(shader, name, "color")) for name in ("diffuse", "ambient"))
     return ColladaMaterial(
         _rgb(shader, "diffuse"),
         _rgb(shader, "ambient"),
@@ -62,6 +68,8 @@ def read_material(document: ColladaDocument, material: Element) -> ColladaMateri
         _float(effect, child(shader, "transparency")),
         _rgba(child(transparent, "color")),
         "A_ONE" if transparent is None else transparent.get("opaque", "A_ONE"),
+        is_phong,
+        next((colour[3] for colour in colours if colour is not None), 1.0) if is_phong else 1.0,
     )
 
 

@@ -7,7 +7,7 @@ from ravemj.formats.meshes.collada.document import Element, local_name, numbers
 from ravemj.formats.meshes.matrices import rotation, translation
 
 LENGTHS = {"translate": 3, "rotate": 4, "scale": 3, "matrix": 16, "lookat": 9}
-"""The number of numbers in each transform that counts."""
+"""The number of values of each supported transform."""
 
 
 def local_transform(element: Element) -> Floats | None:

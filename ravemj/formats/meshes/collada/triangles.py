@@ -99,7 +99,7 @@ def _mesh(geometry: Element) -> Element | None:
 
 
 def _positions(document: ColladaDocument, mesh: Element) -> Floats:
-    """Return the points that VERTEX inputs mean: those of the mesh's own ``<vertices>``, whatever its id."""
+    """Return the points of VERTEX inputs: those of the mesh's own ``<vertices>``, whatever their id."""
     inputs = children(child(mesh, "vertices"), "input")
     url = next((item.get("source", "") for item in inputs if item.get("semantic") == "POSITION"), "")
     wanted = url.strip().removeprefix("#")
@@ -121,7 +121,7 @@ def _source_rows(document: ColladaDocument, source: Element) -> Floats:
 
 
 def _columns(accessor: Element | None, stride: int) -> list[int]:
-    """Return where x, y and z stand in a row; a ``<param>`` without a name is skipped."""
+    """Return the columns of x, y and z; a ``<param>`` without a name is skipped."""
     names = [param.get("name", "") for param in children(accessor, "param")]
     if {"X", "Y", "Z"} <= set(names[:stride]):
         return [names.index(axis) for axis in "XYZ"]

@@ -8,7 +8,7 @@ them, ``traversal`` collects the triangles.
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.inventor import ascii as text_format
 from ravemj.formats.meshes.inventor import binary, old, vrml97
-from ravemj.formats.meshes.inventor.nodes import InventorDocument, Node
+from ravemj.formats.meshes.inventor.nodes import InventorDocument, InventorNode
 from ravemj.formats.meshes.inventor.traversal import State, Traversal
 from ravemj.formats.meshes.parts import MeshPart, check_finite, weld
 
@@ -22,7 +22,7 @@ def read_inventor(file: FileContent) -> tuple[MeshPart, ...]:
     Raises:
         SourceError: The file is malformed, or too large to be meant.
     """
-    trees: dict[str, list[Node]] = {}
+    trees: dict[str, list[InventorNode]] = {}
 
     def draw(traversal: Traversal, opened: FileContent, state: State) -> State:
         if opened.path not in trees:
@@ -37,7 +37,7 @@ def read_inventor(file: FileContent) -> tuple[MeshPart, ...]:
     return (MeshPart(weld(corners), *traversal.material),) if len(corners) else ()
 
 
-def _nodes(file: FileContent) -> list[Node]:
+def _nodes(file: FileContent) -> list[InventorNode]:
     header = file.data[:80].partition(b"\n")[0]
     if header.startswith(b"#Inventor V") and b"binary" in header:
         return binary.parse(InventorDocument(file.path), file.data)

@@ -12,9 +12,9 @@ from ravemj.formats.limits import MOST_NODES
 from ravemj.formats.meshes.inventor.nodes import (
     MAX_DEPTH,
     InventorDocument,
+    InventorNode,
     Is,
-    Node,
-    Numbers,
+    NumberText,
     Prototype,
     Value,
 )
@@ -30,17 +30,17 @@ _INTERFACE = frozenset({"field", "exposedField", "eventIn", "eventOut"})
 _PUNCTUATION = frozenset("{}[]()|")
 
 
-def parse(document: InventorDocument) -> list[Node]:
+def parse(document: InventorDocument) -> list[InventorNode]:
     """Read all nodes of a document.
 
     Raises:
         SourceError: It is malformed, too deep or too large.
     """
-    return _Parser(document).statements(end="")
+    return _AsciiParser(document).statements(end="")
 
 
-class _Parser:
-    """Reads from left to right; every method leaves ``_at`` behind what it has read."""
+class _AsciiParser:
+    """Recursive-descent parser; every method leaves ``_at`` behind what it has parsed."""
 
     def __init__(self, document: InventorDocument) -> None:
         self._document = document
@@ -48,21 +48,21 @@ class _Parser:
         self._at = 0
         self._depth = 0
         self._nodes_left = MOST_NODES
-        self._named: dict[str, Node] = {}
+        self._named: dict[str, InventorNode] = {}
         self._prototypes: dict[str, Prototype] = {}
         vrml97 = self._text.startswith("#VRML V2")
         self._token = _TOKEN_VRML97 if vrml97 else _TOKEN_INVENTOR
 
-    def statements(self, end: str) -> list[Node]:
+    def statements(self, end: str) -> list[InventorNode]:
         """Read nodes, prototypes and routes up to the token ``end``."""
-        nodes: list[Node] = []
+        nodes: list[InventorNode] = []
         while (token := self._next()) != end:
             node = self._statement(token)
             if node is not None:
                 nodes.append(node)
         return nodes
 
-    def _statement(self, token: str) -> Node | None:
+    def _statement(self, token: str) -> InventorNode | None:
         if token in ("PROTO", "EXTERNPROTO"):
             self._prototype(external=token == "EXTERNPROTO")
         elif token == "ROUTE":
@@ -93,7 +93,7 @@ class _Parser:
                 f"found {token[:40]!r} where {wanted!r} belongs" if token else f"the file ends before {wanted!r}"
             )
 
-    def _node(self, token: str) -> Node:
+    def _node(self, token: str) -> InventorNode:
         """Read a node whose first token is read already."""
         if token == "USE":
             name = self._next()
@@ -111,8 +111,8 @@ class _Parser:
             self._fail(f"found {token[:40]!r} where a node belongs" if token else "the file ends inside a node")
         return self._body(token)
 
-    def _body(self, kind: str) -> Node:
-        node = Node(kind, self._document, self._at - len(kind))
+    def _body(self, kind: str) -> InventorNode:
+        node = InventorNode(kind, self._document, self._at - len(kind))
         self._expect("{")
         self._depth += 1
         self._nodes_left -= 1
@@ -126,7 +126,7 @@ class _Parser:
             self._nodes_left -= made
         return node
 
-    def _item(self, node: Node, token: str) -> None:
+    def _item(self, node: InventorNode, token: str) -> None:
         """Read one thing between the braces of a node: a field, a child, an interface or a route."""
         if token in _INTERFACE and node.kind == "Script":
             self._interface(token)
@@ -155,7 +155,7 @@ class _Parser:
             if run is None:
                 self._fail(f"{token[:40]!r} is not a number")
             self._at = run.end()
-            return Numbers(run[0])
+            return NumberText(run[0])
         if token == "(":
             return self._bitmask()
         if token == "IS":
@@ -177,7 +177,7 @@ class _Parser:
         numbers = _NUMBER_ARRAY.match(self._text, self._at)
         if numbers is not None:
             self._at = numbers.end()
-            return Numbers(numbers[1])
+            return NumberText(numbers[1])
         values: list[Value] = []
         while (token := self._next()) != "]":
             if token in ("PROTO", "EXTERNPROTO", "ROUTE"):

@@ -14,7 +14,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.formats.limits import MOST_NODES
-from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, InventorDocument, Node, Value
+from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, InventorDocument, InventorNode, Value
 
 _IS_GROUP = 2  # in the flags of a node
 _GROUPS_OF_2_0 = frozenset(
@@ -23,7 +23,7 @@ _GROUPS_OF_2_0 = frozenset(
 )
 
 
-def parse(document: InventorDocument, data: bytes) -> list[Node]:
+def parse(document: InventorDocument, data: bytes) -> list[InventorNode]:
     """Read all nodes of a binary file.
 
     Raises:
@@ -33,11 +33,11 @@ def parse(document: InventorDocument, data: bytes) -> list[Node]:
     version = re.match(rb"#Inventor V(\d+\.\d+) binary", header)
     if version is None:
         document.fail("neither text nor binary Inventor", 0)
-    return _Reader(document, body, flagged=float(version[1]) > 2.0).nodes()
+    return _BinaryReader(document, body, flagged=float(version[1]) > 2.0).nodes()
 
 
-class _Reader:
-    """Reads from front to back; every method leaves ``_at`` behind what it has read."""
+class _BinaryReader:
+    """Sequential reader; every method leaves ``_at`` behind what it has read."""
 
     def __init__(self, document: InventorDocument, body: bytes, flagged: bool) -> None:
         self._document = document
@@ -46,17 +46,17 @@ class _Reader:
         self._at = 0
         self._depth = 0
         self._nodes_left = MOST_NODES
-        self._named: dict[str, Node] = {}
+        self._named: dict[str, InventorNode] = {}
 
-    def nodes(self) -> list[Node]:
-        nodes: list[Node] = []
+    def nodes(self) -> list[InventorNode]:
+        nodes: list[InventorNode] = []
         while self._body[self._at :].strip(b"\0"):
             node = self.node()
             if node is not None:
                 nodes.append(node)
         return nodes
 
-    def node(self) -> Node | None:
+    def node(self) -> InventorNode | None:
         kind = self.word()
         if kind == "NULL":
             return None
@@ -69,8 +69,8 @@ class _Reader:
         node = self._named[name] = self._body_of(kind)
         return node
 
-    def _body_of(self, kind: str) -> Node:
-        node = Node(kind, self._document, 0)
+    def _body_of(self, kind: str) -> InventorNode:
+        node = InventorNode(kind, self._document, 0)
         self._depth += 1
         self._nodes_left -= 1
         if self._depth > MAX_DEPTH or self._nodes_left < 0:
@@ -100,7 +100,7 @@ class _Reader:
         return int(struct.unpack(">i", self._take(4))[0])
 
     def _count(self, bytes_each: int) -> int:
-        """Return a number of things to follow, checked against what is left of the file."""
+        """Return the number of following items, checked against the rest of the file."""
         count = self._integer()
         if count < 0 or count * bytes_each > len(self._body) - self._at:
             self._fail("the file ends too early")
@@ -139,15 +139,15 @@ class _Reader:
         self._document.fail(f"{message} (at byte {self._at} after the header)", 0)
 
 
-def _single(width: int) -> Callable[[_Reader], Value]:
+def _single(width: int) -> Callable[[_BinaryReader], Value]:
     return lambda reader: reader.floats(width)
 
 
-def _multiple(width: int) -> Callable[[_Reader], Value]:
+def _multiple(width: int) -> Callable[[_BinaryReader], Value]:
     return lambda reader: reader.many_floats(width)
 
 
-_TYPES: dict[Callable[[_Reader], Value], str] = {
+_TYPES: dict[Callable[[_BinaryReader], Value], str] = {
     _single(1): "angle width height depth radius bottomRadius textureQuality size spacing creaseAngle intensity "
     "nearDistance farDistance aspectRatio focalDistance heightAngle lineWidth pointSize dropOffRate cutOffAngle "
     "fogVisibility ambientIntensity Complexity.value Texture2Transform.rotation",
@@ -161,16 +161,16 @@ _TYPES: dict[Callable[[_Reader], Value], str] = {
     _multiple(3): "point vector diffuseColor ambientColor specularColor emissiveColor rgb vertex normal",
     _multiple(4): "Coordinate4.point",
     _multiple(16): "MultipleCopy.matrix",
-    _Reader.integer: "startIndex numPoints whichChild verticesPerColumn verticesPerRow linePattern on isVisible "
+    _BinaryReader.integer: "startIndex numPoints whichChild verticesPerColumn verticesPerRow linePattern on isVisible "
     "numElements1 numElements2 numElements3",
-    _Reader.many_integers: "coordIndex normalIndex materialIndex textureCoordIndex numVertices orderedRGBA",
-    _Reader.word: "vertexOrdering shapeType faceType value type units axis name filename wrapS wrapT model "
+    _BinaryReader.many_integers: "coordIndex normalIndex materialIndex textureCoordIndex numVertices orderedRGBA",
+    _BinaryReader.word: "vertexOrdering shapeType faceType value type units axis name filename wrapS wrapT model "
     "materialBinding normalBinding style renderCaching boundingBoxCaching renderCulling pickCulling justification "
     "viewportMapping family description map fogType string label origin policy",
-    _Reader.many_words: "Text2.string Text3.string AsciiText.string",
-    _Reader.bitmask: "parts hints FontStyle.style",
-    _Reader.node: "vertexProperty",
-    _Reader.image: "image",
+    _BinaryReader.many_words: "Text2.string Text3.string AsciiText.string",
+    _BinaryReader.bitmask: "parts hints FontStyle.style",
+    _BinaryReader.node: "vertexProperty",
+    _BinaryReader.image: "image",
 }
 
 _FIELDS = {name: read for read, names in _TYPES.items() for name in names.split()}

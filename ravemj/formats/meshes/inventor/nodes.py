@@ -32,8 +32,8 @@ class InventorDocument:
 
 
 @dataclass(frozen=True, slots=True)
-class Numbers:
-    """Unparsed numbers, separated by commas or white space. Most are never needed, normals for instance."""
+class NumberText:
+    """Unparsed numbers, separated by commas or white space. Most are never used, for instance normals."""
 
     text: str
 
@@ -45,26 +45,26 @@ class Is:
     name: str
 
 
-Value = Union[Numbers, Floats, str, "Node", Is, None, list["Value"]]
+Value = Union[NumberText, Floats, str, "InventorNode", Is, None, list["Value"]]
 
 
 @dataclass(slots=True, eq=False)
-class Node:
-    """A node with its fields, of which values are read when they are asked for.
+class InventorNode:
+    """A node with its fields, whose values are parsed on demand.
 
     Attributes:
         kind: Its class, for instance ``Separator``.
         document: The file that it comes from.
         offset: Where in the file it begins.
         fields: Values by field name.
-        children: Nodes that it holds without a field, as Inventor's groups do.
+        children: Child nodes outside fields, as in Inventor's groups.
     """
 
     kind: str
     document: InventorDocument
     offset: int
     fields: dict[str, Value] = field(default_factory=dict[str, Value])
-    children: list["Node"] = field(default_factory=list["Node"])
+    children: list["InventorNode"] = field(default_factory=list["InventorNode"])
 
     def floats(self, name: str, width: int, default: tuple[float, ...]) -> Floats:
         """Return a field of ``width`` numbers, of several such values the first; else the standard's default.
@@ -116,25 +116,25 @@ class Node:
     def flag(self, name: str, default: bool) -> bool:
         """Return a field that is TRUE or FALSE; Inventor also lets 1 and 0 stand for them."""
         value = self.fields.get(name)
-        if isinstance(value, (Numbers, np.ndarray)):
+        if isinstance(value, (NumberText, np.ndarray)):
             return bool(self.number(name, float(default)))
         return self.word(name, "TRUE" if default else "FALSE") == "TRUE"
 
-    def node(self, name: str) -> "Node | None":
-        """Return a field of one node, or None where there is none."""
+    def node(self, name: str) -> "InventorNode | None":
+        """Return a field of one node; None without one."""
         return next(iter(self.nodes(name)), None)
 
-    def nodes(self, name: str) -> list["Node"]:
+    def nodes(self, name: str) -> list["InventorNode"]:
         """Return a field of nodes."""
         value = self.fields.get(name)
-        return [node for node in (value if isinstance(value, list) else [value]) if isinstance(node, Node)]
+        return [node for node in (value if isinstance(value, list) else [value]) if isinstance(node, InventorNode)]
 
     def fail(self, message: str) -> NoReturn:
         """Raise a ``SourceError`` about this node."""
         self.document.fail(message, self.offset)
 
     def _numbers(self, name: str, value: Value) -> Floats:
-        if isinstance(value, Numbers):
+        if isinstance(value, NumberText):
             try:
                 value = self.fields[name] = parse_numbers(value.text)  # a node may be used many times
             except ValueError:
@@ -152,13 +152,13 @@ class Prototype:
 
     Attributes:
         defaults: Values of its fields where an instance gives none.
-        body: Its nodes; the first is what an instance stands for.
+        body: Its nodes; the first one replaces an instance.
     """
 
     defaults: Mapping[str, Value]
-    body: list[Node]
+    body: list[InventorNode]
 
-    def instance(self, node: Node, limit: int) -> tuple[Node, int]:
+    def instance(self, node: InventorNode, limit: int) -> tuple[InventorNode, int]:
         """Fill in the pattern with the fields of a node as written, making ``limit`` nodes at most.
 
         Returns:
@@ -168,15 +168,15 @@ class Prototype:
             SourceError: More nodes than ``limit`` would be made.
         """
         values = {**self.defaults, **node.fields}
-        made: dict[int, Node] = {}  # a node that USE repeats is filled in once
+        made: dict[int, InventorNode] = {}  # a node that USE repeats is filled in once
 
-        def filled(pattern: Node) -> Node:
+        def filled(pattern: InventorNode) -> InventorNode:
             known = made.get(id(pattern))
             if known is not None:
                 return known
             if len(made) >= limit:
                 node.fail("the prototypes make too many nodes")
-            copy = made[id(pattern)] = Node(pattern.kind, pattern.document, pattern.offset)
+            copy = made[id(pattern)] = InventorNode(pattern.kind, pattern.document, pattern.offset)
             copy.fields = {name: value_of(value) for name, value in pattern.fields.items()}
             copy.children = [filled(child) for child in pattern.children]
             return copy
@@ -184,12 +184,12 @@ class Prototype:
         def value_of(value: Value) -> Value:
             if isinstance(value, Is):
                 return values.get(value.name)
-            if isinstance(value, Node):
+            if isinstance(value, InventorNode):
                 return filled(value)
             return [value_of(item) for item in value] if isinstance(value, list) else value
 
         children = [filled(self.body[0])] if self.body else []
-        return Node("Group", node.document, node.offset, {"children": list(children)}), len(made)
+        return InventorNode("Group", node.document, node.offset, {"children": list(children)}), len(made)
 
 
 def parse_numbers(text: str) -> Floats:

@@ -12,7 +12,7 @@ from ravemj.formats.limits import MOST_NODES, MOST_TRIANGLES
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.inventor import primitives
-from ravemj.formats.meshes.inventor.nodes import Node
+from ravemj.formats.meshes.inventor.nodes import InventorNode
 from ravemj.formats.meshes.matrices import rotation, translation
 from ravemj.formats.meshes.parts import BLACK, WHITE
 from ravemj.model.scene import Rgb
@@ -24,12 +24,12 @@ _MAX_LEVELS = 200  # of nodes and of files that files include
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """The traversal state: what the nodes before a shape have set.
+    """The traversal state, as set by the nodes before a shape.
 
     Attributes:
         matrix: From the shape's frame to the file's, 4x4.
         points: Coordinates that shapes refer to.
-        metres: Length of the unit in force, as Units says.
+        metres: Length of the current unit [m].
         concave: True where faces may be concave.
         complexity: Fineness of round shapes.
     """
@@ -45,7 +45,7 @@ Material = tuple[Rgb, Rgb, float]
 """Diffuse and ambient colour and transparency; of several for several faces the first, as OpenRAVE does it."""
 
 
-Handler = Callable[["Traversal", Node, State], State]
+Handler = Callable[["Traversal", InventorNode, State], State]
 """Handles a node; returns the state of the nodes after it."""
 
 Opener = Callable[["Traversal", FileContent, State], State]
@@ -77,12 +77,12 @@ class Traversal:
         """Return all triangles, shape (n, 3, 3)."""
         return np.concatenate([np.zeros((0, 3, 3)), *self._pieces])
 
-    def nodes(self, nodes: Iterable[Node], handlers: dict[str, Handler], state: State) -> State:
+    def nodes(self, nodes: Iterable[InventorNode], handlers: dict[str, Handler], state: State) -> State:
         """Traverse the nodes of a file, in the dialect of ``handlers``."""
         self._handlers = handlers
         return self.visit(nodes, state)
 
-    def visit(self, nodes: Iterable[Node], state: State) -> State:
+    def visit(self, nodes: Iterable[InventorNode], state: State) -> State:
         """Traverse nodes in order; an unknown one is skipped, but not its children."""
         self._levels += 1
         for node in nodes:
@@ -94,14 +94,14 @@ class Traversal:
         self._levels -= 1
         return state
 
-    def collect_materials(self, nodes: Iterable[Node], state: State) -> None:
+    def collect_materials(self, nodes: Iterable[InventorNode], state: State) -> None:
         """Traverse nodes for their materials alone: in OpenRAVE, those of hidden levels of detail count."""
         before, self._shapes_count = self._shapes_count, False
         self.visit(nodes, state)
         self._shapes_count = before
 
-    def add(self, corners: Floats, node: Node, state: State) -> State:
-        """Keep triangles given in the shape's frame."""
+    def add(self, corners: Floats, node: InventorNode, state: State) -> State:
+        """Add triangles given in the shape's frame."""
         if not self._shapes_count:
             return state
         self._count += len(corners)
@@ -110,14 +110,14 @@ class Traversal:
         self._pieces.append(corners @ state.matrix[:3, :3].T + state.matrix[:3, 3])
         return state
 
-    def add_polygons(self, sizes: Ints, index: Ints, node: Node, state: State) -> State:
-        """Keep the polygons of a shape, given the sizes of all and the places of their corners in ``state.points``."""
+    def add_polygons(self, sizes: Ints, index: Ints, node: InventorNode, state: State) -> State:
+        """Add the polygons of a shape, given their sizes and the indices of their corners in ``state.points``."""
         self._corners_left -= len(index)
         if self._corners_left < 0:
             node.fail("the mesh has too many corners of polygons")
         return self.add(triangulation.triangles(state.points, sizes, index, state.concave), node, state)
 
-    def include(self, names: Iterable[str], node: Node, state: State, with_materials: bool) -> State:
+    def include(self, names: Iterable[str], node: InventorNode, state: State, with_materials: bool) -> State:
         """Traverse the first of the files that a node names that can be read; none is no error, as in OpenRAVE.
 
         Its materials count only ``with_materials``. Return the state at its end.
@@ -146,7 +146,7 @@ class Traversal:
             self.material = material
 
 
-def shape(corners: Callable[[Node, State], Floats]) -> Handler:
+def shape(corners: Callable[[InventorNode, State], Floats]) -> Handler:
     """Return the handler of a shape, given its triangles in its frame, shape (n, 3, 3)."""
     return lambda traversal, node, state: traversal.add(corners(node, state), node, state)
 
@@ -156,7 +156,7 @@ def moved(state: State, step: Floats) -> State:
     return replace(state, matrix=state.matrix @ step)
 
 
-def transform(node: Node, scale_field: str) -> Floats:
+def transform(node: InventorNode, scale_field: str) -> Floats:
     """Return the matrix of a Transform: translation, centre, rotation, scale along its own axes.
 
     ``scale_field`` is ``scale`` in VRML97, ``scaleFactor`` before.

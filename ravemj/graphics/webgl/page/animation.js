@@ -1,4 +1,4 @@
-/* Plays a recording: pointers move the view, the bar moves the time. */
+/* Plays a recording: pointers move the view, the bar moves the time, sliders move joints where nothing plays. */
 "use strict";
 
 class Player {
@@ -12,6 +12,8 @@ class Player {
     this.duration = (content.frames - 1) / content.fps;
     this.channels = content.moving.columns ? columns(content.moving, array) : [];
     this.values = content.values ? columns(content.values, array) : [];
+    this.mechanism = content.mechanism && new Mechanism(content.mechanism);
+    this.hasFrames = false;
     this.first = this.view = new View(content.view);
     this.time = 0;
     this.speed = 1;
@@ -76,6 +78,9 @@ class Player {
     content.moving.bodies.forEach((body, i) => {
       this.renderer.place(body, ...channels.slice(7 * i, 7 * i + 7).map((channel) => this.sample(channel, frame)));
     });
+    if (this.mechanism) this.mechanism.place((...pose) => this.renderer.place(...pose));
+    const lines = this.hasFrames ? { lines: this.frameLines() } : {};
+    if (this.hasFrames || this.renderer.groups.has("frames")) this.renderer.show("frames", lines, (numbers) => numbers);
     const { clientWidth, clientHeight } = this.canvas, ratio = Math.min(window.devicePixelRatio || 1, 2);
     this.sharpness.draw(this.view, this.marked, ratio * clientWidth, ratio * clientHeight);
     this.onDraw();
@@ -83,7 +88,23 @@ class Player {
 
   onDraw() {}
 
-  jointValues() { return this.values.map((channel) => this.sample(channel, this.frame)); }
+  jointValues() {
+    return this.mechanism ? this.mechanism.values : this.values.map((channel) => this.sample(channel, this.frame));
+  }
+
+  /** The axes of all bodies as lines: x red, y green, z blue. */
+  frameLines() {
+    const length = 0.1 * this.first.distance, places = [], colors = [];
+    for (const pose of this.renderer.poses.slice(1)) {
+      const at = [pose[3], pose[7], pose[11]];
+      for (let axis = 0; axis < 3; axis++) {
+        places.push(...at, ...at.map((part, row) => part + length * pose[4 * row + axis]));
+        colors.push(...[0, 1, 2].map((part) => (part === axis ? 0.9 : 0.1)), 1);
+      }
+    }
+    const sizes = new Float32Array(places.length / 6).fill(3);
+    return { corners: new Float32Array(places), sizes, rgba: new Float32Array(colors) };
+  }
 
   bodyAt(x, y) {
     const scale = this.canvas.width / this.canvas.clientWidth;
@@ -142,6 +163,15 @@ function followPointers(player, canvas, onHover) {
   }, { passive: false });
 }
 
+/** Add a slider that moves a joint. */
+function addSlider(player, cell, { name, low, high }, i) {
+  const slider = document.createElement("input"), { values } = player.mechanism;
+  Object.assign(slider, { type: "range", min: low, max: high, step: "any", value: values[i] });
+  slider.setAttribute("aria-label", name);
+  slider.addEventListener("input", () => { [values[i], player.isDue] = [Number(slider.value), true]; });
+  cell.append(slider);
+}
+
 /** Connect the bar, the keys and what is shown under the pointer. */
 function connectControls(player) {
   const element = (id) => document.getElementById(id);
@@ -154,9 +184,11 @@ function connectControls(player) {
     play.setAttribute("aria-label", player.isPlaying ? "Pause" : "Play");
     player.isDue = true;
   };
-  const cells = player.content.joints.map(({ name, unit }) => {
+  const { mechanism } = player;
+  const cells = (mechanism ? mechanism.sliders : player.content.joints).map(({ name, unit, low, high }, i) => {
     const row = table.insertRow();
     row.insertCell().textContent = name;
+    if (mechanism) addSlider(player, row.insertCell(), { name, low, high }, i);
     const value = row.insertCell();
     return (number) => { value.textContent = `${number.toFixed(3)} ${unit}`; };
   });
@@ -170,14 +202,22 @@ function connectControls(player) {
     element("joints").setAttribute("aria-pressed", !table.hidden);
     player.isDue = true;
   };
-  const keys = { " ": () => run(!player.isPlaying), j: showValues, Home: () => player.look(player.first),
+  const showFrames = () => {
+    player.hasFrames = !player.hasFrames;
+    element("frames").setAttribute("aria-pressed", player.hasFrames);
+    player.isDue = true;
+  };
+  const keys = { " ": () => run(!player.isPlaying), j: showValues, f: showFrames, Home: () => player.look(player.first),
                  ArrowRight: () => { run(false); player.seek(player.time + 1 / player.content.fps); },
                  ArrowLeft: () => { run(false); player.seek(player.time - 1 / player.content.fps); } };
   play.addEventListener("click", () => run(!player.isPlaying));
   time.addEventListener("input", () => { run(false); player.seek(Number(time.value)); });
   element("speed").addEventListener("change", (event) => { player.speed = Number(event.target.value); });
   element("joints").addEventListener("click", showValues);
+  element("frames").addEventListener("click", showFrames);
   element("joints").hidden = !cells.length;
+  document.body.classList.toggle("is-still", !player.duration);
+  if (mechanism && cells.length && window.innerWidth >= 600) showValues();
   element("home").addEventListener("click", () => player.look(player.first));
   window.addEventListener("keydown", (event) => {
     if (![document.body, canvas].includes(event.target)) return;  // keys of buttons and sliders are theirs

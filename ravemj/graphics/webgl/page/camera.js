@@ -61,7 +61,8 @@ class View {
 
   /** Multiply the distance to the focus by e to a power. */
   zoomed(power) {
-    const distance = Math.min(Math.max(this.distance * Math.exp(power), 1e-3), 1e6);
+    const factor = Math.exp(Math.min(Math.max(power, -10), 10));
+    const distance = Math.min(Math.max(this.distance * factor, 1e-3), 1e6);
     return this.placed(this.rotation, this.focus, distance);
   }
 

@@ -1,4 +1,4 @@
-"""A viewer in a browser: pictures drawn here, mouse and keys from there."""
+"""A viewer in a browser: it sends pictures or geometry to pages and receives their input events."""
 
 from ravemj.gui.viewers.web.viewer import WebViewer
 

@@ -1,4 +1,4 @@
-"""One page in a browser: its events in; pictures of its view out, or what it needs to draw them by itself."""
+"""The server side of one page: it handles the page's events, and sends pictures or the geometry to render."""
 
 import base64
 import json
@@ -20,27 +20,27 @@ from ravemj.gui.viewers.sharpness import CRISP, LARGEST_SIDE, LEAST_SIDE, REST, 
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
 from ravemj.gui.viewers.web.feed import Feed, Stage
-from ravemj.gui.viewers.web.frame_pacing import Link
-from ravemj.gui.viewers.web.messages import Draws, Piece, Ready, Rejections, Shape, parse
+from ravemj.gui.viewers.web.frame_pacing import ConnectionPacing
+from ravemj.gui.viewers.web.messages import DrawingSide, PageSize, Ready, Rejections, UploadChunk, parse
 from ravemj.gui.viewers.web.scenes import Scenes
 from ravemj.gui.viewers.window_renderer import appearance
 
 _LOG = logging.getLogger("ravemj")
 _PERIOD = 1 / 60
 _HALF = 0.5
-"""Most columns and rows of pictures for slow connections while things move, as a part of the view's."""
+"""Largest resolution while moving on slow connections, relative to the view's."""
 
 _MOST_PIXELS = 1920 * 1440
 _MOST_AT_ONCE = 100
-"""Messages that are taken in before the next picture: moves come faster than pictures can be drawn."""
+"""Maximum number of messages handled before the next frame: pointer moves arrive faster than frames can be drawn."""
 
 
 _Update = Frame | list[str | bytes]
-"""A picture, or messages for a page that draws by itself."""
+"""A picture, or messages for a page that renders the scene itself."""
 
 
 class Connection(Protocol):
-    """What connects to a page: ``websockets``' connections do."""
+    """Connection to a page, as of ``websockets``."""
 
     def recv(self, timeout: float | None = None) -> str | bytes:
         """Wait for a message."""
@@ -60,7 +60,7 @@ class PageStyle(NamedTuple):
 
 
 def receive(connection: Connection, seconds: float) -> list[str | bytes]:
-    """Return the messages of a page; where there are none, wait for some at most so long."""
+    """Return the pending messages of a page; if there are none, wait for some, at most for a time [s]."""
     messages: list[str | bytes] = []
     try:
         messages.append(connection.recv(timeout=seconds))
@@ -72,27 +72,27 @@ def receive(connection: Connection, seconds: float) -> list[str | bytes]:
 
 
 class Client:
-    """Serves one page, in a thread of its own.
+    """Serves one page, in its own thread.
 
     Attributes:
-        interaction: The mouse and the keys of the page, and its view.
-        pieces: Pieces of files that were dropped on the page, which are to be taken in.
-        tab: Name of the view, which the page asks for when it comes again.
-        looks: How often it was found, or seen to, that the page was sent how everything is.
+        interaction: Interaction and viewpoint of the page.
+        chunks: Received chunks of files that were dropped on the page.
+        tab: Name of the view, by which a page that reconnects gets it back.
+        updates: Number of times the page was known to be up to date.
     """
 
     def __init__(
         self, simulation: Simulation, renderer: SimulationRenderer, interaction: Interaction, scenes: Scenes
     ) -> None:
         self.interaction = interaction
-        self.looks = 0
+        self.updates = 0
         self._simulation = simulation
         self._renderer = renderer
         self._scenes = scenes
-        self._feed: Feed | None = None  # pages that draw by themselves have one
+        self._feed: Feed | None = None  # only for pages that render the scene themselves
         self._stage: Stage | None = None
         self._acknowledged = 0
-        self._link = Link()
+        self._pacing = ConnectionPacing()
         self._sharpness = Sharpness()
         self._overlay: Overlay | None = None
         self._tree: object = None
@@ -100,33 +100,33 @@ class Client:
         self._sees_bodies = False
         self._has_moved = False
         self._ratio = 1.0
-        self._waiting: deque[Event] = deque([Leave()])  # of what an earlier connection of the page has left
+        self._waiting: deque[Event] = deque([Leave()])  # releases keys and buttons of an earlier connection
         self._seen: object = None
         self._seen_view: object = None
         self._says_locked = False
         self._complaint = ""
-        self.pieces: deque[Piece] = deque()
+        self.chunks: deque[UploadChunk] = deque()
         self.tab = ""
         self._changed_at = 0.0
         self._is_crisp = True
 
     @property
     def patience(self) -> float:
-        """How long to wait for messages [s]; 0: there is enough to do before more are received."""
+        """Time to wait for messages [s]; 0 if messages are pending."""
         return 0.0 if len(self._waiting) > _MOST_AT_ONCE else period(time.monotonic() - self._changed_at)
 
     @property
     def is_stalled(self) -> bool:
-        """Whether the page shows nothing of what it is sent, as in a tab that nobody sees."""
-        return self._link.is_stalled
+        """Whether the page does not acknowledge frames, like a hidden tab."""
+        return self._pacing.is_stalled
 
-    def take_moved(self) -> bool:
-        """Return whether people have moved the camera of the page since this was asked last."""
+    def pop_moved(self) -> bool:
+        """Return whether the user has moved the camera of the page since the last call."""
         has_moved, self._has_moved = self._has_moved, False
         return has_moved
 
-    def take_in(self, messages: Iterable[str | bytes], complain: Rejections) -> None:
-        """Read messages, which ``attend`` acts upon; nonsense is left out."""
+    def queue_messages(self, messages: Iterable[str | bytes], complain: Rejections) -> None:
+        """Parse messages and queue their events for ``handle_messages``; invalid ones are skipped."""
         for text in messages:
             try:
                 message = parse(text)
@@ -135,33 +135,33 @@ class Client:
                 complain(str(error), text)
                 continue
             if isinstance(message, Ready):
-                self._link.shown()
+                self._pacing.shown()
                 continue
             self._acknowledged += 1
-            if isinstance(message, Piece):
-                self.pieces.append(message)
+            if isinstance(message, UploadChunk):
+                self.chunks.append(message)
                 continue
-            if isinstance(message, Draws):
+            if isinstance(message, DrawingSide):
                 self._feed, self._seen = Feed() if message.itself else None, None
                 continue
-            if isinstance(message, Shape):
+            if isinstance(message, PageSize):
                 message = self._resize(message, complain)
             if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
-                self._waiting.pop()  # only where the pointer is now counts
+                self._waiting.pop()  # only the latest pointer position counts
             self._waiting.append(message)
 
-    def _resize(self, shape: Shape, complain: Rejections) -> Resize:
+    def _resize(self, shape: PageSize, complain: Rejections) -> Resize:
         sides = shape.ratio * shape.width, shape.ratio * shape.height
         if min(sides) < LEAST_SIDE or max(sides) > LARGEST_SIDE:
             complain(f"pictures have {LEAST_SIDE} to {LARGEST_SIDE} pixels a side, not these", sides)
         self._ratio = shape.ratio
         return Resize(round(shape.width), round(shape.height))
 
-    def attend(self, connection: Connection, style: PageStyle, *, is_watched: bool = False) -> Frame | None:
-        """Do what the page said, and send it what is new if it takes that and anything has changed or come to rest.
+    def handle_messages(self, connection: Connection, style: PageStyle, *, is_watched: bool = False) -> Frame | None:
+        """Handle the queued events; send an update if the page is ready and the view changed or came to rest.
 
         Returns:
-            The picture that the page shows; None if nothing was sent, or nobody watches a page that draws by itself.
+            The picture of the page. None if nothing was sent, or the page renders itself and ``is_watched`` is False.
         """
         try:
             update = self._update_if_due(style)
@@ -177,13 +177,13 @@ class Client:
             return None
         if update is not None:
             self._send(connection, update, style)
-            self.looks += self._sees_bodies
+            self.updates += self._sees_bodies
         return picture
 
     def _update_if_due(self, style: PageStyle) -> _Update | None:
-        """Do what the page said; return what it is to be sent if that is due."""
+        """Handle the queued events; return the update to send, if one is due."""
         now = time.monotonic()
-        # No longer, since who holds it may wait for this thread to end.
+        # A short timeout, since the thread that holds the lock may be waiting for this one to end.
         with self._simulation.lock.attempt(_PERIOD) as self._sees_bodies:
             self._simulation.published.is_wanted = not self._sees_bodies
             overlay = self._overlay_if_due(style, now) if self._sees_bodies else None
@@ -196,41 +196,43 @@ class Client:
         return self._picture(overlay, style, self._level(now))
 
     def _overlay_if_due(self, style: PageStyle, now: float) -> Overlay | None:
-        """Do what the page said, with the simulation locked; return what lies over the picture if one is due."""
+        """Handle the queued events under the simulation's lock; return the overlay if an update is due."""
         self._free_at = now
-        self.interaction.pass_time(now)
+        self.interaction.advance(now)
         before = self.interaction.view.camera
         while self._waiting:
             self.interaction.handle(self._waiting.popleft())
         self._has_moved |= self.interaction.view.camera is not before
-        if not self._link.is_free:
+        if not self._pacing.is_free:
             return None
-        acknowledged = self._acknowledged if self._feed else 0  # what a page did by itself is waiting for an answer
+        acknowledged = self._acknowledged if self._feed else 0  # pages wait for it when they predict drags
         seen = appearance(self._simulation), self.interaction.appearance, style, self._ratio, acknowledged
         has_changed = seen != self._seen or self._says_locked
         if not self._is_due(now, has_changed=has_changed):
-            self.looks += 1
+            self.updates += 1
             return None
         self._seen, self._seen_view, self._says_locked = seen, self._view(style), False
         self._overlay = overlay = self.interaction.overlay()
         if self._feed is not None:
-            self._stage = Stage.of(self._simulation, overlay, self._scenes, style.look, shadows=style.shadows)
+            self._stage = Stage.from_simulation(
+                self._simulation, overlay, self._scenes, style.look, shadows=style.shadows
+            )
         return overlay
 
     def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
-        """Do what changes only the view, while others have the simulation; return what is to be sent if that is due."""
+        """Handle the events of the view while others hold the lock; return the update to send, if one is due."""
         before = self.interaction.view.camera
-        self._waiting = deque(self.interaction.steer(list(self._waiting)))
+        self._waiting = deque(self.interaction.handle_view_events(list(self._waiting)))
         self._has_moved |= self.interaction.view.camera is not before
-        self.interaction.pass_time_without_bodies(now)
+        self.interaction.advance_view(now)
         is_long = now - self._free_at > PATIENCE
-        if self._overlay is None or not self._link.is_free:
+        if self._overlay is None or not self._pacing.is_free:
             return None
         seen = self._view(style)
         if not self._is_due(now, has_changed=seen != self._seen_view or is_long != self._says_locked):
             return None
         self._seen_view, self._says_locked = seen, is_long
-        self._seen = None  # what is published may not be where the bodies are when the simulation is free again
+        self._seen = None  # bodies may leave their published poses before the lock is released
         lines = tuple(line for line in self._overlay.lines if line != LOCKED)
         self._overlay = self._overlay._replace(lines=(LOCKED, *lines) if is_long else lines)
         if self._feed is not None and self._stage is not None:
@@ -240,12 +242,12 @@ class Client:
         return self._renderer.render_again(self.interaction.drawn_view.camera, style.look, self._form(level, style))
 
     def _view(self, style: PageStyle) -> object:
-        """Return what is equal for as long as the view looks the same, apart from texts and bodies not published."""
+        """Return a key that changes when the view must be redrawn, except for texts and unpublished body poses."""
         view, published = self.interaction.drawn_view, self._simulation.published.number
         return view.camera, view.size, self.interaction.mode, style, self._ratio, published
 
     def _is_due(self, now: float, *, has_changed: bool) -> bool:
-        """Return whether a picture is to be drawn of what is seen: it has changed, or come to rest."""
+        """Return whether a frame is due: the view has changed, or came to rest."""
         if has_changed:
             self._changed_at, self._is_crisp = now, False
         elif self._is_crisp or now - self._changed_at < REST:
@@ -255,17 +257,17 @@ class Client:
         return True
 
     def _level(self, now: float) -> Level:
-        """Return how sharp the next picture is."""
+        """Return the quality level of the next frame."""
         if self._is_crisp:
             return CRISP
-        level = self._sharpness.moving(now)
-        return level._replace(scale=min(level.scale, _HALF)) if self._link.is_halved else level
+        level = self._sharpness.level_while_moving(now)
+        return level._replace(scale=min(level.scale, _HALF)) if self._pacing.is_halved else level
 
     def _picture(self, overlay: Overlay, style: PageStyle, level: Level = CRISP) -> Frame:
         begin = time.monotonic()
         camera, form = self.interaction.drawn_view.camera, self._form(level, style)
         picture = self._renderer.render(camera, style.look, form, gizmos=overlay.primitives, style=overlay.style)
-        self._sharpness.drew(level, time.monotonic() - begin)
+        self._sharpness.add_measurement(level, time.monotonic() - begin)
         return picture
 
     def _form(self, level: Level, style: PageStyle) -> Format:
@@ -275,47 +277,47 @@ class Client:
         return Format(*size, shadows=style.shadows, samples=level.samples, scale=shrink)
 
     def send_picture(self, connection: Connection, style: PageStyle) -> None:
-        """Have the browser save a picture of the view as it is now."""
+        """Send the current picture to be saved by the browser."""
         shaded = style._replace(shadows=style.shadows is not False)
-        content = encoding.resting(self._picture(self.interaction.overlay(), shaded), is_exact=True)
+        content = encoding.as_still(self._picture(self.interaction.overlay(), shaded), is_exact=True)
         self.send_file(connection, free_path(".png").name, content)
 
     def send_file(self, connection: Connection, name: str, content: bytes) -> None:
-        """Have the browser save a file."""
+        """Send a file to be saved by the browser."""
         connection.send(json.dumps({"task": "save", "name": name, "data": base64.b64encode(content).decode()}))
 
     def send_text(self, connection: Connection, text: str) -> None:
-        """Have the browser put a text on the clipboard."""
+        """Send a text for the browser's clipboard."""
         connection.send(json.dumps({"task": "copy", "text": text}))
 
     def _send(self, connection: Connection, update: _Update, style: PageStyle) -> None:
-        link, overlay = self._link, self._overlay
+        pacing, overlay = self._pacing, self._overlay
         if isinstance(update, list):
             if update:
-                link.sent(is_moving=False)
+                pacing.sent(is_moving=False)
             for message in update:
                 connection.send(message)
         elif overlay is not None:
-            link.sent(is_moving=not self._is_crisp)
+            pacing.sent(is_moving=not self._is_crisp)
             labels = overlay.labels_on(self.interaction.drawn_view)
             text = {**self._text(overlay, style), "labels": labels, "crisp": self._is_crisp}
-            if overlay.tree is self._tree:  # it may be long
+            if overlay.tree is self._tree:  # only if it has changed, since it may be long
                 del text["tree"]
             self._tree = overlay.tree
             connection.send(json.dumps(text, default=asdict))
             if self._is_crisp:
-                connection.send(encoding.resting(update, is_exact=link.is_good))
+                connection.send(encoding.as_still(update, is_exact=pacing.is_good))
             else:
-                connection.send(encoding.moving(update, link.quality))
+                connection.send(encoding.as_jpeg(update, pacing.quality))
 
     def _news(self, feed: Feed, stage: Stage, overlay: Overlay, style: PageStyle) -> list[str | bytes]:
-        """Return what a page that draws by itself has not been sent yet."""
+        """Return the messages that bring a page that renders itself up to date."""
         labels = [(*label.point.tolist(), label.text) for label in overlay.labels]
         text = {**self._text(overlay, style), "labels": labels, "look": stage.look, "crisp": True}
         return feed.messages(stage, self.interaction.drawn_view, text, self._acknowledged)
 
     def _text(self, overlay: Overlay, style: PageStyle) -> dict[str, object]:
-        """Return what stands beside pictures, by field."""
+        """Return texts and controls of the page, by field."""
         return {
             "lines": overlay.lines,
             "textSize": overlay.text_size,

@@ -13,11 +13,11 @@ _LINKS = re.compile(
 
 
 def document(scene: str, *, is_lasting: bool) -> tuple[bytes, str]:
-    """Return the page with its styles and scripts in it, and the policy that lets browsers run these and nothing else.
+    """Return the page with inlined styles and scripts, and the Content-Security-Policy that permits only these.
 
     Args:
-        scene: The name of the surfaces that the page fetches while it connects; empty if it has to wait for their name.
-        is_lasting: Whether a later server may have the same address, so that the page should wait for it.
+        scene: Name of the geometry that the page fetches while it connects; empty if it is not known yet.
+        is_lasting: Whether the page should try to reconnect, since a later server may have the same address.
     """
     hashes: dict[str, list[str]] = {"style": [], "script": []}
 

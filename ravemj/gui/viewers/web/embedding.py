@@ -23,10 +23,10 @@ _LAST_PORT = 65535
 
 
 def checked_origins(origins: str | Iterable[str], name: str = "embed") -> list[str]:
-    """Return origins; ``*`` may be the first label of the host, or the port.
+    """Check and return origins; ``*`` may replace the first label of the host, and the port.
 
     Args:
-        origins: One origin, or several.
+        origins: One or several origins.
         name: Name of the argument in errors.
 
     Raises:
@@ -54,5 +54,5 @@ def origins_of_environment() -> list[str]:
 
 
 def frame_ancestors(origins: Iterable[str]) -> str:
-    """Return the directive of a Content-Security-Policy that lets pages of these origins show the page."""
+    """Return the directive of a Content-Security-Policy that permits these origins to embed the page."""
     return " ".join(("frame-ancestors", *dict.fromkeys((*_ALWAYS, *origins))))

@@ -1,4 +1,4 @@
-"""Pictures as files that browsers show."""
+"""Encoding of pictures for browsers."""
 
 import io
 
@@ -7,13 +7,13 @@ from ravemj.graphics.simulation_renderer import Frame
 _CRISP_QUALITY = 95
 
 
-def moving(picture: Frame, quality: int) -> bytes:
-    """Return a picture, shape (height, width, 3), as JPEG of a quality from 1 to 95."""
+def as_jpeg(picture: Frame, quality: int) -> bytes:
+    """Encode a picture, shape (height, width, 3), as JPEG with a quality from 1 to 95."""
     return _file(picture, "JPEG", quality=quality)
 
 
-def resting(picture: Frame, *, is_exact: bool) -> bytes:
-    """Return a picture, shape (height, width, 3), as crisp as can be: as PNG if exact, else as JPEG."""
+def as_still(picture: Frame, *, is_exact: bool) -> bytes:
+    """Encode a picture, shape (height, width, 3), in best quality: as PNG if ``is_exact``, else as JPEG."""
     if is_exact:
         return _file(picture, "PNG", compress_level=1)
     return _file(picture, "JPEG", quality=_CRISP_QUALITY, subsampling=0)

@@ -1,14 +1,14 @@
-"""What a page that draws by itself is sent: only what has changed.
+"""Messages to pages that render the scene themselves: only changes are sent.
 
-Texts are JSON objects with the fields that are new; ``changed`` holds the new fields of controls, and their names.
-Binary messages begin with a number of 32 bits, their kind:
+Text messages are JSON objects with the changed fields; ``changed`` has the changed fields of controls, with their
+names. Binary messages begin with their kind, a 32-bit number:
 
-- ``FRAME``: the page draws all that came since the last one. Then, little endian: how many messages of the page have
-  been acted on, how many bodies and how many shapes follow, and whether a camera does (32 bits each); the camera's
-  position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 where the page cannot know
-  what a drag does (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each;
-  32767 is 1), their numbers (32 bits each); the shapes' numbers (32 bits each), their colours (4 bytes each).
-- ``DRAWINGS``, ``FIGURES``: what scripts have drawn, and what is drawn over the bodies, as ``pack_drawings`` packs it.
+- ``FRAME``: the page draws all updates since the last frame. Then, little endian: the numbers of acknowledged messages,
+  of bodies and of shapes that follow, and whether a camera follows (32 bits each); the camera's
+  position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 if the page must not predict
+  drags (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each;
+  32767 is 1), their indices (32 bits each); the shapes' indices (32 bits each), their colours (4 bytes each).
+- ``DRAWINGS``, ``FIGURES``: the drawings of scripts, and those of the overlay, in the format of ``pack_drawings``.
 """
 
 import json
@@ -26,41 +26,41 @@ from ravemj.engine.simulation.published import Published
 from ravemj.graphics.rendering.style import Look, geom_rgba
 from ravemj.graphics.webgl.look import packed_look
 from ravemj.graphics.webgl.packing import Package, pack_drawings
-from ravemj.gui.interaction import Overlay, View
+from ravemj.gui.interaction import Overlay, Viewpoint
 from ravemj.gui.interaction.control import Control
-from ravemj.gui.viewers.web.scenes import Scene, Scenes
+from ravemj.gui.viewers.web.scenes import PackedScene, Scenes
 from ravemj.model.drawing import Primitives
 
 FRAME, DRAWINGS, FIGURES = range(3)
 
 _UNIT = 32767
 _DIGITS = 6
-"""Decimals of positions [m]: what moves less stands still."""
+"""Decimals of positions [m]; smaller movements are not sent."""
 
 _VALUE_DIGITS = 4
-"""Decimals of where a slider is [rad, m or s]: less than a pixel of it."""
+"""Decimals of slider values [rad, m or s]; less than a pixel."""
 
 _LEVEL = 1
-"""How hard drawings are compressed: they may change with every frame."""
+"""Compression level of drawings: low, since they may change with every frame."""
 
 
 class Stage(NamedTuple):
-    """What is seen, but for the camera and texts.
+    """The visible state of a scene, except for camera and texts.
 
     Attributes:
-        scene: The surfaces.
-        positions: Of the scene's bodies in the world, shape (B, 3) [m].
-        rotations: Their quaternions wxyz in parts of 32767, shape (B, 4).
-        colours: Of the shapes, red, green, blue and opacity from 0 to 255, shape (S, 4).
-        drawings: What scripts have drawn.
-        figures: What is drawn over the bodies.
-        edges: Whether only edges are drawn.
-        model: What numbers the bodies.
-        published: How often a script had published where the bodies are.
-        look: Background, floor and lights, as pages draw them.
+        scene: The geometry.
+        positions: Positions of the scene's bodies in the world, shape (B, 3) [m].
+        rotations: Their quaternions wxyz, scaled by 32767, shape (B, 4).
+        colours: Red, green, blue and opacity of the shapes, from 0 to 255, shape (S, 4).
+        drawings: Drawings of scripts.
+        figures: Drawings of the overlay.
+        edges: Whether the style is wireframe.
+        model: The compiled model, to which the body indices refer.
+        published: Serial number of the last poses that a script has published.
+        look: Background, floor and lights, packed for pages.
     """
 
-    scene: Scene
+    scene: PackedScene
     positions: NDArray[np.float32]
     rotations: NDArray[np.int16]
     colours: NDArray[np.uint8]
@@ -72,13 +72,13 @@ class Stage(NamedTuple):
     look: dict[str, Any]
 
     @classmethod
-    def of(
+    def from_simulation(
         cls, simulation: Simulation, overlay: Overlay, scenes: Scenes, look: Look, *, shadows: bool | None = None
     ) -> "Stage":
-        """Return what is seen of a simulation, which the caller has locked."""
+        """Return the visible state of a simulation, which the caller has locked."""
         compiled = simulation.compiled()
         model, data, style = compiled.model, compiled.data, overlay.style
-        scene = scenes.of(model, simulation.version, style)
+        scene = scenes.packed(model, simulation.version, style)
         colours = style.colours(model, geom_rgba(model))[scene.geoms]
         return cls(
             scene,
@@ -93,7 +93,7 @@ class Stage(NamedTuple):
         )
 
     def with_published(self, published: Published) -> "Stage":
-        """Return it with the bodies where a script has published them since, while it has the simulation."""
+        """Return a copy with the body poses that a script has published while it holds the lock."""
         poses = None if published.number == self.published else published.poses(self.model)
         if poses is None:
             return self
@@ -101,13 +101,13 @@ class Stage(NamedTuple):
         return self._replace(positions=positions, rotations=rotations, published=published.number)
 
 
-def _packed_poses(scene: Scene, positions: Floats, wxyz: Floats) -> tuple[NDArray[np.float32], NDArray[np.int16]]:
+def _packed_poses(scene: PackedScene, positions: Floats, wxyz: Floats) -> tuple[NDArray[np.float32], NDArray[np.int16]]:
     rounded = np.round(positions[scene.bodies], _DIGITS).astype(np.float32)
     return rounded, np.rint(_UNIT * wxyz[scene.bodies]).astype(np.int16)
 
 
 class Feed:
-    """Knows what a page has."""
+    """The state that a page has received."""
 
     def __init__(self) -> None:
         self._text: dict[str, Any] = {}
@@ -115,8 +115,8 @@ class Feed:
         self._camera = b""
         self._acknowledged: int = 0
 
-    def messages(self, stage: Stage, view: View, text: dict[str, object], acknowledged: int) -> list[str | bytes]:
-        """Return what is new for a page, of whose messages so many were acted on; nothing where it has everything."""
+    def messages(self, stage: Stage, view: Viewpoint, text: dict[str, object], acknowledged: int) -> list[str | bytes]:
+        """Return the messages that bring a page up to date; empty if nothing changed."""
         messages: list[str | bytes] = []
         text = {**text, "scene": stage.scene.name, "edges": stage.edges}
         said = _changed(self._text, text)
@@ -135,7 +135,7 @@ class Feed:
         return messages
 
     def _news(self, stage: Stage) -> tuple[NDArray[np.intp], NDArray[np.intp]] | None:
-        """Return which bodies have moved and which shapes have other colours, as indices; None where nothing has."""
+        """Return the indices of moved bodies and recoloured shapes; None if there are none."""
         before = self._stage
         if before is None or before.scene.name != stage.scene.name:
             return np.arange(len(stage.positions)), np.arange(len(stage.colours))
@@ -145,7 +145,7 @@ class Feed:
 
 
 def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields that are new; where only values of controls are, ``changed`` has those controls."""
+    """Return the changed fields; if only values of controls changed, ``changed`` has those controls."""
     said = {name: value for name, value in after.items() if name not in before or before[name] != value}
     old, new = before.get("controls", ()), said.get("controls", ())
     if new and [control.name for control in old] == [control.name for control in new]:
@@ -155,7 +155,7 @@ def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
 
 
 def _difference(control: Control, before: Control) -> dict[str, object]:
-    """Return the fields of a control that are new, and its name."""
+    """Return the changed fields of a control, and its name."""
     old, new = asdict(before), asdict(control)
     new["value"] = round(control.value, _VALUE_DIGITS)
     return {name: value for name, value in new.items() if name == "name" or value != old[name]}
@@ -178,10 +178,10 @@ def _frame(
     )
 
 
-def _packed_camera(view: View) -> bytes:
+def _packed_camera(view: Viewpoint) -> bytes:
     camera = view.camera
     rotation = wxyz_from_rows(camera.rotation.tolist())
-    distance = 0.0 if view.is_upright else view.distance
+    distance = 0.0 if view.is_upright else view.distance  # pages predict no drags of turntable views
     return struct.pack("<9f", *camera.position.tolist(), *rotation, camera.fovy, distance)
 
 
@@ -192,7 +192,7 @@ def _drawn(kind: int, primitives: Primitives) -> bytes:
 
 
 def _is_same(one: Primitives, other: Primitives) -> bool:
-    """Return whether figures look the same."""
+    """Return whether two drawings are equal."""
     return one is other or all(
         np.array_equal(array, others)
         for batch, other_batch in zip(one.batches, other.batches, strict=True)

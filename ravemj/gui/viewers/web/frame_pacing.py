@@ -1,27 +1,27 @@
-"""How many pictures a page is sent, and how good they are: as its connection can take."""
+"""Frame rate and image quality of a page, adapted to its connection."""
 
 import time
 from collections import deque
 from collections.abc import Callable
 
 _UNDER_WAY = 2
-"""Pictures that may be under way at a time: the next one is drawn here while the last one is shown there."""
+"""Maximum number of unacknowledged frames: one is drawn here while the previous one is shown there."""
 
 _SLOW, _FAST = 0.15, 0.05
-"""A picture that takes so much longer than the quickest one lowers the quality, or raises it [s]."""
+"""Round-trip time beyond the quickest one, above which the quality is lowered, and below which it is raised [s]."""
 
 _STALLED = 0.5
-"""A picture that is under way for longer [s] is in a tab that nobody sees, or on a way that scripts do not wait for."""
+"""Round-trip time [s] after which a page counts as stalled, like a hidden tab; scripts do not wait for it."""
 
 _DROP, _RISE = 0.7, 0.05
 _WORST, _BEST = 25, 85
 _GOOD, _HALF = 0.5, 0.4
 _FORGETTING = 1.02
-"""By how much the quickest time grows with each picture: the way to the browser may have become longer."""
+"""Growth of the quickest round-trip time per frame, so that the estimate follows a connection that becomes slower."""
 
 
-class Link:
-    """The way to one page, as the times tell that its pictures take until they are shown."""
+class ConnectionPacing:
+    """Pacing of the frames of one page, by the round-trip times of earlier ones."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -32,35 +32,35 @@ class Link:
 
     @property
     def is_free(self) -> bool:
-        """Whether the page takes another picture now."""
+        """Whether the page is ready for another frame."""
         return self._is_there and len(self._sent) < _UNDER_WAY
 
     @property
     def is_stalled(self) -> bool:
-        """Whether the page has shown nothing for long, although it was sent something."""
+        """Whether a frame has been unacknowledged for too long."""
         return len(self._sent) > 0 and self._clock() - self._sent[0][0] > _STALLED
 
     @property
     def is_good(self) -> bool:
-        """Whether what comes to rest may have as many bytes as it likes."""
+        """Whether the connection is fast enough for lossless still pictures."""
         return self._level >= _GOOD
 
     @property
     def quality(self) -> int:
-        """Quality of pictures as JPEG while things move, from 25 to 85."""
+        """JPEG quality while moving, from 25 to 85."""
         return round(_WORST + (_BEST - _WORST) * self._level)
 
     @property
     def is_halved(self) -> bool:
-        """Whether pictures should have half as many rows and columns while things move."""
+        """Whether the resolution should be halved while moving."""
         return self._level < _HALF
 
     def sent(self, *, is_moving: bool) -> None:
-        """Note that a picture was sent; what comes to rest may take its time."""
+        """Record that a frame was sent; the times of still pictures (``is_moving`` False) do not count."""
         self._sent.append((self._clock(), is_moving))
 
     def shown(self) -> None:
-        """Note that the page has come, or has shown the oldest picture that is under way."""
+        """Record that the page has connected, or has shown the oldest unacknowledged frame."""
         self._is_there = True
         if not self._sent:
             return

@@ -1,4 +1,4 @@
-"""Limits of what strangers and pages may ask of the server."""
+"""Limits for pages and unauthenticated connections."""
 
 import ipaddress
 import threading
@@ -11,7 +11,7 @@ MOST_PAGES = 64
 """Maximum number of open pages."""
 
 MOST_STRANGERS = 32
-"""Maximum number of connections that have not sent the secret yet, beside those of pages."""
+"""Maximum number of connections that have not sent the secret yet, in addition to those of pages."""
 
 _MOST_GUESSES = 20
 _MINUTE = 60.0
@@ -19,7 +19,7 @@ _MOST_PEERS = 1024
 
 
 @dataclass(slots=True)
-class _Record:
+class _PeerRecord:
     times: deque[float] = field(default_factory=lambda: deque[float](maxlen=_MOST_GUESSES))
     guesses: dict[int, float] = field(default_factory=dict[int, float])  # by hashes of the secrets
 
@@ -30,24 +30,23 @@ class _Record:
 
 
 class Guesses:
-    """Wrong secrets of each peer within the last minute.
+    """Counts the wrong secrets of each peer within the last minute.
 
-    A peer that has sent 20 wrong ones is refused if it sends more. One that has sent 20 *different* ones may be
-    searching for the secret, and is refused altogether, since an answer to the right one would end the search. An old
-    page that comes back again and again with one wrong secret locks nobody out, also behind a proxy, where all
-    browsers are one peer.
+    After 20 wrong secrets further wrong ones of a peer are refused. After 20 *different* ones the peer may be guessing,
+    and all its requests are refused, since accepting the right secret would complete the search. An old page that
+    repeats one wrong secret locks nobody out, even behind a proxy, which makes all browsers one peer.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._records: dict[bytes, _Record] = {}
+        self._records: dict[bytes, _PeerRecord] = {}
         self._lock = threading.Lock()
 
     def refuses(self, peer: str, token: str, *, is_right: bool) -> bool:
-        """Count a wrong secret; return whether the peer has sent too many to be answered."""
+        """Count a wrong secret; return whether the request must be refused."""
         now, network = self._clock(), _network(peer)
         with self._lock:
-            record = self._records.pop(network, None) or _Record()
+            record = self._records.pop(network, None) or _PeerRecord()
             record.forget(now - _MINUTE)
             is_searching = len(record.guesses) >= _MOST_GUESSES
             is_refused = is_searching or (not is_right and len(record.times) >= _MOST_GUESSES)
@@ -63,7 +62,7 @@ class Guesses:
 
 
 def _network(peer: str) -> bytes:
-    """Return what one machine cannot change of its address: all of IPv4, the first half of IPv6."""
+    """Return the part of an address that a machine cannot change: all of IPv4, the first half of IPv6."""
     try:
         address = ipaddress.ip_address(peer.partition("%")[0])
     except ValueError:

@@ -1,4 +1,4 @@
-"""What pages send: JSON objects of a few known kinds, checked before they count."""
+"""Messages of pages: JSON objects of a few kinds, validated when they are parsed."""
 
 import base64
 import json
@@ -20,32 +20,32 @@ from ravemj.gui.interaction import (
     Operate,
     Press,
     Release,
-    Tool,
     Use,
+    ViewButton,
     Wheel,
 )
 
 _LOG = logging.getLogger("ravemj")
 
 LONGEST = 1536
-"""Longest message of a page [bytes]."""
+"""Maximum length of a message [bytes]."""
 
 _FARTHEST = 100_000.0
 _LARGEST = 8192
 _LONGEST_NAME = 20
 _MOST_BRACKETS = 8
 _FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
-"""Names of files that a page may send; none of them leads to another folder."""
+"""Permitted names of uploaded files; none leads to another folder."""
 
-_DEEPEST = 10  # folders above a file that was dropped
+_DEEPEST = 10  # maximum depth of folders of an uploaded file
 _MOST_BYTES = 255
-"""Longest name of a file on most file systems [bytes]; longer ones are cut, and keep their suffix."""
+"""Longest file name of most file systems [bytes]; longer names are cut before their suffix."""
 
 _LONGEST_SUFFIX = 20
 
 
-class Shape(NamedTuple):
-    """The page has another size [points], or its screen other pixels for each point."""
+class PageSize(NamedTuple):
+    """The page was resized: size [points], and pixels per point."""
 
     width: float
     height: float
@@ -53,31 +53,31 @@ class Shape(NamedTuple):
 
 
 class Ready(NamedTuple):
-    """The page has shown the last picture and takes another."""
+    """The page has shown the last frame and is ready for another."""
 
 
-class Piece(NamedTuple):
-    """A piece of a file that was dropped on the page; after the last one all files of the drop are complete."""
+class UploadChunk(NamedTuple):
+    """A chunk of an uploaded file; after the last chunk all files of the upload are complete."""
 
     name: str
     data: bytes
     is_last: bool
 
 
-class Draws(NamedTuple):
-    """The page says who draws: it by itself, or the server, whose pictures it shows."""
+class DrawingSide(NamedTuple):
+    """Whether the page renders the scene itself, or shows pictures of the server."""
 
     itself: bool
 
 
-Message = Event | Shape | Ready | Piece | Draws
+Message = Event | PageSize | Ready | UploadChunk | DrawingSide
 
 
 def parse(text: str | bytes) -> Message:
-    """Return what a message says.
+    """Parse a message.
 
     Raises:
-        ValueError: it says nothing that is known, or numbers that make no sense; the text is one of a few.
+        ValueError: its kind is unknown, or a value is invalid; the text is one of a fixed set.
     """
     try:
         text = text if isinstance(text, str) else text.decode()
@@ -140,7 +140,7 @@ def _name(kind: str) -> Callable[[object], str]:
 
 
 def _file_path(path: object) -> str:
-    """Return the name of a file, below the names of some folders."""
+    """Validate the path of an uploaded file, which may include folders."""
     parts = path.split("/") if isinstance(path, str) else []
     if not 0 < len(parts) <= _DEEPEST:
         raise ValueError("there are no such files")
@@ -173,26 +173,26 @@ _KINDS: dict[str, tuple[Callable[..., Message], dict[str, Callable[[object], obj
     "move": (Move, _POINT),
     "wheel": (Wheel, {"steps": _number}),
     "fingers": (Fingers, {**_POINT, "right": _number, "down": _number, "spread": _spread}),
-    "use": (Use, {"tool": _one_of(Tool, "there is no such tool"), "amount": _number}),
+    "use": (Use, {"tool": _one_of(ViewButton, "there is no such tool"), "amount": _number}),
     "operate": (Operate, {"name": _name("control"), "value": _number}),
     "key": (Key, {"name": _name("key"), "pressed": _flag}),
     "leave": (Leave, {}),
-    "shape": (Shape, {"width": _length, "height": _length, "ratio": _ratio}),
-    "piece": (Piece, {"name": _file_path, "data": _data, "last": _flag}),
+    "shape": (PageSize, {"width": _length, "height": _length, "ratio": _ratio}),
+    "piece": (UploadChunk, {"name": _file_path, "data": _data, "last": _flag}),
     "ready": (Ready, {}),
-    "draws": (Draws, {"itself": _flag}),
+    "draws": (DrawingSide, {"itself": _flag}),
 }
-"""What each kind of message becomes, and its fields in the order of what that is made of."""
+"""For each kind of message its class, and converters of its fields in the order of the constructor."""
 
 
 class Rejections:
-    """Logs each kind of trouble with pages and strangers once, so that nobody can fill the log."""
+    """Logs each kind of invalid message once, so that the log cannot be flooded."""
 
     def __init__(self) -> None:
         self._known: set[str] = set()
 
     def __call__(self, kind: str, detail: object = "") -> None:
-        """Log a kind of trouble, one of a few texts, with the beginning of what was sent; each kind once."""
+        """Log a kind of problem, a fixed text, with the beginning of the message; each kind once."""
         if kind not in self._known:
             self._known.add(kind)
             _LOG.warning("viewer's page: %s%s (further cases are not logged)", kind, detail and f": {detail!r:.80}")

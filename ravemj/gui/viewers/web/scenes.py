@@ -1,4 +1,4 @@
-"""The geometry that pages draw by themselves, packed once for all pages of a viewer."""
+"""The geometry for pages that render it themselves, packed once for all pages of a viewer."""
 
 import hashlib
 import threading
@@ -14,22 +14,22 @@ from ravemj.graphics.webgl.packing import Package, pack_scene
 from ravemj.graphics.webgl.surfaces import surfaces
 
 PREFIX = "scene-"
-"""Begins the names of scenes in addresses."""
+"""Prefix of scene names in URLs."""
 
 _MOST = 8
-"""So many scenes are kept: those of the last models and ways to draw them."""
+"""Maximum number of cached scenes, of the latest models and styles."""
 
 _LEVEL = 6
 
 
-class Scene(NamedTuple):
-    """The surfaces of a model.
+class PackedScene(NamedTuple):
+    """The packed geometry of a model.
 
     Attributes:
-        name: Made of the content, so that equal scenes have equal names.
-        content: What ``pack_scene`` packs.
-        bodies: The bodies that have surfaces, shape (B,).
-        geoms: The geom of each shape, shape (S,).
+        name: Hash of the content.
+        content: Output of ``pack_scene``.
+        bodies: Indices of the bodies with geometry, shape (B,).
+        geoms: Index of the geom of each shape, shape (S,).
     """
 
     name: str
@@ -39,15 +39,15 @@ class Scene(NamedTuple):
 
 
 class Scenes:
-    """Packs scenes, and hands them out."""
+    """Cache of packed scenes."""
 
     def __init__(self) -> None:
-        self._scenes: dict[object, Scene] = {}
+        self._scenes: dict[object, PackedScene] = {}
         self._level: FloorLevel | None = None
         self._lock = threading.Lock()
 
-    def of(self, model: mujoco.MjModel, version: int, style: Style) -> Scene:
-        """Return the scene of a model in a style; each model has another version."""
+    def packed(self, model: mujoco.MjModel, version: int, style: Style) -> PackedScene:
+        """Return the packed scene of a model in a style; ``version`` identifies the model."""
         key = version, style.collision, style.hulls
         with self._lock:
             scene = self._scenes.pop(key, None) or _packed(model, style)
@@ -57,19 +57,19 @@ class Scenes:
             return scene
 
     def level(self, model: mujoco.MjModel) -> FloorLevel:
-        """Return what finds the floor of a model."""
+        """Return the floor detector of a model."""
         with self._lock:
             if self._level is None or self._level.model is not model:
                 self._level = FloorLevel(model)
             return self._level
 
     def content(self, name: str) -> bytes | None:
-        """Return the scene of a name; None where there is none."""
+        """Return the content of a scene by its name; None if it does not exist."""
         with self._lock:
             return next((scene.content for scene in self._scenes.values() if scene.name == name), None)
 
 
-def _packed(model: mujoco.MjModel, style: Style) -> Scene:
+def _packed(model: mujoco.MjModel, style: Style) -> PackedScene:
     groups = np.clip(model.geom_group, 0, len(style.groups) - 1)
     shown = surfaces(model, style.groups[groups] > 0, hulls=style.hulls)
     package = Package()
@@ -77,4 +77,4 @@ def _packed(model: mujoco.MjModel, style: Style) -> Scene:
     content = package.content(_LEVEL)
     name = PREFIX + hashlib.sha256(content).hexdigest()[:32]
     bodies = np.unique([shape.body for shape in shown.shapes]).astype(np.intp)
-    return Scene(name, content, bodies, np.array([shape.geom for shape in shown.shapes], dtype=np.intp))
+    return PackedScene(name, content, bodies, np.array([shape.geom for shape in shown.shapes], dtype=np.intp))

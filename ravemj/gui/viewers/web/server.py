@@ -1,4 +1,4 @@
-"""Serves the page's files and its connections, to those who know the secret in the address."""
+"""Web server of the page and its connections, protected by a secret in the URL."""
 
 import contextlib
 import gzip
@@ -32,30 +32,30 @@ _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
 _EVERYWHERE = {"", "0.0.0.0", "::"}
 _SOCKET = "socket"
 _FOREVER = "private, max-age=31536000, immutable"
-"""How long browsers keep what has a name made of its content."""
+"""Cache-Control of content whose name is its hash."""
 
 _TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")
 _MAY_REPEAT = {"forwarded", "via", "x-forwarded-for", "x-forwarded-port", "x-forwarded-proto"}
-"""Headers that each proxy may add once more."""
+"""Headers that may be repeated, since each proxy may add one."""
 
 _METHOD = re.compile(rb"([A-Za-z]{1,16})(?: |$)")
 _HANDSHAKE = 5.0
-"""How long a stranger may take to say what is wanted [s]."""
+"""Time limit for a request of an unauthenticated connection [s]."""
 
 _FAREWELL = 1.0
-"""How long a page may take to leave when the viewer is closed [s]."""
+"""Time limit for pages to disconnect when the viewer is closed [s]."""
 
 _servers: "weakref.WeakSet[PageServer]" = weakref.WeakSet()
 
 
 class PageServer:
-    """A port at which a page is served.
+    """HTTP and WebSocket server of a viewer's page.
 
     Attributes:
-        port: Its number.
-        token: The secret that begins each path.
-        complain: Logs what strangers and broken pages send.
-        closed: Set once it is closed.
+        port: Port number.
+        token: Secret at the start of each path.
+        complain: Logs invalid requests and messages.
+        closed: Set when the server is closed.
     """
 
     def __init__(
@@ -69,38 +69,38 @@ class PageServer:
         token: str | None = None,
         any_name: bool,
     ) -> None:
-        """Listen.
+        """Start to listen.
 
         Args:
-            host: Name or number of the interface.
-            port: Number of the port; 0: any that is free.
-            serve_page: Called with the connection of each page, in a thread of its own.
-            find_scene: Returns what pages fetch once and keep, by its name; None where there is no such thing.
-            first_scene: Returns the name of what a new page will need; empty where it is not known yet.
-            token: The secret that begins each path; None: a new one.
-            any_name: Whether browsers may call this server what they like, as they do where something stands between.
+            host: Name or address of the interface.
+            port: Port number; 0 selects a free one.
+            serve_page: Called with the connection of each page, in a new thread.
+            find_scene: Returns cacheable content by its name; None if it does not exist.
+            first_scene: Returns the name of the content that a new page needs; empty if it is not known yet.
+            token: Secret at the start of each path; None generates one.
+            any_name: Whether any ``Host`` header is accepted, as needed behind a proxy.
 
         Raises:
-            RenderingError: this port cannot be had.
-            ArgumentError: the token is too short, or has letters that no address has; or ``RAVEMJ_EMBED`` is wrong.
+            RenderingError: the port is not available.
+            ArgumentError: the token is too short or has invalid characters, or ``RAVEMJ_EMBED`` is invalid.
         """
         self._origins = origins_of_environment()
         self._is_lasting = port != 0 and token is not None
         self.token = secrets.token_urlsafe(16) if token is None else checked_token(token)
         self.complain = Rejections()
         self.closed = Flag()
-        self._may_stop = threading.Lock()  # once, by whoever comes first
+        self._may_stop = threading.Lock()  # computed by the first request
         self._any_name = any_name
         self._find_scene, self._first_scene = find_scene, first_scene
         self._listening = _listen(host, port)
         self.port = int(self._listening.getsockname()[1])
         self._threads: set[threading.Thread] = set()
         self._connections: set[socket.socket] = set()
-        self._strangers: dict[threading.Thread, socket.socket] = {}  # who has not said the secret yet, the oldest first
+        self._strangers: dict[threading.Thread, socket.socket] = {}  # unauthenticated connections, the oldest first
         self._pages: set[threading.Thread] = set()
         self._guesses = Guesses()
         silent = logging.getLogger("ravemj.web")
-        silent.setLevel(logging.CRITICAL)  # what strangers send is no news
+        silent.setLevel(logging.CRITICAL)  # requests of strangers are not logged
         self._server = serve(
             serve_page,
             sock=self._listening,
@@ -116,12 +116,12 @@ class PageServer:
         _servers.add(self)
 
     def url(self, host: str, scheme: str = "http") -> str:
-        """Return the address of the page for those who know this machine by a name."""
+        """Return the URL of the page, given a name of this machine."""
         name = socket.gethostname() if host in _EVERYWHERE else f"[{host}]" if ":" in host else host
         return f"{scheme}://{name}:{self.port}/{self.token}/"
 
-    def let_embed(self, origins: str | Iterable[str]) -> None:
-        """Let pages of further origins show the page in a frame.
+    def allow_embedding(self, origins: str | Iterable[str]) -> None:
+        """Permit further origins to embed the page.
 
         Raises:
             ArgumentError: one of them is not an origin.
@@ -129,7 +129,7 @@ class PageServer:
         self._origins += checked_origins(origins)
 
     def close(self) -> None:
-        """Listen no more, and wait a moment for the pages to leave. Threads that hang do not keep Python alive."""
+        """Stop listening, and wait briefly for the pages to disconnect. Hanging threads do not keep Python alive."""
         self.closed.set()
         if self._may_stop.acquire(blocking=False):
             self._stop_listening()
@@ -138,21 +138,21 @@ class PageServer:
             thread.join(max(end - time.monotonic(), 0.0))
 
     def _stop_listening(self) -> None:
-        with contextlib.suppress(OSError):  # it is not known on every system
+        with contextlib.suppress(OSError):  # not supported on every system
             self._listening.shutdown(socket.SHUT_RDWR)  # wakes the thread that accepts
         self._listening.close()
-        self._server.serve_forever()  # it ends at once, which ``shutdown`` waits for
+        self._server.serve_forever()  # ``shutdown`` waits for its end, which is immediate
         self._server.shutdown()
 
     def forget(self) -> None:
-        """Close this process's copies of the sockets, whatever other processes do with them."""
+        """Close this process's copies of the sockets, without effect on other processes."""
         self.closed.set()
         for each in (self._listening, *self._connections):
             with contextlib.suppress(OSError):  # it is closed
                 os.close(each.detach())
 
     def _accept(self) -> None:
-        """Start threads for connections; those of ``Server.serve_forever`` would be waited for without end."""
+        """Accept connections, a thread for each: ``Server.serve_forever`` would wait for its threads without limit."""
         while not self.closed.is_set():
             try:
                 connection, address = self._listening.accept()
@@ -161,7 +161,7 @@ class PageServer:
                 continue
             if len(self._threads) >= MOST_PAGES + MOST_STRANGERS:
                 self.complain("there are too many connections")
-                if not self._turn_out_a_stranger():
+                if not self._drop_oldest_stranger():
                     connection.close()
                     continue
             thread = threading.Thread(target=self._serve, args=(connection, address), name="ravemj page", daemon=True)
@@ -169,11 +169,11 @@ class PageServer:
             self._strangers[thread] = connection
             thread.start()
 
-    def _turn_out_a_stranger(self) -> bool:
-        """End the oldest connection that has not said the secret; return whether there is one."""
+    def _drop_oldest_stranger(self) -> bool:
+        """Close the oldest unauthenticated connection; return whether there was one."""
         for thread, connection in self._strangers.copy().items():
             if self._strangers.pop(thread, None) is not None:
-                with contextlib.suppress(OSError):  # it has left by itself
+                with contextlib.suppress(OSError):  # the peer has disconnected
                     connection.shutdown(socket.SHUT_RDWR)
                 self._threads.discard(thread)
                 return True
@@ -192,7 +192,7 @@ class PageServer:
             self._strangers.pop(thread, None)
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Answer a request: with a file, with a refusal, or None where a page may open its connection."""
+        """Answer a request with content or a refusal; None accepts a WebSocket connection."""
         token, slash, name = request.path.partition("?")[0].removeprefix("/").partition("/")
         is_friend = secrets.compare_digest(token.encode(), self.token.encode())
         refusal = _repeated(request.headers) or self._refusal_of_guess(connection, token, is_right=is_friend)
@@ -216,7 +216,7 @@ class PageServer:
         return _page(page, policy, may_compress="gzip" in headers.get("Accept-Encoding", ""))
 
     def _open(self, headers: Headers) -> Response | None:
-        """Return None if a page may open its connection, else a refusal."""
+        """Return a refusal of a WebSocket connection, or None to accept it."""
         origin, thread = headers.get("Origin", ""), threading.current_thread()
         if not self._is_our_page(origin, headers):
             self.complain("a page of another site is refused", origin)
@@ -243,7 +243,7 @@ class PageServer:
         return self._any_name or host in {f"{_bracketed(name)}:{self.port}" for name in _LOCAL_NAMES}
 
     def _is_our_page(self, origin: str, headers: Headers) -> bool:
-        """Return whether the page is from where it connects to; other sites cannot set these headers in a browser."""
+        """Check that the Origin header is this server's, which other sites cannot forge in a browser."""
         names, schemes = [headers.get("Host", "")], ["http"]
         if self._any_name:
             names.append(headers.get("X-Forwarded-Host", "").partition(",")[0].strip())
@@ -254,24 +254,24 @@ class PageServer:
 
 @before_end
 def _close_all() -> None:
-    """Wait for pages whose viewers went in their own threads: Python must not end while OpenGL draws."""
+    """Wait for the threads of pages: Python must not exit while OpenGL draws."""
     for server in _servers.copy():
         server.close()
 
 
 @in_child
 def _forget_all() -> None:
-    """Close the copies of the sockets that the child has, so that a port is free when the parent closes it."""
+    """Close the sockets in a forked child, so that the ports are free when the parent closes them."""
     for server in _servers.copy():
         server.forget()
     _servers.clear()
 
 
 def checked_token(token: str) -> str:
-    """Return a token.
+    """Validate a token and return it.
 
     Raises:
-        ArgumentError: it is too short, or has letters that no address has.
+        ArgumentError: it is too short, or has invalid characters.
     """
     if not _TOKEN.fullmatch(token):
         raise ArgumentError(f"token: is {token!r}, and should be 8 to 64 letters, digits, - and _")
@@ -279,7 +279,7 @@ def checked_token(token: str) -> str:
 
 
 def is_local(host: str) -> bool:
-    """Return whether an interface is for programs of this machine only."""
+    """Return whether an interface accepts connections of this machine only."""
     return host in _LOCAL_NAMES
 
 
@@ -298,9 +298,9 @@ def _bracketed(name: str) -> str:
 
 
 def _is_refused(connection: socket.socket) -> bool:
-    """Wait for the method of a request; refuse it, and close the connection, if it is not GET.
+    """Wait for the method of a request; if it is not GET, answer with a refusal, close, and return True.
 
-    ``websockets`` would close the connection without an answer, at least if the request has a body.
+    ``websockets`` would close the connection without an answer if the request has a body.
     """
     try:
         connection.settimeout(_HANDSHAKE)
@@ -313,7 +313,7 @@ def _is_refused(connection: socket.socket) -> bool:
         connection.settimeout(_FAREWELL)
         connection.sendall(refusal.serialize() if method[1] != b"HEAD" else refusal.serialize()[: -len(refusal.body)])
         connection.shutdown(socket.SHUT_WR)
-        for _ in range(64):  # what is not read yet would end the connection before the answer is read
+        for _ in range(64):  # unread input would reset the connection before the client reads the answer
             if not connection.recv(65536):
                 break
     except OSError:
@@ -323,7 +323,7 @@ def _is_refused(connection: socket.socket) -> bool:
 
 
 def _repeated(headers: Headers) -> Response | None:
-    """Return a refusal if a header comes twice, which programs in between may understand in another way."""
+    """Return a refusal if a header is repeated, since proxies may interpret that differently."""
     names = [name.lower() for name, _ in headers.raw_items()]
     again = next((name for name in names if names.count(name) > 1 and name not in _MAY_REPEAT), None)
     if again is None:

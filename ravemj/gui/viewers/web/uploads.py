@@ -1,10 +1,10 @@
-"""Files that pages send in pieces, within limits for all pages of a viewer."""
+"""File uploads of pages in chunks, within limits for all pages of a viewer."""
 
 import threading
 import weakref
 
 from ravemj.gui.viewers.dropping import Upload
-from ravemj.gui.viewers.web.messages import Piece
+from ravemj.gui.viewers.web.messages import UploadChunk
 
 _MOST_UNFINISHED = 16
 _MOST_BYTES = 256 * 2**20
@@ -12,7 +12,7 @@ _TOO_MANY = f"Too many files are on their way: at most {_MOST_UNFINISHED} upload
 
 
 class UploadQuota:
-    """Bytes of the uploads of all pages. An upload counts until its files are removed."""
+    """Byte quota of the uploads of all pages. An upload counts until its files are removed."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -20,7 +20,7 @@ class UploadQuota:
         self._unfinished: weakref.WeakSet[Upload] = weakref.WeakSet()
 
     def reserve(self, upload: Upload, size: int) -> bool:
-        """Count bytes of an unfinished upload; return False if there are too many, or too many uploads."""
+        """Reserve bytes for an unfinished upload; return False if the quota or the number of uploads is exceeded."""
         with self._lock:
             is_known = upload in self._unfinished
             if len(self._unfinished) + (not is_known) > _MOST_UNFINISHED:
@@ -32,16 +32,16 @@ class UploadQuota:
             return True
 
     def finish(self, upload: Upload) -> None:
-        """Note that an upload is complete, or was given up."""
+        """Record that an upload is complete or was cancelled."""
         with self._lock:
             self._unfinished.discard(upload)
 
 
 class PageUploads:
-    """Uploads of one page, one after the other.
+    """The uploads of one page, one at a time.
 
     Attributes:
-        complete: Uploads whose files are to be added.
+        complete: Complete uploads, to be added to the environment.
     """
 
     def __init__(self, quota: UploadQuota) -> None:
@@ -50,30 +50,30 @@ class PageUploads:
         self._is_refused = False
         self.complete: list[Upload] = []
 
-    def add(self, piece: Piece) -> str:
-        """Take in a piece of a file; return why the upload is refused, once, or an empty text."""
-        trouble = "" if self._is_refused else self._write(piece)
+    def add(self, chunk: UploadChunk) -> str:
+        """Add a chunk; return the reason if the upload is refused, once per upload, else an empty text."""
+        trouble = "" if self._is_refused else self._write(chunk)
         if trouble:
             self.close()
             self._is_refused = True
-        if piece.is_last:
+        if chunk.is_last:
             if self._upload is not None:
                 self.complete.append(self._upload)
             self.close()
             self._is_refused = False
         return trouble
 
-    def _write(self, piece: Piece) -> str:
+    def _write(self, chunk: UploadChunk) -> str:
         try:
             upload = self._upload = self._upload or Upload()
-            if not self._quota.reserve(upload, len(piece.data)):
+            if not self._quota.reserve(upload, len(chunk.data)):
                 return _TOO_MANY
-            return "" if upload.take(piece.name, piece.data) else "The files that were dropped are too large"
+            return "" if upload.append(chunk.name, chunk.data) else "The files that were dropped are too large"
         except OSError as error:
-            return f"{piece.name}: {error.strerror or error}"
+            return f"{chunk.name}: {error.strerror or error}"
 
     def close(self) -> None:
-        """Forget the upload that is under way."""
+        """Discard the unfinished upload."""
         if self._upload is not None:
             self._quota.finish(self._upload)
         self._upload = None

@@ -1,4 +1,4 @@
-"""The viewer whose window is a page in a browser."""
+"""The viewer in a browser."""
 
 import itertools
 import logging
@@ -33,20 +33,20 @@ from ravemj.gui.viewers.web.uploads import PageUploads, UploadQuota
 _LOG = logging.getLogger("ravemj")
 _LONGEST_SYNC, _SYNC_STEP = 0.5, 0.005
 _MOST_TABS = 64
-"""So many tabs find their own view again after their connection was lost."""
+"""Number of tabs whose views are kept after a lost connection."""
 
 
 class WebViewer(Viewer):
-    """A viewer in a browser: ``viewer.url`` opens it. Each page has a camera of its own; all share what is selected.
+    """A viewer in a browser, at ``viewer.url``. Each page has its own camera; all pages share the selection.
 
-    Pages of this machine only can connect, and only with the secret that is in the URL.
+    Only browsers on this machine can connect, and only with the secret in the URL.
 
     Attributes:
-        url: The page.
-        server: Listens for pages.
+        url: Address of the page.
+        server: The web server.
     """
 
-    _internal = ("announce", "attend", "dismiss", "first_scene", "server", "welcome")
+    _internal = ("announce", "connect_page", "disconnect_page", "first_scene", "handle_messages", "server")
 
     def __init__(
         self,
@@ -62,27 +62,27 @@ class WebViewer(Viewer):
         """Serve the page.
 
         Args:
-            simulation: What it shows.
-            renderer: What draws the pictures.
+            simulation: The simulation to show.
+            renderer: Renders the pictures.
             name: Name of the viewer.
-            host: Interface that browsers come to; another than the default lets those of other machines in.
-            port: Number of the port; 0: any that is free.
-            token: The secret in the address; None: a new one.
-            any_name: Whether browsers may know this machine by any name, as they do behind a proxy.
+            host: Interface to listen on; others than the default admit other machines.
+            port: Port number; 0 selects a free one.
+            token: The secret in the URL; None generates one.
+            any_name: Whether any ``Host`` header is accepted, as needed behind a proxy.
 
         Raises:
-            RenderingError: this port cannot be had.
-            ArgumentError: the token is too short, or has letters that no address has.
+            RenderingError: the port is not available.
+            ArgumentError: the token is too short, or has invalid characters.
         """
         super().__init__(simulation, renderer, name)
         self._clients: dict[ServerConnection, Client] = {}
         self._uploads: dict[ServerConnection, PageUploads] = {}
         self._quota = UploadQuota()
         self._views: dict[str, Interaction] = {}
-        self._videos: list[tuple[Interaction, str, bytes]] = []  # whoever asked for them, and files for the browser
+        self._videos: list[tuple[Interaction, str, bytes]] = []  # the page that requested them, and the files
         self._lock = threading.Lock()
         self._scenes = Scenes()
-        self._ended = Flag()  # open: a page may come before the server is returned
+        self._ended = Flag()  # set early: a page may connect before the constructor of the server returns
         reference: weakref.ref[WebViewer] = weakref.ref(self)
         self.server = PageServer(
             host,
@@ -99,25 +99,25 @@ class WebViewer(Viewer):
 
     def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
         """Set the camera of all pages; see ``Viewer.SetCamera``."""
-        with self._simulation.lock, self._lock:  # in this order: who has the first one may be here
+        with self._simulation.lock, self._lock:  # in this order: the holder of the first lock may be in here
             super().SetCamera(transform, focalDistance)
             for interaction in self._views.values():
                 interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
 
     def EnvironmentSync(self) -> None:
-        """Wait until all pages were sent the environment as it is now; half a second at most, where one is slow.
+        """Block until all pages were sent the present state of the environment, at most half a second.
 
-        Tabs that nobody sees are not waited for.
+        Hidden tabs are not waited for.
         """
         with self._lock:
-            looks = {client: client.looks for client in self._clients.values() if not client.is_stalled}
+            looks = {client: client.updates for client in self._clients.values() if not client.is_stalled}
         end = time.monotonic() + _LONGEST_SYNC
-        # the look that is under way may have begun before
-        while any(client.looks < before + 2 for client, before in looks.items()) and time.monotonic() < end:
+        # an update in progress may have started earlier
+        while any(client.updates < before + 2 for client, before in looks.items()) and time.monotonic() < end:
             time.sleep(_SYNC_STEP)
 
     def quitmainloop(self) -> None:
-        """End ``main``; pages are told that the viewer has closed."""
+        """End ``main``; pages show that the viewer has closed."""
         self._ended.set()
 
     def close(self) -> None:
@@ -128,34 +128,34 @@ class WebViewer(Viewer):
             _LOG.warning("the video %s is lost: no page was there to take it", name)
 
     def announce(self) -> None:
-        """Show the page below the cell of a notebook; elsewhere, log its address."""
+        """Display the page below the notebook cell; elsewhere, log its URL."""
         if in_notebook():
             show(self)
         else:
             _LOG.warning("the viewer is at %s", self.url)
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        """Return what notebooks show for a viewer: its page where the server answers, and a picture."""
+        """Return the notebook display of the viewer: its page if the server answers, and a picture."""
         try:
             picture = self.render()
-        except RavemjError:  # nothing can draw here, or MuJoCo refuses a body
+        except RavemjError:  # no renderer works here, or MuJoCo refuses a body
             picture = None
         bundle = mimebundle(self.url, picture, lambda: self.GetEnv().animation()._repr_html_())
         return {"text/plain": repr(self), **bundle}
 
     def first_scene(self) -> str:
-        """Return the name of the surfaces that a new page will draw; empty where somebody has the environment."""
+        """Return the name of the geometry that a new page needs; empty while others hold the lock."""
         with self._simulation.lock.attempt(_SYNC_STEP) as is_free, suppress(RavemjError):  # which the page says
             if is_free:
                 model = self._simulation.compiled().model
-                return self._scenes.of(model, self._simulation.version, AS_IT_IS).name
+                return self._scenes.packed(model, self._simulation.version, AS_IT_IS).name
         return ""
 
-    def welcome(self, connection: ServerConnection) -> None:
-        """Take a page up; one that was here before has the view that it had.
+    def connect_page(self, connection: ServerConnection) -> None:
+        """Start to serve a page; a page that reconnects gets its earlier view.
 
-        Frames of one tab, and tabs that were duplicated, ask for the same view: who comes while it is shown has another
-        one, with a number behind its name.
+        Frames of one tab and duplicated tabs request the same view. If it is in use, the page gets a new view, whose
+        name has a number appended.
         """
         wanted = _tab(connection)
         with self._lock:
@@ -172,41 +172,41 @@ class WebViewer(Viewer):
             client.tab = tab
             self._uploads[connection] = PageUploads(self._quota)
 
-    def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> float:
-        """Do what a page says and send it a picture if one is due; return how long to wait for more that it says [s].
+    def handle_messages(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> float:
+        """Handle the messages of a page and send an update if one is due; return how long to wait for messages [s].
 
-        The viewer's camera becomes that of the page where it was moved last.
+        The viewer's camera follows the page whose camera was moved last.
         """
         client = self._clients[connection]
-        client.take_in(messages, self.server.complain)
+        client.queue_messages(messages, self.server.complain)
         style = PageStyle(self.look, self._choices.shadows, self._title)
-        picture = client.attend(connection, style, is_watched=bool(self._image_callbacks))
-        if client.take_moved():
-            with self._lock:  # or a script's camera, which comes to the views one by one, would be lost
-                self.interaction.look_as(client.interaction.view)
+        picture = client.handle_messages(connection, style, is_watched=bool(self._image_callbacks))
+        if client.pop_moved():
+            with self._lock:  # else a camera that a script is setting, view by view, would be lost
+                self.interaction.copy_view(client.interaction.view)
         if picture is not None:
             self._image_callbacks.call(picture)
         for name, content in self._videos_for(client.interaction):
             client.send_file(connection, name, content)
-        for request in client.interaction.controls.take_requests():
+        for request in client.interaction.controls.pop_requests():
             self._grant(request, client, connection, style)
-        if client.pieces:
-            self._take_pieces(client, self._uploads[connection])
+        if client.chunks:
+            self._add_chunks(client, self._uploads[connection])
         return client.patience
 
-    def _take_pieces(self, client: Client, uploads: PageUploads) -> None:
-        """Take in what a page sends of files, and add complete ones."""
+    def _add_chunks(self, client: Client, uploads: PageUploads) -> None:
+        """Add the received chunks to uploads, and complete uploads to the environment."""
         notices = client.interaction.controls.notices
-        while client.pieces:
-            trouble = uploads.add(client.pieces.popleft())
+        while client.chunks:
+            trouble = uploads.add(client.chunks.popleft())
             if trouble:
                 self.server.complain(trouble)
                 notices.say(trouble)
         while uploads.complete:
-            uploads.complete.pop(0).add_to(self.GetEnv(), notices)
+            uploads.complete.pop(0).add_to(self.host(), notices)
 
     def _grant(self, request: Request | str, client: Client, connection: ServerConnection, style: PageStyle) -> None:
-        """Do what a button asked for that needs the page, or writes here."""
+        """Perform a requested action that needs the page or writes files."""
         if request is Request.PICTURE:
             try:
                 client.send_picture(connection, style)
@@ -220,20 +220,20 @@ class WebViewer(Viewer):
             _LOG.info("%s", request)
 
     def _keep_video(self, interaction: Interaction, name: str, content: bytes) -> None:
-        """Keep a video until the page that asked for it takes it, or another one if that has gone."""
+        """Store a video for the page that requested it, or another page if that has disconnected."""
         with self._lock:
             self._videos.append((interaction, name, content))
 
     def _videos_for(self, interaction: Interaction) -> list[tuple[str, bytes]]:
-        """Return the videos that a page gets, and forget them."""
+        """Return and remove the videos for a page."""
         with self._lock:
             others = {client.interaction for client in self._clients.values()} - {interaction}
-            found = [(name, content) for asker, name, content in self._videos if asker not in others]
+            videos = [(name, content) for asker, name, content in self._videos if asker not in others]
             self._videos = [video for video in self._videos if video[0] in others]
-        return found
+        return videos
 
-    def dismiss(self, connection: ServerConnection) -> None:
-        """Forget a page that has left, in the thread that drew for it."""
+    def disconnect_page(self, connection: ServerConnection) -> None:
+        """Release a page that has disconnected, in the thread that rendered for it."""
         with self._lock:
             client, uploads = self._clients.pop(connection, None), self._uploads.pop(connection, None)
             is_last = not self._clients
@@ -242,7 +242,7 @@ class WebViewer(Viewer):
         if uploads is not None:
             uploads.close()
         if client is not None:
-            client.interaction.let_go()
+            client.interaction.cancel_drag()
         self._renderer.close()
 
 
@@ -252,15 +252,15 @@ def _first_scene(reference: "weakref.ref[WebViewer]") -> str:
 
 
 def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) -> None:
-    """Exchange messages with a page until it leaves, or the viewer is closed or gone, which waiting does not keep."""
+    """Serve a page until it disconnects or the viewer is closed or collected; waiting holds no strong reference."""
     viewer = reference()
     if viewer is None:
         return
-    viewer.welcome(connection)
+    viewer.connect_page(connection)
     messages: list[str | bytes] = []
     try:
         while viewer is not None and viewer.is_open:
-            patience = viewer.attend(connection, messages)
+            patience = viewer.handle_messages(connection, messages)
             viewer = None
             messages = receive(connection, patience) if patience else []
             viewer = reference()
@@ -274,11 +274,11 @@ def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) ->
     finally:
         viewer = reference()
         if viewer is not None:
-            viewer.dismiss(connection)
+            viewer.disconnect_page(connection)
 
 
 def _tab(connection: ServerConnection) -> str:
-    """Return the name that a page gives itself, or an own one for those that do not."""
+    """Return the tab name that a page sends, or a new one."""
     request = connection.request
-    found = None if request is None else re.search(r"\?tab=([A-Za-z0-9-]{1,40}(?:\.\d{1,3})?)$", request.path)
-    return found[1] if found else f"#{id(connection)}"
+    match = None if request is None else re.search(r"\?tab=([A-Za-z0-9-]{1,40}(?:\.\d{1,3})?)$", request.path)
+    return match[1] if match else f"#{id(connection)}"

@@ -80,7 +80,7 @@ class Drawing {
     context2d.drawImage(canvas, 0, 0, width, height);
   }
 
-  // --- prediction of what the server does with the view, as in ravemj/gui/interaction/hand.py
+  // --- prediction of what the server does with the view, as in ravemj/gui/interaction/pointer_controller.py
 
   resetPointer() {
     this.buttons = new Set();

@@ -1,4 +1,4 @@
-"""The mouse and the keys of one view: what is held, and which part of the view each event is for."""
+"""Pointer and keyboard controller of one view: dispatches each event to the controls, the bodies or the camera."""
 
 import math
 from collections.abc import Callable
@@ -26,12 +26,12 @@ from ravemj.gui.interaction.events import (
     Use,
     Wheel,
 )
-from ravemj.gui.interaction.mode_buttons import Tool
+from ravemj.gui.interaction.mode_buttons import ViewButton
 from ravemj.gui.interaction.navigation import Navigation
 from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.selection import Selector
 from ravemj.gui.interaction.shortcuts import KEYS
-from ravemj.gui.interaction.viewpoint import View
+from ravemj.gui.interaction.viewpoint import Viewpoint
 from ravemj.model.drawing import NOTHING, Primitives
 
 if TYPE_CHECKING:
@@ -41,14 +41,14 @@ if TYPE_CHECKING:
 WITHOUT_PHYSICS = "A right drag pulls links while physics runs: env.SetPhysicsEngine('mujoco')"
 
 _CLICK = 4.0
-"""Farthest way of the pointer [points] between press and release of a click."""
+"""Maximum pointer travel of a click [points]."""
 
 _STEP = 0.9
-"""How much nearer a step of the wheel brings the focus."""
+"""Zoom factor of one wheel step."""
 
 
 class Mode(Enum):
-    """What the left button does."""
+    """Mode of the left mouse button: it moves the camera, or it selects and drags."""
 
     CAMERA = "camera"
     INTERACTION = "interaction"
@@ -57,28 +57,30 @@ class Mode(Enum):
 _Follow = Callable[[float, float], None]
 
 
-class Hand:
-    """Does what events ask for. The simulation is locked by the caller, but for ``steer``.
+class PointerController:
+    """Handles the events of one view. The caller holds the simulation's lock, except in ``handle_view_event``.
 
     Attributes:
-        mode: What the left button does.
+        mode: Camera or interaction mode.
         panel: The controls on the view.
-        layout: Where these are, as was found last.
-        has_tools: Whether the tutorial's buttons and wheels are on the view.
-        buttons: The buttons of the mouse that are held.
-        pointer: Where the pointer is [points], or None.
+        layout: Control layout of the last frame.
+        has_tools: Whether the mode buttons and wheels of OpenRAVE's viewer are drawn.
+        buttons: The mouse buttons that are held.
+        pointer: Pointer position [points]; None outside the view.
     """
 
     def __init__(
         self, selector: Selector, navigation: Navigation, controls: Controls, *, has_tools: bool = True
     ) -> None:
-        """Begin in camera mode, with nothing held."""
+        """Start in camera mode."""
         self._simulation: Simulation = selector.simulation
         self._selector, self._navigation, self._controls = selector, navigation, controls
         self.mode = Mode.CAMERA
         self.has_tools = has_tools
         self.panel = ControlPanel(controls, is_drawn=has_tools)
-        self.layout = ControlLayout.of((), navigation.view.size)  # until it is looked: this must not wait for bodies
+        self.layout = ControlLayout.arrange(
+            (), navigation.view.size
+        )  # until the first update: the constructor must not wait for the lock
         self.buttons: set[Button] = set()
         self.pointer: tuple[float, float] | None = None
         self._keys: set[str] = set()
@@ -89,38 +91,38 @@ class Hand:
         self._steers = False
 
     @property
-    def view(self) -> View:
+    def view(self) -> Viewpoint:
         """The camera."""
         return self._navigation.view
 
     @view.setter
-    def view(self, view: View) -> None:
+    def view(self, view: Viewpoint) -> None:
         self._navigation.view = view
 
-    def look(self) -> None:
-        """See where the controls are now."""
+    def update_layout(self) -> None:
+        """Recompute the layout of the controls."""
         self.layout = self.panel.layout(self.view.size)
 
     def hovers(self) -> bool:
-        """See where the controls are now, and return whether the pointer is on one, or on a body."""
-        self.look()
+        """Update the layout; return whether the pointer is on a control or a body."""
+        self.update_layout()
         return self.layout.covers(self.pointer) or self.hit() is not None
 
-    def let_go(self) -> None:
-        """End what is being dragged; the simulation need not be locked."""
+    def cancel_drag(self) -> None:
+        """Cancel the current drag. Needs no simulation lock."""
         self._press = self._follow = self._reach = None
         if self._pulling is not None:
             self._pulling.end()
             self._pulling = None
 
     def primitives(self) -> Primitives:
-        """Return the spring that pulls, or the other configurations of an arm that is pulled."""
+        """Return the drawing of the current drag: the spring of a force, or the other IK solutions of an arm."""
         if self._pulling is not None:
             return self._pulling.primitives()
         return NOTHING if self._reach is None else self._reach.ghosts()
 
     def free_pointer(self) -> tuple[float, float] | None:
-        """Return where the pointer is on the view; None while a button is held, and over controls."""
+        """Return the pointer position; None while a button is held, outside the view, and on controls."""
         at = self.pointer
         if at is None or self.buttons or self.layout.covers(at):
             return None
@@ -128,34 +130,34 @@ class Hand:
         return at if is_inside else None
 
     def hit(self) -> Hit | None:
-        """Return what is under the pointer; None while a button is held."""
+        """Return the link under the pointer; None while a button is held."""
         at = self.free_pointer()
         return None if at is None else pick(self._simulation, self.view.ray(*at))
 
     def cursor(self) -> str:
-        """Return how the pointer looks where there is nothing to take."""
-        is_tool = self.pointer is not None and self._tool_at(Press(*self.pointer)) is not None
+        """Return the cursor shape if there is no handle or body under the pointer."""
+        is_tool = self.pointer is not None and self._button_at(Press(*self.pointer)) is not None
         if self.layout.field_at(self.pointer) is not None:
             return "text"
         if is_tool or self.layout.at(self.pointer) is not None:
             return "pointer"
         return "grab" if self.mode is Mode.CAMERA else "default"
 
-    def steer(self, event: Event) -> bool:
-        """Do what an event asks for if that needs no bodies; return whether it was done."""
-        if self._needs_what_is_shown(event):
+    def handle_view_event(self, event: Event) -> bool:
+        """Handle an event that changes only the view, without the lock; return False if it needs the bodies."""
+        if self._needs_controls_or_bodies(event):
             return False
         match event:
             case Key(name, True) if name.lower() in KEYS:
-                return self._controls.steer(KEYS[name.lower()])
+                return self._controls.change_view(KEYS[name.lower()])
             case Operate(name):
-                return self._controls.steer(name)
+                return self._controls.change_view(name)
             case _:
-                self.do(event)
+                self.handle(event)
                 return True
 
-    def _needs_what_is_shown(self, event: Event) -> bool:
-        """Return whether an event is for a body or a control, as far as the event and the hand say."""
+    def _needs_controls_or_bodies(self, event: Event) -> bool:
+        """Return whether an event may concern a body or a control, judged by the event and the controller alone."""
         match event:
             case Press():
                 return self.needs_bodies(event)
@@ -169,22 +171,22 @@ class Hand:
                 return False
 
     def needs_bodies(self, press: Press) -> bool:
-        """Return whether it takes the bodies to know what a press does."""
+        """Return whether the effect of a press depends on the bodies."""
         if self.layout.covers((press.x, press.y)):
             return True
-        if self._tool_at(press) is not None:
+        if self._button_at(press) is not None:
             return False
         centres = press.button is Button.LEFT and "s" in self._keys
         pulls = press.button is Button.RIGHT
         return press.touch or centres or pulls or self.mode is Mode.INTERACTION
 
-    def _tool_at(self, press: Press) -> Tool | None:
-        return mode_buttons.tool_at(self.view.size, press.x, press.y) if self.has_tools else None
+    def _button_at(self, press: Press) -> ViewButton | None:
+        return mode_buttons.button_at(self.view.size, press.x, press.y) if self.has_tools else None
 
     # --- events
 
-    def do(self, event: Event) -> None:
-        """Do what an event asks for."""
+    def handle(self, event: Event) -> None:
+        """Handle an event."""
         match event:
             case Press():
                 self._on_press(event)
@@ -195,9 +197,9 @@ class Hand:
             case Leave():
                 self._on_leave()
             case _:
-                self._do_without_pointer(event)
+                self._handle_other(event)
 
-    def _do_without_pointer(self, event: Wheel | Fingers | Use | Key | Type | Operate | Resize) -> None:
+    def _handle_other(self, event: Wheel | Fingers | Use | Key | Type | Operate | Resize) -> None:
         match event:
             case Wheel(steps):
                 self._on_wheel(steps)
@@ -216,21 +218,21 @@ class Hand:
 
     def _on_press(self, press: Press) -> None:
         self.buttons.add(press.button)
-        self.let_go()
+        self.cancel_drag()
         self.panel.stop_typing()
         self.pointer = press.x, press.y
         self._steers = not self.needs_bodies(press)
-        tool = self._tool_at(press)
+        tool = self._button_at(press)
         if self.layout.covers(self.pointer):
             self._follow = self.panel.press(press, self.layout)
         elif tool is not None:
-            self._press_tool(tool, press)
+            self._press_button(tool, press)
         elif press.touch:
             self._press = press
         elif press.button is Button.LEFT and "s" in self._keys:
             self._centre(press)
         elif press.button is Button.RIGHT:
-            self._follow = self._pull(press)
+            self._follow = self._start_pull(press)
         elif self.mode is Mode.CAMERA:
             self._move_camera(press)
         elif press.button is Button.LEFT:
@@ -240,7 +242,7 @@ class Hand:
         self.pointer = x, y
         press = self._press
         if press is not None and self._follow is None and math.hypot(x - press.x, y - press.y) > _CLICK:
-            self._press, self._follow = None, self._hold(press)
+            self._press, self._follow = None, self._start_drag(press)
         if self._follow is not None:
             self._follow(x, y)
 
@@ -248,11 +250,11 @@ class Hand:
         self._on_move(release.x, release.y)
         self.buttons.discard(release.button)
         press = self._press
-        self.let_go()
+        self.cancel_drag()
         if press is not None and press.button is release.button:
             self._selector.click(self.view, press)
             if press.touch and self._selector.selection is not None:
-                self._set_mode(Mode.INTERACTION)  # what has appeared can be dragged
+                self._set_mode(Mode.INTERACTION)  # so that the next touch can drag the handle
 
     def _on_wheel(self, steps: float) -> None:
         if self._reach is not None:
@@ -273,6 +275,8 @@ class Hand:
             self._controls.unfolded = ""
         elif name == "escape" and name not in self._keys:
             self._set_mode(Mode.INTERACTION if self.mode is Mode.CAMERA else Mode.CAMERA)
+        elif name not in self._keys and KEYS.get(name) == "pin":
+            self._selector.toggle_pin(self.hit())
         elif name not in self._keys:
             self.panel.key(name)
         self._keys.add(name)
@@ -281,35 +285,35 @@ class Hand:
         self.buttons.clear()
         self._keys.clear()
         self.pointer = None
-        self.let_go()
+        self.cancel_drag()
 
     def _set_mode(self, mode: Mode) -> None:
         self.mode = mode
-        self.let_go()
+        self.cancel_drag()
 
-    def _press_tool(self, tool: Tool, press: Press) -> None:
-        """Press a button, or hold one of the wheels."""
+    def _press_button(self, tool: ViewButton, press: Press) -> None:
+        """Press a mode button, or start a drag of a wheel."""
         if press.button is not Button.LEFT:
             return
-        if tool in (Tool.INTERACT, Tool.CAMERA):
+        if tool in (ViewButton.INTERACT, ViewButton.CAMERA):
             self._use(tool)
         else:
             view = self._navigation.focused()
-            aside = tool is Tool.ROT_Y
-            self._follow = self._steered(press, lambda right, down: view.rolled(tool, right if aside else down))
+            aside = tool is ViewButton.ROT_Y
+            self._follow = self._view_drag(press, lambda right, down: view.rolled(tool, right if aside else down))
 
-    def _use(self, tool: Tool, amount: float = 0.0) -> None:
-        if tool is Tool.INTERACT:
+    def _use(self, tool: ViewButton, amount: float = 0.0) -> None:
+        if tool is ViewButton.INTERACT:
             self._set_mode(Mode.INTERACTION)
-        elif tool is Tool.CAMERA:
+        elif tool is ViewButton.CAMERA:
             self._set_mode(Mode.CAMERA)
         else:
             self.view = self._navigation.focused().rolled(tool, amount)
 
     # --- the camera
 
-    def _steered(self, press: Press, change: Callable[[float, float], View]) -> _Follow:
-        """Return what changes the view by how far the pointer goes from here."""
+    def _view_drag(self, press: Press, change: Callable[[float, float], Viewpoint]) -> _Follow:
+        """Return a drag callback that changes the view by the displacement of the pointer."""
 
         def follow(x: float, y: float) -> None:
             self.view = replace(change(x - press.x, y - press.y), size=self.view.size)
@@ -319,40 +323,40 @@ class Hand:
     def _move_camera(self, press: Press) -> None:
         view = self._navigation.focused()
         if {Button.LEFT, Button.MIDDLE} <= self.buttons:
-            self._follow = self._steered(press, lambda _, down: view.rolled(Tool.DOLLY, down))
+            self._follow = self._view_drag(press, lambda _, down: view.rolled(ViewButton.DOLLY, down))
         elif press.button is Button.MIDDLE or (press.button is Button.LEFT and press.shift):
-            self._follow = self._steered(press, view.shifted)
+            self._follow = self._view_drag(press, view.shifted)
         elif press.button is Button.LEFT:
-            self._follow = self._steered(press, view.turned)
+            self._follow = self._view_drag(press, view.turned)
 
     def _centre(self, press: Press) -> None:
         hit = pick(self._simulation, self.view.ray(press.x, press.y))
         if hit is not None:
             self.view = self.view.centred(hit.position)
 
-    def _hold(self, press: Press) -> _Follow | None:
-        """Take hold of the cube or the cylinder where the button went down; fingers turn the view elsewhere."""
-        pulls = (press.ctrl and press.shift) or self._controls.pulls
-        if self.mode is Mode.INTERACTION and pulls:
-            return self._hold_link(press)
-        follow = self._selector.hold(self.view, press) if self.mode is Mode.INTERACTION else None
+    def _start_drag(self, press: Press) -> _Follow | None:
+        """Start a drag of the handle under the press, else, for a finger, of the view."""
+        takes = self.mode is Mode.INTERACTION and not self._selector.is_fixed
+        if takes and ((press.ctrl and press.shift) or self._controls.pulls):
+            return self._start_reach(press)
+        follow = self._selector.start_drag(self.view, press) if takes else None
         selection = self._selector.selection
         if follow is not None and selection is not None:
-            self._controls.take(selection.body)
+            self._controls.pause_motion(selection.body)
             return lambda x, y: follow(self.view.ray(x, y))
-        return self._steered(press, self._navigation.focused().turned) if press.touch else None
+        return self._view_drag(press, self._navigation.focused().turned) if press.touch else None
 
-    def _hold_link(self, press: Press) -> _Follow | None:
-        """Take hold of a link, so that its arm comes along."""
-        self._reach = reach = self._selector.reach(self.view, press)
+    def _start_reach(self, press: Press) -> _Follow | None:
+        """Start an inverse-kinematics drag of the link under the press."""
+        self._reach = reach = self._selector.start_reach(self.view, press)
         if reach is None:
             return None
-        self._controls.take(reach.body)
+        self._controls.pause_motion(reach.body)
         self._controls.reach = reach
         return lambda x, y: reach.follow(self.view.ray(x, y))
 
-    def _pull(self, press: Press) -> _Follow | None:
-        """Pull the link where the button went down with a force."""
+    def _start_pull(self, press: Press) -> _Follow | None:
+        """Start pulling the link under the press with a force."""
         hit = pick(self._simulation, self.view.ray(press.x, press.y))
         if hit is None:
             return None

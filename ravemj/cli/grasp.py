@@ -1,0 +1,153 @@
+"""The command ``grasp``."""
+
+import argparse
+import os
+from collections.abc import Sequence
+from functools import partial
+from typing import cast
+
+import numpy as np
+
+from ravemj.cli.arms import arm_of, pose_goal
+from ravemj.cli.console import console, table
+from ravemj.cli.grasp_page import write_grasps
+from ravemj.cli.models import chosen_robots, load_model, model_file
+from ravemj.core.output import check_file
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.graphics.video import known_suffix
+from ravemj.manipulation.grasping.search import Grasp, Grasps
+from ravemj.rave import Environment, KinBody, RaveCreateKinBody, Robot, load
+from ravemj.rave.grasping import grasps
+from ravemj.rave.manipulator import Manipulator
+
+_SHOWN = 10
+"""Number of grasps that are simulated, printed and shown."""
+
+_AHEAD = 0.5  # m, from the base to the place of a target that nobody placed
+_FLOOR_GAP = 0.001  # m, below the lowest point of the robot, so that its base does not touch the floor
+_FLOOR_SIDE, _FLOOR_THICKNESS = 3.0, 0.02  # m
+_POSE, _POINT = 7, 3  # numbers
+_PAGE = ".html"
+
+
+def grasp(options: argparse.Namespace) -> int:
+    """Find grasps, print the best ones and why others were rejected, and write a page; return 1 if there are none."""
+    if options.output is not None:
+        known_suffix(options.output, [_PAGE])
+        check_file(options.output)
+    env = load_model(options)
+    arm = arm_of(chosen_robots(env, options.robot), options.manip)
+    robot = arm.GetRobot()
+    robot.SetActiveManipulator(arm)
+    target = _target(env, robot, options)
+    found, note = _found(robot, target, options)
+    _print(arm, target, found, note)
+    if options.output is not None and found:
+        write_grasps(options.output, arm, target, found[:_SHOWN], [*([note] if note else []), *str(found).split("\n")])
+        print(f"wrote {os.path.abspath(options.output)} ({min(_SHOWN, len(found))} grasps; any browser shows them)")
+    return 0 if found else 1
+
+
+def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[Grasps, str]:
+    """Return the grasps that the arm reaches, or those of the hand alone, and a note that says so."""
+    find = partial(grasps, robot, target, method=options.method, friction=options.friction, proofs=_SHOWN)
+    found = find()
+    unreached = sum(found.counts.get(reason, 0) for reason in ("no IK", "arm in collision"))
+    if found or not unreached:
+        return found, ""
+    why = "out of reach" if found.counts.get("no IK") else "the arm is in collision"
+    note = f"{why}: the arm takes the hand to none of {unreached} grasps, so these are grasps of the hand alone"
+    return find(reach=False), note
+
+
+def _target(env: Environment, robot: Robot, options: argparse.Namespace) -> KinBody:
+    """Return the body to grasp, in its place.
+
+    Raises:
+        ArgumentError: the name is that of the robot, or the file has not exactly one body.
+    """
+    body = env.GetKinBody(options.target)
+    if body is robot:
+        raise ArgumentError(f"TARGET: '{options.target}' is the robot that grasps; name another body or a file")
+    is_loaded = body is None
+    if body is None:
+        body = _loaded(env, options.target)
+    if options.at is not None:
+        body.SetTransform(_pose(options.at, body))
+    elif is_loaded:
+        _put_down(env, robot, body)
+    return body
+
+
+def _loaded(env: Environment, name: str) -> KinBody:
+    """Load the body of a file or of a model that comes with ravemj."""
+    path, before = model_file(name), env.GetBodies()
+    if not os.path.exists(path):
+        names = ", ".join(body.GetName() for body in before)
+        raise ArgumentError(f"TARGET: '{name}' is no body of the model ({names}), no shipped model and no file")
+    load(path, into=env)
+    new = [body for body in env.GetBodies() if body not in before]
+    if len(new) != 1:
+        raise ArgumentError(f"TARGET: {name} has {len(new)} bodies; expected one, the body to grasp")
+    return new[0]
+
+
+def _pose(numbers: Sequence[float], body: KinBody) -> Floats:
+    """Return the pose of ``--at``; three numbers leave the rotation as it is."""
+    if len(numbers) == _POSE:
+        return pose_goal(numbers, "--at")
+    if len(numbers) != _POINT:
+        raise ArgumentError(f"--at: found {len(numbers)}, expected x,y,z or x,y,z,qw,qx,qy,qz")
+    T = body.GetTransform()
+    T[:3, 3] = numbers
+    return T
+
+
+def _put_down(env: Environment, robot: Robot, body: KinBody) -> None:
+    """Put a body on a floor that is as high as the lowest point of the robot, ahead of its base."""
+    box = robot.ComputeAABB()
+    height = float(box.pos()[2] - box.extents()[2]) - _FLOOR_GAP
+    T_base, T = robot.GetTransform(), body.GetTransform()
+    T[:2, 3] = (T_base @ [_AHEAD, 0, 0, 1])[:2]
+    body.SetTransform(T)
+    own = body.ComputeAABB()
+    T[2, 3] += height - float(own.pos()[2] - own.extents()[2])
+    body.SetTransform(T)
+    floor = cast("KinBody", RaveCreateKinBody(env, ""))
+    floor.SetName("floor")
+    half = _FLOOR_THICKNESS / 2
+    floor.InitFromBoxes([[*T_base[:2, 3], height - half, _FLOOR_SIDE, _FLOOR_SIDE, half]], False)
+    env.Add(floor, True)
+
+
+def _print(arm: Manipulator, target: KinBody, found: Grasps, note: str) -> None:
+    """Print the best grasps, and how many candidates were rejected for which reason."""
+    if found:
+        title = f"Grasps of '{target.GetName()}' by '{arm.GetName()}' of '{arm.GetRobot().GetName()}', the best first"
+        rows = table(title, "#>", "quality>", "epsilon>", "contacts>", "weakest", "shaken")
+        for number, one in enumerate(found[:_SHOWN], 1):
+            rows.add_row(
+                str(number),
+                f"{one.quality:.3f}",
+                f"{one.epsilon:.5f}",
+                str(len(one.contacts)),
+                one.weakness,
+                _shaken(one),
+            )
+        console().print(rows)
+        proof = found[0].proof
+        assert proof is not None
+        forces = ", ".join(f"{force:g}" for force in proof.forces)
+        print(f"shaken: {proof.mass:.3g} kg, friction {proof.friction:g}, fingers press with {forces} N or N m")
+    print(found)
+    if note:
+        print(note)
+
+
+def _shaken(grasp: Grasp) -> str:
+    proof = grasp.proof
+    if proof is None:
+        return ""
+    moved = f"{1e3 * proof.moved:.1f} mm, {np.degrees(proof.turned):.1f}°"
+    return f"held, moved by {moved}" if proof.held else f"lost after {proof.seconds:.2f} s"

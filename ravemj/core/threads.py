@@ -1,0 +1,32 @@
+"""Number of threads of batch calls."""
+
+import os
+
+from ravemj.core.arguments import checked_kind
+from ravemj.errors import ArgumentError
+
+_chosen = 0
+
+
+def set_batch_threads(count: int) -> None:
+    """Set how many threads batch calls such as ``batch_collides`` use in this process. Results do not depend on it.
+
+    Args:
+        count: Number of threads; 0, the default, for as many as there are processors that the process may use. Where
+            several processes share the processors, each should have one.
+
+    Raises:
+        ArgumentError: the count is negative or no integer.
+
+    Example:
+        >>> ravemj.set_batch_threads(1)
+    """
+    global _chosen  # noqa: PLW0603 - a setting of the process
+    if checked_kind(count, int, "set_batch_threads: count", "an integer") < 0:
+        raise ArgumentError(f"set_batch_threads: count is {count}; expected 0 for all processors, or more")
+    _chosen = int(count)
+
+
+def batch_threads() -> int:
+    """Return how many threads batch calls use, at least 1."""
+    return _chosen or (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)

@@ -1,0 +1,327 @@
+"""Proven lower bounds of distances between moving shapes, and safe joint travel.
+
+A direction d separates two convex shapes A and B by s(d) = min over B of d x - max over A of d x, which is never more
+than their distance. MuJoCo's search for the nearest points gives good directions; what is proved does not depend on
+it: s(d) is computed here from support functions. Shapes that are not convex are inside of their hulls; where hulls are
+too near, their triangles are measured.
+
+Joint values that change by at most e_j move a point of a shape by at most t_n: from the joint next to the shape to the
+one next to the world, t_j = t_{j-1} + e_j (r_j + t_{j-1}), where r_j is the largest distance of the shape from the axis
+of the joint in the configuration before; a joint that slides adds e_j. (The joints can be changed one after the other
+in this order: the axes of those that are still to be changed have not moved.)
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Self
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.collision.shapes import ShapeTests
+
+Bools = NDArray[np.bool_]
+
+SLACK = 1e-7
+"""Distance [m] below which nothing is proven, because of rounding errors."""
+
+_FAR = 1e10  # m
+_ONCE = 64  # configurations
+
+_GEOM = mujoco.mjtGeom
+_SPHERE, _CAPSULE, _CYLINDER = int(_GEOM.mjGEOM_SPHERE), int(_GEOM.mjGEOM_CAPSULE), int(_GEOM.mjGEOM_CYLINDER)
+_BOX, _MESH = int(_GEOM.mjGEOM_BOX), int(_GEOM.mjGEOM_MESH)
+
+_ONES = np.ones(3)  # a product with it is the fastest way to sum rows
+
+
+class Chain(NamedTuple):
+    """Joints that move a shape, from the nearest to the one at the world, by index."""
+
+    joints: tuple[int, ...]
+
+    def without(self, other: Self) -> int:
+        """Return the number of joints that do not move another shape; these come first."""
+        shared = 0
+        while shared < min(len(self.joints), len(other.joints)) and (
+            self.joints[-1 - shared] == other.joints[-1 - shared]
+        ):
+            shared += 1
+        return len(self.joints) - shared
+
+
+class Tested(NamedTuple):
+    """What was found out about k pairs of shapes; the other arrays have the shape (configurations, k).
+
+    Attributes:
+        pairs: The numbers of the pairs that were asked for in any of the configurations, shape (k,).
+        is_open: Whether they may touch while the joints change as they may.
+        travel: How far they may move against each other [m].
+        gaps: Proved lower bounds of their distances in the configuration [m].
+        measured: Measured distances [m]; infinite if not measured.
+    """
+
+    pairs: Ints
+    is_open: Bools
+    travel: Floats
+    gaps: Floats
+    measured: Floats
+
+
+class _Bounds(NamedTuple):
+    """What is known so far of the pairs of a question: their numbers, and gaps [m] as in `Tested`."""
+
+    pairs: Ints
+    needed: Floats  # gaps with which they cannot come too near [m], shape (m, k)
+    gaps: Floats
+    measured: Floats
+
+
+class Clearances:
+    """Clearance tests of pairs of shapes in many configurations.
+
+    Args:
+        model: The model of the world.
+        data: Its state; ``take`` reads it, and ``test`` changes geom poses in it.
+        shapes: Exact tests of two geoms.
+        pairs: Both geoms of each pair, shape (n, 2).
+        chains: The joints that move each geom. Joints have MuJoCo's numbers; higher numbers are motions of bases.
+        bases: The MuJoCo body at the origin of each base; each has two motions, a rotation and a translation.
+    """
+
+    most = _ONCE
+    """Maximum number of configurations per call."""
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        shapes: ShapeTests,
+        pairs: Ints,
+        chains: dict[int, Chain],
+        bases: Sequence[int],
+    ) -> None:
+        self._model, self._data, self._shapes = model, data, shapes
+        self._first, self._second = pairs.T
+        self._bases = list(bases)
+        slides = (model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE).tolist()
+        self._slides = np.array([*slides, *([False, True] * len(bases)), True])  # the last is for no joint
+        self._directions = np.full((len(pairs), 3), np.nan)
+        self._supports = _Supports(model)
+        concave = np.zeros(model.ngeom, dtype=bool)
+        used = np.unique(pairs)
+        concave[used] = [shapes.is_concave(geom) for geom in used.tolist()]
+        self._concave = concave[self._first] | concave[self._second]
+        self._find_chains(chains)
+        joints = len(self._slides) - 1
+        self._positions, self._rotations = np.zeros((_ONCE, model.ngeom, 3)), np.zeros((_ONCE, model.ngeom, 3, 3))
+        self._anchors, self._axes = np.zeros((2, _ONCE, joints, 3))
+
+    def _find_chains(self, chains: dict[int, Chain]) -> None:
+        self._moving = np.array(sorted(chains), dtype=int)
+        depth = max((len(chain.joints) for chain in chains.values()), default=0)
+        self._joints = np.full((len(self._moving), depth), -1)
+        for row, geom in enumerate(self._moving.tolist()):
+            self._joints[row, : len(chains[geom].joints)] = chains[geom].joints
+        rows = np.full(self._model.ngeom, -1)
+        rows[self._moving] = np.arange(len(self._moving))
+        self._rows = np.stack([rows[self._first], rows[self._second]])
+        kinds = list(dict.fromkeys([Chain(()), *chains.values()]))
+        depths = np.array([[one.without(other) for other in kinds] for one in kinds])
+        numbers = np.zeros(self._model.ngeom, dtype=int)
+        numbers[list(chains)] = [kinds.index(chain) for chain in chains.values()]
+        first, second = numbers[self._first], numbers[self._second]
+        self._depths = np.stack([depths[first, second], depths[second, first]])
+
+    def take(self, slot: int) -> None:
+        """Store the present state as one of the configurations of the next ``test``."""
+        model, data = self._model, self._data
+        self._positions[slot], self._rotations[slot] = data.geom_xpos, data.geom_xmat.reshape(-1, 3, 3)
+        self._anchors[slot, : model.njnt], self._axes[slot, : model.njnt] = data.xanchor, data.xaxis
+        if self._bases:
+            self._anchors[slot, model.njnt :] = np.repeat(data.xpos[self._bases], 2, axis=0)
+
+    def test(self, changes: Floats, asked: Bools, apart: float = 0.0) -> Tested:
+        """Test which pairs may come closer than a distance [m] while joints change.
+
+        Args:
+            changes: Maximum change of each joint [rad or m], shape (m, joints).
+            asked: The mask of pairs to test, shape (m, n).
+            apart: The distance.
+        """
+        count, pairs = len(changes), np.flatnonzero(asked.any(axis=0))
+        first, second = self._first[pairs], self._second[pairs]
+        away = self._positions[:count, second] - self._positions[:count, first]
+        centers = np.sqrt((away * away) @ _ONES)
+        gaps = centers - (self._model.geom_rbound[first] + self._model.geom_rbound[second])
+        travel = self._travel(changes, pairs)
+        needed = travel + (apart + SLACK)
+        known = _Bounds(pairs, needed, gaps, np.full(gaps.shape, np.inf))
+        is_near = asked[:, pairs] & (gaps <= needed)
+        is_hopeless = is_near & (needed > centers)  # no distance of theirs would be enough
+        is_open = is_near & ~is_hopeless
+        if is_open.any():
+            rows, columns = np.nonzero(is_open)
+            self._separate(known, rows, columns)
+            is_open &= gaps <= needed
+            self._measure(known, *_middles(is_open))  # whose directions may do for the others
+            is_open &= gaps <= needed
+            rows, columns = np.nonzero(is_open)
+            self._separate(known, rows, columns)
+            is_open &= gaps <= needed
+            rows, columns = np.nonzero(is_open & np.isinf(known.measured))
+            self._measure(known, rows, columns)
+            is_open &= gaps <= needed
+        return Tested(pairs, is_open | is_hopeless, travel, gaps, known.measured)
+
+    def put_back(self) -> None:
+        """Restore the geom poses to those of the model's joints."""
+        mujoco.mj_kinematics(self._model, self._data)
+
+    def _travel(self, changes: Floats, pairs: Ints) -> Floats:
+        """Return the maximum relative travel of pairs [m], shape (m, k)."""
+        count, which = len(changes), self._rows[:, pairs]
+        used, which = np.unique(which, return_inverse=True)
+        geoms, joints = self._moving[used], self._joints[used]  # -1, in place of what does not move, is the last one
+        away = self._positions[:count, geoms, None] - self._anchors[:count, joints]
+        along = (away * self._axes[:count, joints]) @ _ONES
+        square = (away * away) @ _ONES - along * along
+        lever = np.sqrt(np.maximum(square, 0.0)) + self._model.geom_rbound[geoms, None]
+        change = np.column_stack([changes, np.zeros(count)])[:, joints]  # the joint -1 is none
+        grows = ~self._slides[joints]
+        lever[:, ~grows] = 1.0
+        sums = np.zeros((joints.shape[1] + 1, count, len(geoms)))
+        for depth in range(joints.shape[1]):
+            sums[depth + 1] = sums[depth] + change[..., depth] * (lever[..., depth] + grows[:, depth] * sums[depth])
+        first, second = which.reshape(2, -1)
+        depths, rows = self._depths[:, pairs], np.arange(count)[:, None]
+        return sums[depths[0], rows, first] + sums[depths[1], rows, second]
+
+    def _separate(
+        self, known: _Bounds, rows: Ints, columns: Ints, directions: Floats | None = None, *, exactly: bool = False
+    ) -> None:
+        """Raise bounds to what separates pairs in given directions, unit vectors or NaN, shape (k, 3).
+
+        Without directions, they are those in which the pairs were last measured. Meshes count as the boxes around
+        them, unless that is asked for exactly.
+        """
+        if not len(rows):
+            return
+        pairs = known.pairs[columns]
+        geoms, rows_of = np.concatenate([self._first[pairs], self._second[pairs]]), np.concatenate([rows, rows])
+        directions = self._directions[pairs] if directions is None else directions
+        positions, both = self._positions[rows_of, geoms], np.concatenate([directions, -directions])
+        # Along d, the first shape ends at d c + h(d), and the second one begins at d c - h(-d).
+        ends = (both * positions) @ _ONES + self._supports.of(
+            geoms, both, self._rotations[rows_of, geoms], exactly=exactly
+        )
+        count = len(rows)
+        known.gaps[rows, columns] = np.fmax(known.gaps[rows, columns], -ends[:count] - ends[count:])
+
+    def _measure(self, known: _Bounds, rows: Ints, columns: Ints) -> None:
+        """Measure the distances of some pairs in some configurations, and raise the bounds of their gaps."""
+        model, data, segment = self._model, self._data, np.zeros(6)
+        pairs = known.pairs[columns]
+        first, second = self._first[pairs].tolist(), self._second[pairs].tolist()
+        ways, present = np.zeros((len(rows), 6)), -1
+        far = np.zeros(len(rows))
+        for number, row in enumerate(rows.tolist()):
+            if row != present:
+                self._place(row)
+                present = row
+            far[number] = mujoco.mj_geomDistance(model, data, first[number], second[number], _FAR, segment)
+            ways[number] = segment
+        ways = ways[:, 3:] - ways[:, :3]
+        lengths = np.sqrt((ways * ways).sum(axis=1))
+        lengths[~((far > 0) & (lengths > 0))] = np.nan
+        directions = self._directions[pairs] = ways / lengths[:, None]
+        known.measured[rows, columns] = far
+        self._separate(known, rows, columns, directions)
+        near = known.gaps[rows, columns] <= known.needed[rows, columns]
+        self._separate(known, rows[near], columns[near], directions[near], exactly=True)
+        if self._concave.any():
+            near = (known.gaps[rows, columns] <= known.needed[rows, columns]) & self._concave[pairs]
+            self._measure_triangles(known, rows[near], columns[near])
+
+    def _place(self, row: int) -> None:
+        self._data.geom_xpos[...] = self._positions[row]
+        self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
+
+    def _measure_triangles(self, known: _Bounds, rows: Ints, columns: Ints) -> None:
+        """Do the same for meshes that are not convex, whose hulls are too near."""
+        pairs = known.pairs[columns]
+        for row, column, pair in zip(rows.tolist(), columns.tolist(), pairs.tolist(), strict=True):
+            self._place(row)
+            distance = self._shapes.distance(int(self._first[pair]), int(self._second[pair]))
+            known.measured[row, column] = distance
+            known.gaps[row, column] = max(known.gaps[row, column], distance - SLACK)
+
+
+def _middles(is_open: Bools) -> tuple[Ints, Ints]:
+    """Return for each pair the middle one of its undecided configurations, and the pair."""
+    counts = np.cumsum(is_open, axis=0)
+    pairs = np.flatnonzero(counts[-1])
+    rows = (counts[:, pairs] > counts[-1, pairs] // 2).argmax(axis=0)
+    order = np.argsort(rows, kind="stable")
+    return rows[order], pairs[order]
+
+
+class _Supports:
+    """Support functions of geoms.
+
+    For a direction l in its own axes, it is ``round + flat |l| + disc |l_xy|`` for a sphere, capsule, cylinder or box,
+    plus ``middle l`` for the bounding box of a mesh.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        kinds, size = model.geom_type, model.geom_size
+        sphere, capsule, cylinder, mesh = (kinds == one for one in (_SPHERE, _CAPSULE, _CYLINDER, _MESH))
+        self._round = np.where(sphere | capsule, size[:, 0], 0.0)
+        self._disc = np.where(cylinder, size[:, 0], 0.0)
+        self._flat = np.where(mesh[:, None], model.geom_aabb[:, 3:], size)
+        self._flat[sphere | capsule | cylinder] = 0.0
+        self._flat[capsule | cylinder, 2] = size[capsule | cylinder, 1]
+        self._middle = np.where(mesh[:, None], model.geom_aabb[:, :3], 0.0)
+        self._is_mesh = mesh
+        self._vertices = {geom: _hull(model, int(model.geom_dataid[geom])) for geom in np.flatnonzero(mesh).tolist()}
+
+    def of(self, geoms: Ints, directions: Floats, rotations: Floats, *, exactly: bool) -> Floats:
+        """Return max d x over all points x of each geom, from its origin, for unit vectors d of shape (k, 3).
+
+        Unless ``exactly``, meshes are replaced by their bounding boxes.
+        """
+        local = (directions[:, None] @ rotations)[:, 0]
+        size = np.abs(local)
+        reach = self._round[geoms] + self._disc[geoms] * np.hypot(size[:, 0], size[:, 1])
+        reach += (size * self._flat[geoms] + local * self._middle[geoms]) @ _ONES
+        for geom in np.unique(geoms[self._is_mesh[geoms]]).tolist() if exactly else ():
+            rows = geoms == geom
+            reach[rows] = (local[rows] @ self._vertices[geom].T).max(axis=1)
+        return reach
+
+
+def joints_above(model: mujoco.MjModel, body_id: int) -> list[int]:
+    """Return the joints between a body and the world, the nearest first."""
+    found: list[int] = []
+    while body_id:
+        first, number = int(model.body_jntadr[body_id]), int(model.body_jntnum[body_id])
+        found += range(first + number - 1, first - 1, -1)
+        body_id = int(model.body_parentid[body_id])
+    return found
+
+
+def has_supports(model: mujoco.MjModel, geoms: Ints) -> bool:
+    """Return whether the support functions of geoms are known; they are unknown for planes and height fields."""
+    return bool(np.isin(model.geom_type[geoms], (_SPHERE, _CAPSULE, _CYLINDER, _BOX, _MESH)).all())
+
+
+def _hull(model: mujoco.MjModel, mesh: int) -> Floats:
+    """Return the vertices of the hull of a mesh, shape (n, 3)."""
+    start = int(model.mesh_vertadr[mesh])
+    vertices = model.mesh_vert[start : start + int(model.mesh_vertnum[mesh])].astype(float)
+    graph = int(model.mesh_graphadr[mesh])
+    if graph < 0:
+        return vertices
+    count = int(model.mesh_graph[graph])
+    return vertices[model.mesh_graph[graph + 2 + count : graph + 2 + 2 * count]]

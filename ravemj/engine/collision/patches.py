@@ -1,0 +1,99 @@
+"""Contact patches: all contact points of pairs of geoms, such as the corners of the overlap of two faces.
+
+``mj_geomDistance``, which decides about collisions, gives one point of a pair. MuJoCo's collision detection gives the
+corners (``multiccd``, on by default), but only of bodies that a joint moves against each other; here all bodies count
+as such for a moment.
+"""
+
+from collections.abc import Generator, Iterable, Sequence
+
+import mujoco
+import numpy as np
+
+from ravemj.core.blocks import block, restoring
+from ravemj.core.graphs import Pair, ordered_pair
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision.pairs import Masks
+from ravemj.engine.collision.shapes import Contact
+from ravemj.engine.collision.world import CollisionWorld
+
+_PARENTS_COUNT = int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
+_MOST = 8
+"""Maximum number of contact points of a pair; further ones lie between them."""
+
+_SAME = 1e-7  # m; contact points of one pair that are nearer to each other count as one
+
+
+def patches(world: CollisionWorld, pairs: Sequence[Pair]) -> list[list[Contact]]:
+    """Return the contact points of each of some pairs of geoms that touch, the deepest first.
+
+    Pairs for which MuJoCo finds none have the point of ``ShapeTests.contact``. The caller holds the lock.
+    """
+    convex = [pair for pair in pairs if not any(map(world.shapes.is_concave, pair))]
+    found: dict[Pair, list[Contact]] = {}
+    if convex and not world.detection.is_overruled:
+        bodies = {int(world.model.model.geom_bodyid[geom]) for pair in convex for geom in pair}
+        with _all_separate(world, sorted(bodies)) as masks:
+            world.detection.detect_near(world.detection.overlaps(masks))
+        found = present(world, convex)
+    return [_of_pair(world, pair, found.get(ordered_pair(*pair), [])) for pair in pairs]
+
+
+def _of_pair(world: CollisionWorld, pair: Pair, found: list[Contact]) -> list[Contact]:
+    if any(map(world.shapes.is_concave, pair)):
+        return spread(world.shapes.contacts_of_triangles(*pair))
+    return found or [world.shapes.contact(*pair)]
+
+
+def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Contact]]:
+    """Return the contacts that MuJoCo has found last, of some pairs; the keys have the smaller geom first."""
+    wanted = {ordered_pair(*pair): pair for pair in pairs}
+    found: dict[Pair, list[Contact]] = {}
+    data = world.model.data
+    if not data.ncon:
+        return found
+    contacts = data.contact
+    rows = zip(contacts.geom.tolist(), contacts.pos.copy(), contacts.frame[:, :3].copy(), contacts.dist, strict=True)
+    for (first, second), position, normal, distance in rows:
+        key = ordered_pair(first, second)
+        if key in wanted:  # MuJoCo's normal points from its first geom to its second
+            away = normal if wanted[key][0] == second else -normal
+            found.setdefault(key, []).append(Contact(position, away, max(-float(distance), 0.0)))
+    return {key: spread(some) for key, some in found.items()}
+
+
+def spread(contacts: list[Contact]) -> list[Contact]:
+    """Return contacts without doubles, the deepest first, and of many those that are farthest from one another."""
+    rest, chosen = sorted(contacts, key=lambda contact: -contact.depth), list[Contact]()
+    if not rest:
+        return chosen
+    positions = np.array([contact.position for contact in rest])
+    gaps, number = np.full(len(rest), np.inf), 0
+    while len(chosen) < _MOST and gaps[number] > _SAME:
+        chosen.append(rest[number])
+        gaps = np.minimum(gaps, np.linalg.norm(positions - positions[number], axis=1))
+        number = int(gaps.argmax())
+    return sorted(chosen, key=lambda contact: -contact.depth)
+
+
+def contact_rows(contacts: Iterable[Contact]) -> Floats:
+    """Return positions [m] and normals of contacts, shape (n, 6)."""
+    return np.array([[*contact.position, *contact.normal] for contact in contacts]).reshape(-1, 6)
+
+
+@block
+def _all_separate(world: CollisionWorld, bodies: list[int]) -> Generator[Masks]:
+    """Let MuJoCo test all geoms of its bodies against each other inside the ``with``; return masks for some bodies."""
+    model = world.model.model
+    welds, dofs, flags = model.body_weldid.copy(), model.body_dofnum.copy(), model.opt.disableflags
+
+    def restore() -> None:
+        model.body_weldid[:], model.body_dofnum[:], model.opt.disableflags = welds, dofs, flags
+
+    chosen = np.zeros(model.nbody, dtype=np.int32)
+    chosen[bodies] = 1
+    with restoring(restore):
+        model.body_weldid[:] = np.arange(model.nbody)
+        model.body_dofnum[bodies] = np.maximum(dofs[bodies], 1)
+        model.opt.disableflags = flags | _PARENTS_COUNT
+        yield Masks(chosen, chosen)

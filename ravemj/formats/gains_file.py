@@ -1,0 +1,68 @@
+"""Files with gains of servos: one line for each joint, or for a pattern of names."""
+
+import fnmatch
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from ravemj.core.output import AnyPath
+from ravemj.errors import Source, SourceError
+from ravemj.formats.openrave_xml.tree import content_of
+
+
+class GivenGains(NamedTuple):
+    """Gains that a user gives to joints.
+
+    Attributes:
+        pattern: Name of a joint, or a pattern with ``*`` and ``?``.
+        kp: Stiffness [N m/rad or N/m].
+        kv: Damping [N m s/rad or N s/m].
+        source: Its line.
+    """
+
+    pattern: str
+    kp: float
+    kv: float
+    source: Source
+
+
+def read_gains(path: AnyPath) -> list[GivenGains]:
+    """Read a file with lines ``joint, kp, kv``; ``#`` starts a comment.
+
+    Raises:
+        SourceError: it cannot be read, or a line is not of this form.
+    """
+    text = content_of(str(path)).decode("utf-8", "replace")
+    found: list[GivenGains] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        source = Source(str(path), number)
+        words = line.split("#")[0].rsplit("," if "," in line else None, 2)
+        if not words or not "".join(words).strip():
+            continue
+        try:
+            name, kp, kv = words[0].strip(), float(words[1]), float(words[2])
+        except (ValueError, IndexError):
+            raise SourceError(f"'{line.strip()}' is not 'joint, kp, kv'", source, "as in: elbow*, 300, 20") from None
+        if not (math.isfinite(kp) and math.isfinite(kv) and kp > 0 and kv >= 0):
+            raise SourceError(f"the gains {kp:g} and {kv:g} of '{name}' are not positive numbers", source)
+        found.append(GivenGains(name, kp, kv, source))
+    return found
+
+
+def gains_of(name: str, given: Iterable[GivenGains]) -> GivenGains | None:
+    """Return the last gains whose pattern has the name of a joint, or None."""
+    matching = [one for one in given if one.pattern == name or fnmatch.fnmatchcase(name, one.pattern)]
+    return matching[-1] if matching else None
+
+
+def check_used(given: Iterable[GivenGains], names: Iterable[str]) -> None:
+    """Check that each pattern has a joint.
+
+    Raises:
+        SourceError: one has none.
+    """
+    known = list(names)
+    for one in given:
+        if not any(name == one.pattern or fnmatch.fnmatchcase(name, one.pattern) for name in known):
+            hint = f"there are: {', '.join(known) or 'none'}"
+            raise SourceError(f"no joint is called '{one.pattern}'", one.source, hint)

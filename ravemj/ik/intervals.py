@@ -1,0 +1,208 @@
+"""Solutions between the samples of free joints.
+
+A redundant arm reaches a pose for intervals of its free joint's values. Samples miss intervals narrower than their
+step. Near these, the branches of the closed form nearly reach the pose within the limits, so descents from the closest
+samples find the interval. Its ends are found by section, as far as the closed form distinguishes branches.
+"""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ravemj.ik.chain import Chain
+from ravemj.ik.closed import Solutions
+from ravemj.ik.limits import TOLERANCE, beyond_limits, nearest_turns
+from ravemj.ik.numeric import ACCURATE
+from ravemj.ik.redundancy import free_range
+from ravemj.ik.vectors import Bools, Floats, Ints
+
+if TYPE_CHECKING:
+    from ravemj.ik.solver import ArmSolutions
+
+_STEEP = 1.0
+"""A minimum of the excess cannot reach 0 if it is larger than this multiple of its difference to adjacent samples."""
+_CLOSE = 0.5
+"""Maximum excess from which a descent is started."""
+_ENOUGH = 32
+"""If there are fewer samples, more are taken."""
+_MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
+"""Maximum number of samples that are searched around, and how many of these are tried first."""
+_MOST_DESCENTS = 12
+"""Maximum number of descents when no sample has a solution."""
+_FRACTIONS = np.linspace(0, 1, 12)
+"""Fractions of the way between adjacent samples, or to the limits of the free joint, at which solutions are sought."""
+_PARTS, _SECTIONS = 8, 5
+"""Subdivisions per section and number of sections: the end of an interval is found to 1 / 9⁵ of a step."""
+
+
+class FreeInterval(NamedTuple):
+    """Interval of the free joint in which one branch of solutions is within the limits.
+
+    Attributes:
+        branch: Index of the branch.
+        low: Smallest value [rad or m].
+        high: Largest value.
+    """
+
+    branch: int
+    low: float
+    high: float
+
+
+def excess(chain: Chain, found: Solutions, *, limits: bool = True) -> Floats:
+    """Return the combined excess of branches over pose error and limits, shape (N, B); 0 for solutions."""
+    missed = np.where(found.valid, 0.0, found.errors)
+    if limits:
+        missed = missed + beyond_limits(chain, found.values)
+    return np.where(np.isfinite(missed), missed, np.inf)
+
+
+def closest(chain: Chain, found: Solutions, most: int) -> list[Floats]:
+    """Return the joint values of the branches with the least excess, each of shape (n,)."""
+    missed = excess(chain, found)
+    places = _distinct(missed, np.argwhere(np.isfinite(missed)), most)
+    return [nearest_turns(chain, found.values[sample, branch])[0] for sample, branch in places.tolist()]
+
+
+Found = tuple[Floats, Solutions | None]
+"""A solution within the limits, shape (n,), and what the closed form says of its free joints, if that is known."""
+
+
+def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, found: Solutions) -> Iterator[Found]:
+    """Yield solutions for values of the free joints between their samples.
+
+    Args:
+        solver: A solver in closed form.
+        pose: The pose (4, 4).
+        free: Samples of the free joints, shape (K, k).
+        found: The closed-form solutions of each sample.
+    """
+    missed = excess(solver.chain, found)
+    if free.shape[1] > 1:
+        yield from _descents(solver, pose, found, missed, np.argwhere((missed > 0) & (missed < _CLOSE)))
+        return
+    low, high = free_range(solver.chain, *solver.free)
+    values = free[:, 0]
+    if len(values) < _ENOUGH:
+        more = np.linspace(low, high, 2 * _ENOUGH)
+        at_more = solver.at(pose, more[:, None])
+        values, missed = np.append(values, more), np.vstack([missed, excess(solver.chain, at_more)])
+        samples, branches = np.nonzero(missed[len(free) :] <= TOLERANCE)
+        if len(samples):
+            middle = len(samples) // 2
+            yield at_more.values[samples[middle], branches[middle]], at_more.only(samples[middle])
+    order = np.argsort(values, kind="stable")
+    values, missed = np.array([low, *values[order], high]), missed[order]
+    samples, branches = _valleys(missed)
+    if not len(samples):
+        return
+    closest_first = samples[np.argsort(missed[samples, branches], kind="stable")]
+    chosen = np.array([*dict.fromkeys(closest_first.tolist())][:_MOST_VALLEYS])
+    yield from _near(solver, pose, values, [(sample, branches[samples == sample]) for sample in chosen.tolist()])
+
+
+def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tuple[int, Ints]]) -> Iterator[Found]:
+    """Yield solutions about valleys: the indices of a sample and of the branches that have a minimum there."""
+    count = len(_FRACTIONS)
+    parts, rest = list[Solutions](), list[Ints]()
+    for first, some in ((0, valleys[:_FIRST_VALLEYS]), (_FIRST_VALLEYS, valleys[_FIRST_VALLEYS:])):
+        if not some:
+            break
+        before = np.array([sample for sample, _ in some])
+        points = values[before, None] + (values[before + 2] - values[before])[:, None] * _FRACTIONS
+        parts.append(found := solver.at(pose, points.reshape(-1, 1)))
+        missed = excess(solver.chain, found)
+        for number, (_, own) in enumerate(some):
+            around = missed[number * count : (number + 1) * count, own]
+            rows, hits = np.nonzero(around <= TOLERANCE)
+            if len(rows):
+                middle = len(rows) // 2
+                row = number * count + int(rows[middle])
+                yield found.values[row, own[hits[middle]]], found.only(row)
+            else:
+                rows, hits = _valleys(around)
+                rest.append(np.column_stack([(first + number) * count + rows, own[hits]]))
+    if rest:
+        closer = Solutions.joined(parts)
+        yield from _descents(solver, pose, closer, excess(solver.chain, closer), np.concatenate(rest))
+
+
+def _descents(solver: "ArmSolutions", pose: Floats, found: Solutions, missed: Floats, places: Ints) -> Iterator[Found]:
+    """Yield the solutions below the closest of some samples and branches (K, 2)."""
+    for sample, branch in _distinct(missed, places).tolist():
+        start = nearest_turns(solver.chain, found.values[sample, branch])[0]
+        reached = solver.numeric.descend(pose, start)
+        if reached.error < ACCURATE:
+            yield reached.values, None
+
+
+def _distinct(missed: Floats, places: Ints, most: int = _MOST_DESCENTS) -> Ints:
+    """Return the samples and branches with the least excess, shape (K, 2), one of equal ones per sample."""
+    sizes = missed[places[:, 0], places[:, 1]]
+    kept: dict[tuple[int, float], int] = {}
+    for index in np.argsort(sizes, kind="stable").tolist():
+        kept.setdefault((int(places[index, 0]), round(float(sizes[index]), 6)), index)
+        if len(kept) == most:
+            break
+    return places[list(kept.values())]
+
+
+def _valleys(missed: Floats) -> tuple[Ints, Ints]:
+    """Return the minima of the excess (K, B) over the free joint that may reach 0 between two samples."""
+    around = np.pad(missed, ((1, 1), (0, 0)), constant_values=np.inf)
+    before, after = around[:-2], around[2:]
+    lowest = (missed <= before) & (missed <= after) & (missed > 0) & (missed < _CLOSE)
+    rise = np.maximum(before, after) - missed  # infinite beyond the last samples, which are limits of the free joint
+    samples, branches = np.nonzero(lowest & (missed <= _STEEP * rise))
+    return samples, branches
+
+
+def intervals(solver: "ArmSolutions", pose: Floats, free: Floats, *, limits: bool = True) -> list[FreeInterval]:
+    """Return the intervals of the free joint that contain a sample.
+
+    Args:
+        solver: A solver in closed form with one free joint.
+        pose: The pose (4, 4).
+        free: Samples of the free joint, shape (K,), in rising order; the first and the last are its limits.
+        limits: Whether to enforce joint limits.
+    """
+    good = np.pad(_good(solver, pose, free, limits=limits), ((1, 1), (0, 0)))
+    opening, closing = good[1:] & ~good[:-1], good[:-1] & ~good[1:]
+    branch, first = np.nonzero(opening.T)
+    _, beyond = np.nonzero(closing.T)
+    inside = np.concatenate([free[first], free[beyond - 1]])
+    outside = np.concatenate([free[np.maximum(first - 1, 0)], free[np.minimum(beyond, len(free) - 1)]])
+    low, high = np.split(_ends(solver, pose, np.tile(branch, 2), inside, outside, limits=limits), 2)
+    return [FreeInterval(*each) for each in zip(branch.tolist(), low.tolist(), high.tolist(), strict=True)]
+
+
+def _ends(
+    solver: "ArmSolutions", pose: Floats, branch: Ints, inside: Floats, outside: Floats, *, limits: bool
+) -> Floats:
+    """Return the last inside values, shape (C,), between values inside and outside of intervals."""
+    steps = np.arange(_PARTS + 2) / (_PARTS + 1)
+    rows = np.arange(len(branch))
+    for _ in range(_SECTIONS if len(branch) else 0):
+        points = inside[:, None] + (outside - inside)[:, None] * steps
+        good = _good(solver, pose, points[:, 1:-1].ravel(), limits=limits)
+        own = good.reshape(len(branch), _PARTS, -1)[rows, :, branch]
+        last = np.argmin(np.pad(own, ((0, 0), (0, 1))), axis=1)
+        inside, outside = points[rows, last], points[rows, last + 1]
+    return inside
+
+
+def _good(solver: "ArmSolutions", pose: Floats, free: Floats, *, limits: bool) -> Bools:
+    return excess(solver.chain, solver.at(pose, free[:, None], limits=limits), limits=limits) <= TOLERANCE
+
+
+def rows_at(
+    solver: "ArmSolutions", pose: Floats, found: list[FreeInterval], fractions: Floats, *, limits: bool = True
+) -> Floats:
+    """Return the solutions (K, n) at fractions of intervals, from 0 at their low ends to 1."""
+    branch, low, high = (np.array(column) for column in zip(*found, strict=True))
+    free = (low + (high - low) * fractions[:, None]).ravel()
+    solutions = solver.at(pose, free[:, None], limits=limits)
+    rows, branches = np.arange(len(free)), np.tile(branch, len(fractions))
+    good = excess(solver.chain, solutions, limits=limits)[rows, branches] <= TOLERANCE
+    return solutions.values[rows, branches][good]

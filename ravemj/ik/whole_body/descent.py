@@ -1,0 +1,292 @@
+"""Steps of whole-body inverse kinematics, and descent by steps until convergence.
+
+The cost is the weighted sum of squared errors. Steps are those of K. Levenberg and D. Marquardt, with damping
+multiplied by four if the cost rises and divided by three if it falls. Contacts are equalities: multipliers, updated by
+the method of M. Hestenes and M. Powell, enforce them against other tasks, and Newton steps on the contacts alone
+correct the drift of finite steps.
+"""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from ravemj.ik.vectors import Floats
+from ravemj.ik.whole_body.bounds import MotionLimits
+from ravemj.ik.whole_body.box_qp import BoxProblem
+from ravemj.ik.whole_body.levels import daqp, minimise_levels, squared
+from ravemj.ik.whole_body.tasks import Inequality, TaskRows, WeightedTask
+
+EXACT = 1e-9
+"""Remaining contact error after a step [m or rad]."""
+_NEAR = 1e-5
+"""Contact error of displacements below which Newton steps correct it."""
+_NEWTON = 1e-5
+"""Contact error from which one Newton step leaves less than ``EXACT``."""
+_TURNS = 3
+"""Maximum number of multiplier updates, and of Newton steps on contacts."""
+_DRIFT = 0.05
+"""Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
+_LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
+_BOUNCE = 1e-7
+"""Displacement above which a step that reverses the last one counts as oscillation, as near unreachable targets."""
+_WINDOW, _LITTLE = 40, 1e-6
+"""Convergence test: the number of steps, and the relative decrease of the cost over them."""
+_STILL = 1e-10
+"""Displacement that counts as zero."""
+
+
+class Mechanism(Protocol):
+    """Protocol of a moving mechanism; its variables are joint values and a twist of the base."""
+
+    def values(self) -> Floats:
+        """Return the values subject to limits, shape (n,); 0 for the base."""
+        ...
+
+    def move(self, displacement: Floats) -> None:
+        """Move by a displacement, shape (n,)."""
+        ...
+
+    def saved(self) -> Floats:
+        """Return the configuration."""
+        ...
+
+    def restore(self, configuration: Floats) -> None:
+        """Restore a configuration."""
+        ...
+
+    def inequalities(self) -> Sequence[Inequality]:
+        """Return the inequality constraints of displacements."""
+        ...
+
+
+@dataclass(frozen=True)
+class DescentResult:
+    """Result of a descent.
+
+    Attributes:
+        steps: Number of steps.
+        cost: Remaining weighted sum of squared errors.
+        stopped: Whether it converged; False if the maximum number of steps was reached.
+    """
+
+    steps: int
+    cost: float
+    stopped: bool
+
+
+class _State(NamedTuple):
+    """Rows of tasks and inequalities, measured in one configuration."""
+
+    measured: Sequence[tuple[WeightedTask, TaskRows]]
+    inequalities: Sequence[Inequality]
+
+    def cost(self) -> float:
+        """Return the weighted sum of squared errors."""
+        return _cost(self.measured)
+
+    def costs(self) -> list[tuple[float, float]]:
+        """Return the cost and the sum of weights of each level: violated inequalities, then the priorities."""
+        violations = float(sum(np.square(np.maximum(one.least, 0.0)).sum() for one in self.inequalities))
+        numbers = sorted({task.priority for task, _ in self.measured})
+        levels = [[one for one in self.measured if one[0].priority == number] for number in numbers]
+        costs = [(_cost(level), sum(task.weight for task, _ in level)) for level in levels]
+        return [(violations, 1.0), *costs]
+
+
+class Descent:
+    """Minimizes the task errors of a mechanism.
+
+    Attributes:
+        tasks: The tasks; disabled ones are ignored.
+        limits: Limits of the variables.
+        exact_contacts: Whether contacts are equalities; otherwise they are weighted like other tasks.
+        velocities: Velocities of the last step [rad/s and m/s], shape (n,).
+    """
+
+    def __init__(self, mechanism: Mechanism, limits: MotionLimits) -> None:
+        self._mechanism = mechanism
+        self.tasks: list[WeightedTask] = []
+        self.limits = limits
+        self.exact_contacts = True
+        self.velocities = np.zeros(len(limits.lower))
+        self._damping = _LEAST_DAMPING
+
+    def step(self, dt: float) -> None:
+        """Move for ``dt`` seconds, within position, velocity and acceleration limits."""
+        state = self._state()
+        bounds = self.limits.displacements(self._mechanism.values(), self.velocities, dt)
+        moved = self._advance(state, self._damping, bounds)
+        velocities = moved / dt
+        bounces = velocities.dot(self.velocities) < 0 and float(np.abs(moved).max()) > _BOUNCE
+        factor = 10 if bounces else 1 / 1.3
+        self._damping = min(max(self._damping * factor, _LEAST_DAMPING), _MOST_DAMPING)
+        self.velocities = velocities
+
+    def solve(self, max_steps: int, longest: float) -> DescentResult:
+        """Take steps of at most ``longest`` [rad or m] until the cost no longer decreases."""
+        mechanism, damping, steps = self._mechanism, 1e-3, 0
+        state = self._state()
+        stopped = False
+        history: deque[float] = deque(maxlen=_WINDOW)
+        while steps < max_steps and not stopped:
+            steps += 1
+            saved = mechanism.saved()
+            bounds = self.limits.reachable(mechanism.values(), longest)
+            moved = self._advance(state, damping, bounds)
+            ahead = self._state()
+            size = float(np.abs(moved).max(initial=0.0))
+            stopped = size < _STILL
+            if improves(state.costs(), ahead.costs(), float(moved.dot(moved))):
+                damping, state = max(damping / 3, 1e-12), ahead
+            else:
+                mechanism.restore(saved)
+                damping *= 4
+            cost = state.cost()
+            stopped = stopped or (len(history) == _WINDOW and history[0] - cost < _LITTLE * abs(cost))
+            history.append(cost)
+        if len(state.costs()) > 2 or state.inequalities:
+            self._settle(state, longest)
+        return DescentResult(steps, _cost(self._measured()), stopped)
+
+    def _settle(self, state: _State, longest: float) -> None:
+        """Correct the drift of all levels but the last, which is damped so strongly that it does not move."""
+        for _ in range(_TURNS):
+            saved = self._mechanism.saved()
+            moved = self._advance(state, _MOST_DAMPING, self.limits.reachable(self._mechanism.values(), longest))
+            before, state = state, self._state()
+            if not improves(before.costs(), state.costs(), float(moved.dot(moved))):
+                self._mechanism.restore(saved)
+                break
+
+    def pressing(self) -> Floats:
+        """Return the descent direction of the cost, shape (n,): a bound that blocks it is active."""
+        pull = np.zeros(len(self.limits.lower))
+        for task, rows in self._measured():
+            if not task.is_met or not np.isfinite(task.tolerance):
+                pull += task.weight * (rows.error @ rows.jacobian)
+        return pull
+
+    def _measured(self) -> list[tuple[WeightedTask, TaskRows]]:
+        return [(task, task.rows()) for task in self.tasks if task.enabled]
+
+    def _state(self) -> _State:
+        return _State(self._measured(), self._mechanism.inequalities())
+
+    def _advance(self, state: _State, damping: float, bounds: tuple[Floats, Floats]) -> Floats:
+        """Move by the best displacement within bounds, then correct the contacts; return the total displacement."""
+        lower, upper = bounds
+        x = self._displacement(state, damping, lower, upper)
+        self._mechanism.move(x)
+        return self._on_contacts(x, lower, upper) if self.exact_contacts else x
+
+    def _displacement(self, state: _State, damping: float, lower: Floats, upper: Floats) -> Floats:
+        measured, inequalities = state
+        levels = {task.priority for task, _ in measured}
+        if inequalities or len(levels) > 1:
+            daqp()
+            return minimise_levels(self._levels(measured), damping, lower, upper, inequalities)
+        kept = self.exact_contacts
+        ordered = sorted(measured, key=lambda one: not one[0].is_contact) if kept else measured
+        jacobian, error = _weighted(ordered, len(lower))
+        hessian = jacobian.T.dot(jacobian)
+        hessian.ravel()[:: len(lower) + 1] += damping * squared(error)
+        problem = BoxProblem(hessian, lower, upper)
+        gradient = -error.dot(jacobian)
+        x = problem.minimise(gradient)
+        first = sum(len(rows.error) for task, rows in ordered if task.is_contact) if kept else 0
+        return _on_equalities(problem, gradient, x, jacobian[:first], error[:first]) if first else x
+
+    def _levels(self, measured: Sequence[tuple[WeightedTask, TaskRows]]) -> list[TaskRows]:
+        """Return the weighted rows of each priority; exact contacts come first within their priority."""
+
+        def level(one: tuple[WeightedTask, TaskRows]) -> tuple[int, bool]:
+            return one[0].priority, not (one[0].is_contact and self.exact_contacts)
+
+        parts = (
+            _weighted(list(group), len(self.limits.lower)) for _, group in groupby(sorted(measured, key=level), level)
+        )
+        return [TaskRows(error, jacobian) for jacobian, error in parts]
+
+    def _on_contacts(self, x: Floats, lower: Floats, upper: Floats) -> Floats:
+        """Correct the errors of nearly closed contacts after a displacement; return the total displacement."""
+        contacts = [task for task in self.tasks if task.is_contact and task.enabled]
+        for _ in range(_TURNS if contacts else 0):
+            measured = [(task, task.rows()) for task in contacts]
+            left = max(float(np.abs(rows.error).max()) for _, rows in measured)
+            if not EXACT < left < _DRIFT:
+                break
+            jacobian = np.vstack([rows.jacobian for _, rows in measured])
+            back = _shortest(jacobian, np.concatenate([rows.error for _, rows in measured]), lower - x, upper - x)
+            self._mechanism.move(back)
+            x = x + back
+            if left < _NEWTON:
+                break
+        return x
+
+
+def _on_equalities(problem: BoxProblem, gradient: Floats, x: Floats, jacobian: Floats, error: Floats) -> Floats:
+    """Return the minimizer with zero error in the equality rows, as far as the bounds allow."""
+    left = error - jacobian.dot(x)
+    size = float(np.abs(left).max())
+    for _ in range(_TURNS):
+        if size < _NEAR:
+            break
+        gradient = gradient - left.dot(jacobian)
+        ahead = problem.minimise(gradient)
+        left = error - jacobian.dot(ahead)
+        before, size = size, float(np.abs(left).max())
+        if size > before / 2:  # bounds, or contradictory rows
+            return ahead if size < before else x
+        x = ahead
+    return x
+
+
+def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> Floats:
+    """Return the shortest displacement that removes an error; if it leaves the box, the best one inside."""
+    square = jacobian.dot(jacobian.T)
+    square.ravel()[:: len(error) + 1] += 1e-9 * np.trace(square) / len(error)
+    x = np.asarray(np.linalg.solve(square, error), dtype=float) @ jacobian
+    if ((x < lower) | (x > upper)).any():
+        hessian = jacobian.T.dot(jacobian)
+        hessian.ravel()[:: len(x) + 1] += 1e-9 * np.trace(hessian) / len(x)
+        return BoxProblem(hessian, lower, upper).minimise(-error.dot(jacobian))
+    return x
+
+
+def _weighted(measured: Sequence[tuple[WeightedTask, TaskRows]], count: int) -> tuple[Floats, Floats]:
+    """Return the stacked Jacobian and error of tasks, scaled by the square roots of their weights."""
+    size = sum(len(rows.error) for _, rows in measured)
+    jacobian, error, end = np.empty((size, count)), np.empty(size), 0
+    for task, rows in measured:
+        start, end, root = end, end + len(rows.error), math.sqrt(task.weight)
+        np.multiply(rows.jacobian, root, out=jacobian[start:end])
+        np.multiply(rows.error, root * task.gain, out=error[start:end])
+    return jacobian, error
+
+
+def _cost(measured: Sequence[tuple[WeightedTask, TaskRows]]) -> float:
+    return float(sum(task.weight * rows.error.dot(rows.error) for task, rows in measured))
+
+
+def improves(before: Sequence[tuple[float, float]], after: Sequence[tuple[float, float]], square: float) -> bool:
+    """Return whether the costs of levels decreased, judged by the first level that changed.
+
+    A displacement changes the errors of higher levels by about the square of its length, which the next step corrects.
+    So only larger changes count, except in the last level.
+
+    Args:
+        before: For each level its cost and the sum of its weights.
+        after: The same after the displacement.
+        square: Square of the length of the displacement.
+    """
+    *firsts, last = zip(before, after, strict=True)
+    for (cost, weight), (cost_after, _) in firsts:
+        drift = weight * min(square * square, _DRIFT**4)
+        if abs(cost_after - cost) > drift:
+            return cost_after < cost
+    return last[1][0] < last[0][0]

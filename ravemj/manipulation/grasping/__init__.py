@@ -1,0 +1,1 @@
+"""Grasps: approach rays, closing fingers, contacts and force closure."""

@@ -1,0 +1,168 @@
+"""Grasps for parallel jaws from pairs of antipodal points on the surface of an object.
+
+Two contacts with friction are in force closure in the plane if the line between them lies inside both friction cones.
+So two jaws need no simulation: only a pair of points whose distance fits between them, and a free approach. Arrays in,
+arrays out; where rays meet the surface is asked of a function.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, cross_rows
+
+Cast = Callable[[Floats], tuple[NDArray[np.bool_], Floats]]
+"""Returns which rays (start and direction, as long as the ray, shape (n, 6)) meet the surface, shape (n,), and position
+and outward normal of the first hit of each, shape (n, 6)."""
+
+_INSIDE = 1e-5
+"""Distance from the surface at which rays through the object begin [m]."""
+
+_ROUNDING = 1e-9
+
+_AROUND = 8
+"""Number of lines that are tried around a normal at each of two angles."""
+
+_SAME = 1e-3
+"""Distance up to which pairs count as the same [m]."""
+
+
+class Jaws(NamedTuple):
+    """Two fingers that slide towards each other, in the frame of the tool.
+
+    Attributes:
+        axis: Unit vector along which they close, shape (3,).
+        approach: Unit vector of the approach, perpendicular to the axis, shape (3,).
+        middle: Position of the middle between the fingers on the axis [m].
+        width: Largest distance between the fingers [m].
+    """
+
+    axis: Floats
+    approach: Floats
+    middle: float
+    width: float
+
+
+class Pair(NamedTuple):
+    """Two points on the surface, shape (3,) [m], and the reason why jaws cannot hold there; empty if they can."""
+
+    first: Floats
+    second: Floats
+    reason: Literal["", "too wide", "not closed"]
+
+
+def pairs(rows: Floats, cast: Cast, friction: float, width: float) -> list[Pair]:
+    """Return for each point of a surface the opposite points, along the line into the object.
+
+    The opposite points are the nearest and, if it is another one, the farthest within the width: a mug can be held by
+    its wall and from both sides. The first line is that along the normal. If it leaves the object outside the friction
+    cone there, lines around it in the cone of the first point follow, and for each the line in the middle between the
+    two normals, on which a wedge is held if any line holds it.
+
+    Args:
+        rows: Points and outward unit normals, shape (n, 6) [m].
+        cast: Where rays meet the surface.
+        friction: Friction coefficient.
+        width: Largest distance [m].
+
+    Example:
+        >>> pairs([[0.02, 0, 0, 1, 0, 0]], cast, friction=0.4, width=0.08)
+        [Pair(first=array([0.02, 0., 0.]), second=array([-0.02, 0., 0.]), reason='')]
+    """
+    rows = np.asarray(rows, dtype=float).reshape(-1, 6)
+    found: list[Pair] = []
+    for near in (True, False):
+        fits, opposite = _opposite(rows, -rows[:, 3:], cast, width, near=near)
+        good = np.zeros(len(rows), dtype=np.bool_)
+        for lines in _lines(-rows[:, 3:], friction):
+            rest = np.flatnonzero(~good)
+            for _ in range(2):
+                leaves, points = _opposite(rows[rest], lines[rest], cast, width, near=near)
+                holds = leaves & is_antipodal(rows[rest], points, friction)
+                good[rest[holds]], opposite[rest[holds]] = True, points[holds]
+                middle = points[:, 3:] - rows[rest, 3:]
+                length = np.linalg.norm(middle, axis=1)
+                again = leaves & ~holds & (length > _ROUNDING)
+                rest = rest[again]
+                lines[rest] = middle[again] / length[again, None]
+        reasons = np.where(good, "", np.where(fits, "not closed", "too wide"))
+        found += [
+            Pair(row[:3], other[:3], reason)
+            for row, other, reason in zip(rows, opposite, reasons.tolist(), strict=True)
+        ]
+    return _distinct(found)
+
+
+def is_antipodal(first: Floats, second: Floats, friction: float) -> NDArray[np.bool_]:
+    """Return whether the lines between pairs of points lie inside both friction cones, shape (n,).
+
+    Args:
+        first: Points and outward unit normals, shape (n, 6) [m].
+        second: The opposite points and normals, shape (n, 6) [m].
+        friction: Friction coefficient.
+    """
+    lines = second[:, :3] - first[:, :3]
+    lengths = np.linalg.norm(lines, axis=1)
+    lowest = (1 / np.hypot(1.0, friction) - _ROUNDING) * lengths  # cosine of the angle of the cone
+    inward = -(first[:, 3:] * lines).sum(axis=1)
+    outward = (second[:, 3:] * lines).sum(axis=1)
+    return (lengths > _ROUNDING) & (inward >= lowest) & (outward >= lowest)
+
+
+def tool_poses(pair: Pair, jaws: Jaws, rolls: int = 8) -> list[Floats]:
+    """Return poses of the tool that take the middle between the jaws to the middle of a pair, each shape (4, 4).
+
+    They are in the frame of the points, and differ by rotations about the line of the pair.
+    """
+    line = (pair.second - pair.first) / np.linalg.norm(pair.second - pair.first)
+    side = np.zeros(3)
+    side[int(np.abs(line).argmin())] = 1.0
+    side -= line * (line @ side)
+    side /= np.linalg.norm(side)
+    third = np.cross(line, side)
+    R_tool_jaws = np.column_stack([jaws.axis, jaws.approach, np.cross(jaws.axis, jaws.approach)])
+    poses: list[Floats] = []
+    for angle in 2 * np.pi * np.arange(rolls) / rolls:
+        approach = np.cos(angle) * side + np.sin(angle) * third
+        T = np.eye(4)
+        T[:3, :3] = np.column_stack([line, approach, np.cross(line, approach)]) @ R_tool_jaws.T
+        T[:3, 3] = (pair.first + pair.second) / 2 - jaws.middle * line
+        poses.append(T)
+    return poses
+
+
+def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
+    """Yield unit vectors, shape (n, 3): the given ones, and then some around them in their friction cones."""
+    yield inward.copy()
+    side = np.eye(3)[np.abs(inward).argmin(axis=1)]
+    side -= inward * (inward * side).sum(axis=1, keepdims=True)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    third = cross_rows(inward, side)
+    for share in (0.95, 0.5):
+        for angle in 2 * np.pi * np.arange(_AROUND) / _AROUND:
+            lines = inward + share * friction * (np.cos(angle) * side + np.sin(angle) * third)
+            yield lines / np.linalg.norm(lines, axis=1, keepdims=True)
+
+
+def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bool) -> tuple[NDArray[np.bool_], Floats]:
+    """Return which lines into the object leave it within the width, and where: the nearest or the farthest point."""
+    if near:
+        return cast(np.hstack([rows[:, :3] + _INSIDE * lines, (width - _INSIDE) * lines]))
+    hit, points = cast(np.hstack([rows[:, :3] + width * lines, -width * lines]))
+    # a ray that begins inside the object meets the surface from within: the object is wider than the jaws
+    return hit & ((points[:, 3:] * lines).sum(axis=1) > 0), points
+
+
+def _distinct(found: list[Pair]) -> list[Pair]:
+    """Return pairs without doubles, in either order of their points."""
+    seen: set[tuple[tuple[int, ...], ...]] = set()
+    distinct: list[Pair] = []
+    for pair in found:
+        ends = [tuple(np.round(point / _SAME).astype(int).tolist()) for point in (pair.first, pair.second)]
+        key = tuple(sorted(ends)) if not pair.reason else (*ends[:1],)
+        if key not in seen:
+            seen.add(key)
+            distinct.append(pair)
+    return distinct

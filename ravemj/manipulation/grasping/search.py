@@ -1,0 +1,403 @@
+"""Search for grasps of an object: candidates by approach rays or antipodal points, each kept or rejected with a reason.
+
+Whether the arm reaches a grasp is asked of a function, so that users' filters and the API are not known here.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, NamedTuple, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, inverse
+from ravemj.engine.collision.hand import HandTests, hand_tests
+from ravemj.engine.collision.patches import contact_rows
+from ravemj.engine.physics.grasp_proof import Proof, prove
+from ravemj.engine.simulation import BodyState
+from ravemj.errors import ArgumentError
+from ravemj.manipulation.grasping import antipodal
+from ravemj.manipulation.grasping.closing import Approach, Closed, Hand, Reason, Target, close
+from ravemj.manipulation.grasping.hands import hand_of, target_of
+from ravemj.manipulation.grasping.rays import box_rays
+from ravemj.manipulation.grasping.wrenches import epsilon, quality
+from ravemj.model.bounds import links_bounds
+from ravemj.model.scene import Manipulator
+
+Method = Literal["fly", "antipodal"]
+
+_SQUEEZE = 2e-5
+"""Motion of the fingers beyond the first contact [rad or m], at which contacts are looked for."""
+
+_FREE = 1e-4
+"""Distance back along the approach at which the open hand does not touch the object any more [m]."""
+
+_BACK = 0.1
+"""Length of the straight line by which jaws approach [m]."""
+
+_STEP = 0.01  # m, between tested poses on that line
+_STANDOFFS = (0.0, 0.025)
+_CLEARANCE = 1e-3
+"""Distance that is left between open jaws and the object [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Grasp:
+    """A grasp of an object, or a candidate that was rejected.
+
+    Attributes:
+        pose: ``T_target_tool``, shape (4, 4).
+        preshape: Values of the gripper during the approach [rad or m], shape (g,).
+        closed: Values of the gripper in contact [rad or m], shape (g,).
+        contacts: Contact points [m] and unit normals out of the object, in its frame, shape (n, 6).
+        epsilon: OpenRAVE's ``mindist``: distance of the origin from the boundary of the wrench hull, with torques about
+            the origin of the object's frame; 0 if the grasp is not in force closure.
+        quality: The same with torques about the centre of mass, divided by the radius of the object, so that grasps of
+            different objects compare.
+        limiting: Indices of the contacts that limit the quality.
+        weakest: Unit wrench that the grasp resists least: force and torque in the object's frame, shape (6,).
+        approach: Unit vector of the motion of the hand in the object's frame, shape (3,).
+        arm: Joint values of the arm at the grasp [rad or m], shape (n,); None if inverse kinematics was not asked.
+        proof: Result of the physics simulation; None if it was not asked for.
+        reason: Why the candidate was rejected; empty if it was not.
+    """
+
+    pose: Floats
+    preshape: Floats
+    closed: Floats
+    contacts: Floats
+    approach: Floats
+    epsilon: float = 0.0
+    quality: float = 0.0
+    limiting: tuple[int, ...] = ()
+    weakest: Floats | None = None
+    arm: Floats | None = None
+    proof: Proof | None = None
+    reason: str = ""
+
+    @property
+    def weakness(self) -> str:
+        """The larger part of the weakest wrench in words, such as ``turns about y`` or ``slides along 0.71 0 0.71``."""
+        if self.weakest is None:
+            return ""
+        force, torque = self.weakest[:3], self.weakest[3:]
+        slides = np.linalg.norm(force) >= np.linalg.norm(torque)
+        part = (force if slides else torque) / np.linalg.norm(force if slides else torque)
+        axis = int(np.abs(part).argmax())
+        is_axis = np.abs(part[axis]) > np.cos(np.radians(5))
+        direction = "xyz"[axis] if is_axis else " ".join(f"{number:.2g}" for number in part.round(2) + 0.0)
+        return f"{'slides along' if slides else 'turns about'} {direction}"
+
+
+class Grasps(Sequence[Grasp]):
+    """Grasps of an object, the best first, and the candidates that were rejected.
+
+    Attributes:
+        kept: The grasps, sorted by descending quality.
+        rejected: The other candidates, each with its reason.
+        friction: Friction coefficient.
+
+    Example:
+        >>> found = ravemj.grasps(robot, mug, method="antipodal")
+        >>> print(found)  # how many candidates were rejected for which reason
+        >>> found[0].quality
+    """
+
+    def __init__(self, grasps: Sequence[Grasp], friction: float) -> None:
+        self.kept = tuple(sorted((one for one in grasps if not one.reason), key=lambda one: -one.quality))
+        self.rejected = tuple(one for one in grasps if one.reason)
+        self.friction = friction
+
+    @overload
+    def __getitem__(self, index: int) -> Grasp: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Grasp]: ...
+    def __getitem__(self, index: int | slice) -> Grasp | Sequence[Grasp]:
+        """Return a grasp, or some of them; 0 is the best."""
+        return self.kept[index]
+
+    def __len__(self) -> int:
+        """Return the number of grasps."""
+        return len(self.kept)
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of rejected candidates for each reason, the most frequent first."""
+        return dict(Counter(one.reason for one in self.rejected).most_common())
+
+    def __str__(self) -> str:
+        """Return the table of counts."""
+        total = len(self.kept) + len(self.rejected)
+        rows = [(f"{len(self.kept)}", f"grasps of {total} candidates, friction {self.friction:g}")]
+        rows += [(str(count), reason) for reason, count in self.counts.items()]
+        width = max(len(count) for count, _ in rows)
+        return "\n".join(f"{count:>{width}}  {text}" for count, text in rows)
+
+
+class Choices(NamedTuple):
+    """Settings of a search.
+
+    Attributes:
+        method: ``fly`` moves the hand along approach rays until it touches; ``antipodal`` places parallel jaws at pairs
+            of opposite points.
+        friction: Friction coefficient.
+        delta: Distance of the approach rays [m].
+        rolls: Number of rotations of the hand about each approach, or about the line of each pair.
+    """
+
+    method: Method
+    friction: float
+    delta: float
+    rolls: int
+
+
+Reach = Callable[[Floats], Floats | str]
+"""Returns for ``T_world_tool`` the joint values of the arm, or the reason why there are none; the gripper is open."""
+
+
+def search(
+    robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices, reach: Reach | None = None
+) -> Grasps:
+    """Return the grasps of an object, and the rejected candidates; robot and object are as before afterwards.
+
+    Args:
+        robot: The robot; the caller holds the lock.
+        arm: Its manipulator.
+        target: The object.
+        choices: How candidates are made.
+        reach: Whether the arm reaches a pose; None: the hand alone counts.
+
+    Raises:
+        ArgumentError: the manipulator has no gripper joints that close, no effector, or no parallel jaws that
+            ``antipodal`` needs; or the object has no shapes.
+    """
+    saved = robot.configuration()
+    try:
+        _open(robot, arm)
+        return Grasps(_Search(robot, arm, target, choices).run(reach), choices.friction)
+    finally:
+        robot.restore(saved)
+
+
+def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, friction: float) -> Grasp:
+    """Return a grasp with the result of its simulation; the robot is as before. The caller holds the lock."""
+    saved = robot.configuration()
+    try:
+        values = robot.kinematics.values()
+        values[list(arm.gripper_dofs)] = grasp.closed
+        robot.set_values(values)
+        assert arm.effector is not None
+        T_base_tool = inverse(robot.link_transform(0)) @ robot.link_transform(arm.effector)
+        T_base_tool = T_base_tool @ arm.T_effector_tool.matrix()
+        robot.set_transform(target.link_transform(0) @ grasp.pose @ inverse(T_base_tool))
+        gravity = np.array(robot.simulation.gravity)
+        return replace(grasp, proof=prove(robot, arm, target, friction, gravity))
+    finally:
+        robot.restore(saved)
+
+
+def _open(robot: BodyState, arm: Manipulator) -> None:
+    """Open the gripper as far as its limits go."""
+    if not any(arm.chucking_direction):
+        message = f"manipulator '{arm.name}' has no gripper joints that close"
+        raise ArgumentError(f"{message}; name them in <joints>, and their signs in <closingdirection>")
+    values = robot.kinematics.values()
+    for dof, side in zip(arm.gripper_dofs, arm.chucking_direction, strict=True):
+        axis = robot.scene.dof_axes[dof]
+        if side and not axis.circular:
+            values[dof] = axis.lower if side > 0 else axis.upper
+    robot.set_values(values)
+
+
+class _Candidate(NamedTuple):
+    """A hand that has arrived: its pose, the direction of the approach, and what happened."""
+
+    T_world_base: Floats
+    approach: Floats
+    closed: Closed | None
+    reason: str
+
+
+class _Search:
+    """Candidates of one robot, one object and one choice."""
+
+    def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> None:
+        self._robot, self._arm, self._target, self._choices = robot, arm, target, choices
+        sides = dict(zip(arm.gripper_dofs, arm.chucking_direction, strict=True))
+        self._hand: Hand = hand_of(robot, arm, sides)
+        self._placed: Target = target_of(target)
+        self._T_world_target = self._placed.T_world_target
+        self._gripper = list(arm.gripper_dofs)
+        self._signs = np.array(arm.chucking_direction)
+        self._world = robot.simulation.collisions()
+        self._geoms = self._world.geoms_of_body(target)
+        T_target_links = inverse(self._T_world_target) @ target.link_transforms()
+        bounds = links_bounds(target.scene.links, T_target_links)
+        if bounds is None or not len(self._geoms):
+            raise ArgumentError(f"body '{target.scene.name}' has no shapes that collide; give it geometries")
+        self._low, self._high = np.array(bounds.low), np.array(bounds.high)
+        self._center, self._radius = self._mass_center(T_target_links)
+
+    def _mass_center(self, T_target_links: Floats) -> tuple[Floats, float]:
+        """Return the centre of mass in the object's frame, and the radius of the object about it [m]."""
+        links = self._target.scene.links
+        masses = np.array([link.inertial.mass for link in links])
+        centers = np.array(
+            [T[:3, :3] @ link.inertial.com + T[:3, 3] for link, T in zip(links, T_target_links, strict=True)]
+        )
+        center = masses @ centers / masses.sum() if masses.sum() > 0 else (self._low + self._high) / 2
+        return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
+
+    def run(self, reach: Reach | None) -> list[Grasp]:
+        found: list[Grasp] = []
+        surface = self._surface()
+        with hand_tests(self._world, self._robot, self._target) as tests:
+            make = self._flown if self._choices.method == "fly" else self._jawed
+            found = [self._judged(candidate, tests) for candidate in make(surface, tests)]
+        if reach is not None:
+            found = [grasp if grasp.reason else self._reached(grasp, reach) for grasp in found]
+        return found
+
+    def _surface(self) -> Floats:
+        """Return points of the surface and outward normals in the object's frame, shape (n, 6)."""
+        rays = box_rays((self._low + self._high) / 2, (self._high - self._low) / 2, self._choices.delta).numbers()
+        hit, rows = self._cast(rays)
+        return rows[hit & ((rows[:, 3:] * rays[:, 3:]).sum(axis=1) < 0)]
+
+    def _cast(self, rays: Floats) -> tuple[NDArray[np.bool_], Floats]:
+        """Return first hits of rays in the object's frame."""
+        R, origin = self._T_world_target[:3, :3], self._T_world_target[:3, 3]
+        in_world = np.hstack([rays[:, :3] @ R.T + origin, rays[:, 3:] @ R.T])
+        hit, rows = self._world.rays.first_hits(in_world, self._geoms)
+        return hit, np.hstack([(rows[:, :3] - origin) @ R, rows[:, 3:] @ R])
+
+    def _flown(self, surface: Floats, tests: HandTests) -> Iterator[_Candidate]:
+        """Fly against each point of the surface, with each roll and standoff."""
+        tool_direction = np.array(self._arm.direction)
+        for row in surface:
+            for roll in 2 * np.pi * np.arange(self._choices.rolls) / self._choices.rolls:
+                for standoff in _STANDOFFS:
+                    approach = Approach(-row[3:], tool_direction, row[:3], float(roll), standoff)
+                    closed = close(self._hand, self._placed, approach, tests)
+                    reason = "" if closed.reason is None else str(closed.reason)
+                    yield _Candidate(closed.T_world_base, -row[3:], closed, reason)
+
+    def _jawed(self, surface: Floats, tests: HandTests) -> Iterator[_Candidate]:
+        """Place the jaws at each pair of opposite points, and close them."""
+        jaws = jaws_of(self._robot, self._arm)
+        T_tool_base = inverse(self._hand.T_base_tool)
+        for pair in antipodal.pairs(surface, self._cast, self._choices.friction, jaws.width - _CLEARANCE):
+            if pair.reason:
+                yield _Candidate(self._T_world_target @ T_tool_base, np.zeros(3), None, pair.reason)
+                continue
+            for T_target_tool in antipodal.tool_poses(pair, jaws, self._choices.rolls):
+                T_world_base = self._T_world_target @ T_target_tool @ T_tool_base
+                along = T_target_tool[:3, :3] @ jaws.approach
+                hits = self._approach(T_world_base, self._T_world_target[:3, :3] @ along, tests)
+                if hits:
+                    yield _Candidate(T_world_base, along, None, f"in collision with '{hits}'")
+                    continue
+                approach = Approach(along, jaws.approach, flies=False)
+                closed = close(replace(self._hand, T_world_base=T_world_base), None, approach, tests)
+                yield _Candidate(T_world_base, along, closed, "" if closed.reason is None else str(closed.reason))
+
+    def _approach(self, T_world_base: Floats, along: Floats, tests: HandTests) -> str | None:
+        """Return what the open hand touches at the grasp or on the straight line to it."""
+        for distance in np.arange(0.0, _BACK + _STEP / 2, _STEP):
+            T = T_world_base.copy()
+            T[:3, 3] -= distance * along
+            name = tests(self._hand.links, T, self._hand.values)
+            if name:
+                return name
+        return None
+
+    def _judged(self, candidate: _Candidate, tests: HandTests) -> Grasp:
+        """Return a candidate with its contacts and their quality, or with the reason for its rejection."""
+        pose = inverse(self._T_world_target) @ candidate.T_world_base @ self._hand.T_base_tool
+        preshape, closed = self._hand.values[self._gripper], candidate.closed
+        values = self._hand.values if closed is None else closed.values
+        grasp = Grasp(pose, preshape, values[self._gripper], np.zeros((0, 6)), candidate.approach)
+        reason = candidate.reason or self._stuck(values, candidate, tests)
+        if reason:
+            return replace(grasp, reason=reason)
+        squeezed = values.copy()
+        squeezed[self._gripper] += _SQUEEZE * self._signs
+        contacts, _ = tests.contacts(self._hand.links, candidate.T_world_base, squeezed)
+        rows = contact_rows(contacts)
+        R, origin = self._T_world_target[:3, :3], self._T_world_target[:3, 3]
+        rows = np.hstack([(rows[:, :3] - origin) @ R, rows[:, 3:] @ R])
+        friction = self._choices.friction
+        mindist = epsilon(rows[:, :3], rows[:, 3:], friction) if len(rows) > 1 else 0.0
+        if mindist <= 0:
+            return replace(grasp, contacts=rows, reason="not closed")
+        best = quality(rows[:, :3], rows[:, 3:], friction, self._center, self._radius)
+        return replace(
+            grasp, contacts=rows, epsilon=mindist, quality=best.epsilon, limiting=best.contacts, weakest=best.direction
+        )
+
+    def _stuck(self, values: Floats, candidate: _Candidate, tests: HandTests) -> str:
+        """Return a reason if a finger touches the object before it closes."""
+        for finger in self._hand.fingers:
+            is_open = finger.side and values[finger.dof] == self._hand.values[finger.dof]
+            if is_open and tests(finger.links, candidate.T_world_base, values, "target"):
+                return str(Reason("starts in contact", finger.name))
+        return ""
+
+    def _reached(self, grasp: Grasp, reach: Reach) -> Grasp:
+        """Return a grasp with joint values of the arm, or with the reason why there are none."""
+        T_world_tool = self._T_world_target @ grasp.pose
+        T_world_tool[:3, 3] -= _FREE * self._T_world_target[:3, :3] @ grasp.approach
+        found = reach(T_world_tool)
+        return replace(grasp, reason=found) if isinstance(found, str) else replace(grasp, arm=found)
+
+
+def jaws_of(robot: BodyState, arm: Manipulator) -> antipodal.Jaws:
+    """Return the parallel jaws of an open gripper.
+
+    Raises:
+        ArgumentError: its fingers do not slide towards each other along one line.
+    """
+    assert arm.effector is not None
+    values, gripper = robot.kinematics.values(), list(arm.gripper_dofs)
+    T_world_tool = robot.link_transform(arm.effector) @ arm.T_effector_tool.matrix()
+    before = inverse(T_world_tool) @ robot.link_transforms()
+    robot.set_values(_moved(values, gripper, arm))
+    after = inverse(T_world_tool) @ robot.link_transforms()
+    robot.set_values(values)
+    motions = after[:, :3, 3] - before[:, :3, 3]
+    lengths = np.linalg.norm(motions, axis=1)
+    moving = np.flatnonzero((lengths > 0) | (np.abs(after - before)[:, :3, :3] > 0).any(axis=(1, 2)))
+    message = f"manipulator '{arm.name}' has no parallel jaws: two fingers that slide towards each other"
+    error = ArgumentError(f'{message}; use method="fly"')
+    if not len(moving) or (lengths[moving] == 0).any() or np.abs(after - before)[:, :3, :3].max() > _SQUEEZE:
+        raise error
+    axis = motions[moving[0]] / lengths[moving[0]]
+    along = motions[moving] @ axis
+    if np.abs(np.abs(along) - lengths[moving]).max() > _SQUEEZE or not (along > 0).any() or not (along < 0).any():
+        raise error
+    direction = np.array(arm.direction) - axis * (axis @ np.array(arm.direction))
+    if np.linalg.norm(direction) < _CLEARANCE:
+        raise ArgumentError(f"manipulator '{arm.name}' closes along its direction; correct its <direction>")
+    ends = [_reach(robot, moving[along * sign > 0], before, sign * axis) for sign in (1.0, -1.0)]
+    low, high = ends[0], -ends[1]
+    return antipodal.Jaws(axis, direction / np.linalg.norm(direction), (low + high) / 2, high - low)
+
+
+def _moved(values: Floats, gripper: list[int], arm: Manipulator) -> Floats:
+    closing = values.copy()
+    closing[gripper] += 1e-3 * np.array(arm.chucking_direction)
+    return closing
+
+
+def _reach(robot: BodyState, links: Sequence[int] | NDArray[np.int_], T_tool_links: Floats, axis: Floats) -> float:
+    """Return how far the shapes of some links reach along an axis in the frame of the tool [m]."""
+    side = np.eye(3)[int(np.abs(axis).argmin())]
+    side = np.cross(axis, side) / np.linalg.norm(np.cross(axis, side))
+    T = np.eye(4)
+    T[:3, :3] = np.stack([axis, side, np.cross(axis, side)])
+    chosen = [robot.scene.links[link] for link in links]
+    bounds = links_bounds(chosen, T @ T_tool_links[np.asarray(links, dtype=int)])
+    if bounds is None:
+        raise ArgumentError(f"a finger of '{robot.scene.name}' has no shapes; give it geometries")
+    return float(bounds.high[0])

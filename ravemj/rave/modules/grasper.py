@@ -1,0 +1,294 @@
+"""Grasps of the active manipulator: the module ``Grasper``."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.collision.hand import hand_tests
+from ravemj.engine.collision.moving import kept_in_place
+from ravemj.engine.collision.patches import contact_rows
+from ravemj.errors import ArgumentError
+from ravemj.manipulation.grasping.closing import Waypoint
+from ravemj.manipulation.grasping.hands import Grasped
+from ravemj.manipulation.grasping.wrenches import epsilon, volume
+from ravemj.model.motion_bounds import motion_bounds
+from ravemj.rave.enums import IkFilterOptions
+from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.modules.base_manipulation import Manipulation
+from ravemj.rave.planning.grasper import GraspParameters, motion_of, simulate
+from ravemj.rave.planning.planner import PlanningError
+from ravemj.rave.trajectory import Trajectory
+
+_RANDOM = np.random.default_rng()
+"""Source of noise."""
+
+_MOST = 16
+"""Maximum number of contacts of a first test of force closure; OpenRAVE's."""
+
+_CLOSED = 1e-9
+"""Distance to the wrench hull from which the first test counts; OpenRAVE's."""
+
+_CHECKED = int(IkFilterOptions.CheckEnvCollisions)
+
+
+@dataclass(frozen=True, kw_only=True)
+class GraspRequest:
+    """A grasp, and what to compute about it.
+
+    Attributes:
+        parameters: How the hand comes.
+        chuckingdirection: Sign of the motion of each gripper joint; None: the manipulator's.
+        friction: Friction coefficient.
+        forceclosure: Whether to compute the distance and the volume of the wrench hull.
+        stablecontacts: Whether only contacts count that the fingers press against the target.
+    """
+
+    parameters: GraspParameters = field(default_factory=GraspParameters)
+    chuckingdirection: Sequence[float] | None = None
+    friction: float = 0.0
+    forceclosure: bool = False
+    stablecontacts: bool = False
+
+
+class GraspAnswer(NamedTuple):
+    """A grasp that was found.
+
+    Attributes:
+        contacts: Contact points [m] and normals out of the target in the world, shape (n, 6).
+        links: Index of the link at each contact, shape (n,).
+        end: Last configuration of the robot.
+        mindist: Distance of the origin from the boundary of the wrench hull; None if it was not requested.
+        volume: Volume of the wrench hull; None if it was not requested.
+        path: Configurations of the robot up to the last.
+    """
+
+    contacts: Floats
+    links: Ints
+    end: Waypoint
+    mindist: float | None
+    volume: float | None
+    path: Sequence[Waypoint]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Candidates:
+    """Grasps to try: all combinations of their parts.
+
+    Attributes:
+        rays: Start of the tool and direction of the motion, in the target, shape (n, 6).
+        rolls: Rotations of the tool [rad].
+        preshapes: Values of the gripper [rad or m], shape (n, gripper dof).
+        standoffs: Distances back after the contact [m].
+        directions: Directions of the tool, in its own frame, shape (n, 3).
+    """
+
+    rays: Floats
+    rolls: Sequence[float]
+    preshapes: Floats
+    standoffs: Sequence[float]
+    directions: Floats
+
+    def __len__(self) -> int:
+        parts = (self.rays, self.rolls, self.preshapes, self.standoffs, self.directions)
+        return math.prod(len(part) for part in parts)
+
+    def all(self, parameters: GraspParameters) -> Iterator[tuple[GraspParameters, Floats]]:
+        """Yield parameters and preshape of each in OpenRAVE's order: the standoff changes first, the direction last."""
+        for tool, ray, roll, preshape, standoff in product(
+            self.directions, self.rays, self.rolls, self.preshapes, self.standoffs
+        ):
+            changes = {"position": ray[:3], "direction": ray[3:], "manipulatordirection": tool}
+            yield replace(parameters, roll=float(roll), standoff=float(standoff), **changes), preshape
+
+
+class Sweep(NamedTuple):
+    """Which candidates to try, and which grasps to keep.
+
+    Attributes:
+        start: Index of the first candidate.
+        most: Maximum number of grasps; 0 means any.
+        threshold: Least distance to the wrench hull; None: any grasp counts.
+        tries: Number of grasps with noise that have to succeed.
+        checkik: Whether the arm has to reach the grasp without collisions.
+    """
+
+    start: int = 0
+    most: int = 0
+    threshold: float | None = None
+    tries: int = 0
+    checkik: bool = False
+
+
+class Found(NamedTuple):
+    """A candidate that was kept, with its preshape."""
+
+    parameters: GraspParameters
+    preshape: Floats
+    answer: GraspAnswer
+
+
+class GraspSimulation(Manipulation):
+    """Simulates grasps of the active manipulator of one robot."""
+
+    def grasp(self, request: GraspRequest) -> GraspAnswer:
+        """Simulate a grasp from the present configuration.
+
+        Raises:
+            PlanningError: it fails; ``parameter`` is the ``Reason``.
+            ArgumentError: a parameter is wrong.
+        """
+        if request.parameters.target is None:
+            raise PlanningError("there is no target; give the body to grasp")
+        found = simulate(self.robot, request.parameters, self._sides(request.chuckingdirection), _RANDOM)
+        if found.closed.reason is not None:
+            raise PlanningError(found.closed.reason)
+        contacts, links = found.contacts, found.links
+        if request.stablecontacts:
+            kept = self._is_stable(found, request)
+            contacts, links = contacts[kept], links[kept]
+        distance, size = force_closure(contacts, request.friction) if request.forceclosure else (None, None)
+        return GraspAnswer(contacts, links, found.closed.end, distance, size, found.closed.path)
+
+    def sweep(self, candidates: Candidates, request: GraspRequest, sweep: Sweep) -> tuple[int, list[Found]]:
+        """Simulate candidates one after the other, and keep those that are good enough.
+
+        Returns:
+            The index of the next candidate, and the grasps in the order of their indices.
+        """
+        found: list[Found] = []
+        manip, state = self._manipulator(), self.robot.simulation_state
+        gripper, number = manip.GetGripperIndices(), 0
+        with state.simulation.lock, kept_in_place(state):
+            for number, (parameters, preshape) in enumerate(candidates.all(request.parameters)):
+                if number < sweep.start:
+                    continue
+                if sweep.most and len(found) >= sweep.most:
+                    return number, found
+                self.robot.SetDOFValues(preshape, gripper)
+                answer = self._good(replace(request, parameters=parameters), sweep, manip)
+                if answer is not None:
+                    found.append(Found(parameters, preshape, answer))
+        return max(len(candidates), sweep.start), found
+
+    def _good(self, request: GraspRequest, sweep: Sweep, manip: Manipulator) -> GraspAnswer | None:
+        noise = request.parameters.graspingnoise
+        try:
+            answer = self.grasp(replace(request, parameters=replace(request.parameters, graspingnoise=0.0)))
+            if sweep.threshold is not None and (answer.mindist or 0.0) < sweep.threshold:
+                return None
+            if noise > 0 and not self._is_robust([self.grasp(request) for _ in range(sweep.tries)], noise):
+                return None
+        except PlanningError:
+            return None
+        return answer if not sweep.checkik or self._is_reachable(answer, manip) else None
+
+    def _is_robust(self, answers: Sequence[GraspAnswer], noise: float) -> bool:
+        """Return whether grasps with noise end close enough to one another; OpenRAVE's rule."""
+        if not answers:
+            return True
+        values = np.array([answer.end.values for answer in answers])
+        places = np.array([answer.end.T_world_base[:3, 3] for answer in answers])
+        spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).mean())
+        bounds = motion_bounds(self.robot.simulation_state.scene)
+        spread += float((np.abs(values - values.mean(axis=0)) @ bounds).max())
+        return spread <= max(0.005 * math.sqrt(0.49 + 400 * noise) - 0.0035, noise / 10)
+
+    def _is_reachable(self, answer: GraspAnswer, manip: Manipulator) -> bool:
+        T_base_tool = np.linalg.inv(self.robot.GetTransform()) @ manip.GetTransform()
+        return manip.FindIKSolution(answer.end.T_world_base @ T_base_tool, _CHECKED) is not None
+
+    def stable_contacts(self, direction: Floats, friction: float) -> tuple[Floats, Ints]:
+        """Return the contacts of the hand in the present configuration that closing presses against other bodies.
+
+        Args:
+            direction: Velocity of links that no gripper joint moves, shape (3,).
+            friction: Friction coefficient, more than 0.
+
+        Returns:
+            Contact points and normals out of the other bodies, shape (n, 6), and the link at each of them.
+        """
+        robot, manip = self.robot, self._manipulator()
+        links = frozenset(link.GetIndex() for link in manip.GetChildLinks())
+        state = robot.simulation_state
+        with state.simulation.lock, hand_tests(self.env.GetCollisionChecker().world(), state, None) as tests:
+            contacts, at = tests.contacts(links, robot.GetTransform(), robot.GetDOFValues(), "anything")
+        rows, indices = contact_rows(contacts), np.array(at, dtype=int)
+        kept = self._presses(rows, indices, direction, friction, self._closing())
+        return rows[kept], indices[kept]
+
+    def execute_grasp(self, answer: GraspAnswer) -> None:
+        """Have the controller move the joints to those of a grasp."""
+        self.execute(self.trajectory_of(answer.path[-1:] and [answer.end]))
+
+    def trajectory_of(self, path: Sequence[Waypoint]) -> Trajectory:
+        """Return configurations of a grasp as a trajectory."""
+        traj = Trajectory(self.env, "")
+        traj.set_waypoints(motion_of(self.robot, self.robot.GetActiveDOFIndices().tolist(), path))
+        return traj
+
+    def _manipulator(self) -> Manipulator:
+        manip = self.robot.GetActiveManipulator()
+        if manip is None:
+            raise ArgumentError(f"robot '{self.robot.GetName()}' has no active manipulator; call SetActiveManipulator")
+        return manip
+
+    def _sides(self, chuckingdirection: Sequence[float] | None) -> Mapping[int, float]:
+        """Return the sign of the motion of each active joint; 0 for those that are not of the gripper."""
+        manip = self._manipulator()
+        gripper = manip.GetGripperIndices().tolist()
+        signs = manip.GetChuckingDirection().tolist() if chuckingdirection is None else list(chuckingdirection)
+        if len(signs) != len(gripper):
+            raise ArgumentError(
+                f"Grasper: chuckingdirection has {len(signs)} numbers, and the gripper has {len(gripper)} joints"
+            )
+        known = dict(zip(gripper, signs, strict=True))
+        return {int(dof): float(known.get(int(dof), 0.0)) for dof in self.robot.GetActiveDOFIndices()}
+
+    def _closing(self) -> Floats:
+        """Return the velocities of all DOFs when all grippers close, shape (dof,)."""
+        speeds = np.zeros(self.robot.GetDOF())
+        for manip in self.robot.GetManipulators():
+            speeds[manip.GetGripperIndices()] = manip.GetChuckingDirection()
+        return speeds
+
+    def _is_stable(self, found: Grasped, request: GraspRequest) -> list[bool]:
+        target, end, state = request.parameters.target, found.closed.end, self.robot.simulation_state
+        assert target is not None, "there are contacts"
+        direction = target.GetTransform()[:3, :3] @ request.parameters.direction
+        speeds = self._closing()
+        for dof, side in self._sides(request.chuckingdirection).items():
+            speeds[dof] = side
+        with state.simulation.lock, kept_in_place(state):
+            state.set_transform(end.T_world_base)
+            state.set_values(end.values)
+            return self._presses(found.contacts, found.links, direction, request.friction, speeds)
+
+    def _presses(self, contacts: Floats, links: Ints, direction: Floats, friction: float, speeds: Floats) -> list[bool]:
+        """Return for each contact whether its link moves into the friction cone, in the present configuration."""
+        kept: list[bool] = []
+        for row, link in zip(contacts, links.tolist(), strict=True):
+            velocity = self.robot.CalculateJacobian(link, row[:3]) @ speeds
+            velocity = velocity if np.linalg.norm(velocity) > 0 else direction
+            inwards = -float(velocity @ row[3:])
+            kept.append(friction > 0 and inwards * math.hypot(1, friction) >= float(np.linalg.norm(velocity)) > 0)
+        return kept
+
+
+def force_closure(contacts: Floats, friction: float) -> tuple[float, float]:
+    """Return OpenRAVE's ``mindist`` and ``volume`` of the wrenches about the origin of the world.
+
+    Args:
+        contacts: Contact points and normals, shape (n, 6).
+        friction: Friction coefficient.
+    """
+    some = contacts[np.arange(_MOST) * len(contacts) // _MOST] if len(contacts) > _MOST else contacts
+    distance = epsilon(some[:, :3], some[:, 3:], friction)
+    if distance <= _CLOSED and len(some) < len(contacts):
+        some = contacts
+        distance = epsilon(some[:, :3], some[:, 3:], friction)
+    return distance, volume(some[:, :3], some[:, 3:], friction)

@@ -1,0 +1,226 @@
+"""Regions as starts and goals of planning problems."""
+
+# ruff: noqa: PLC0415 - inverse kinematics is slow to import
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, inverse
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions.ik_parameterization import goal_of_tool
+from ravemj.manipulation.refusals import Cause
+from ravemj.manipulation.region_errors import at_values, region_error
+from ravemj.manipulation.roots import PoseSolutions, RegionRoots, Sampler
+from ravemj.planning.projection import PROJECTION_STEPS, Error, project
+from ravemj.planning.space import Space
+from ravemj.rave.enums import IkFilterOptions
+from ravemj.rave.iksolver import IkSolver
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.planning.path_constraints import TOLERANCE, constrain, moving_frame, of_tool, stacked, tool_frame
+from ravemj.rave.planning.values import Hand, Values
+from ravemj.rave.region import Region
+from ravemj.rave.specification import IkParameterization
+
+_PROJECTED = 0.1
+"""Projections stop at this fraction of the tolerance, so that rounding does not reject their results."""
+
+_TRIES = 4
+"""Number of random configurations to project onto a region if the arm has no IK solver."""
+
+_STEPS = 20
+"""Maximum number of steps of a projection onto a region."""
+
+_MOST_ROWS = 16
+"""Maximum number of tested solutions of a pose, one turn of each branch first; arms may have hundreds."""
+
+_SAME = 1e-9
+"""Tolerance of equal values [rad or m]."""
+
+_FULL_POSE = 6
+"""Minimum number of arm joints for a full pose."""
+
+_Type = IkParameterization.Type
+_NO_COLLISIONS = int(IkFilterOptions.IgnoreSelfCollisions)
+
+
+class MotionSets(NamedTuple):
+    """Goal regions and constraints of a motion.
+
+    Attributes:
+        goals: Regions, one of which the tool should reach.
+        constraints: The constraints along the whole motion, as arguments of ``constrain``.
+        holding: The grabbed body to which the regions refer; None for the tool.
+    """
+
+    goals: Sequence[Region] = ()
+    constraints: Sequence[object] = ()
+    holding: KinBody | None = None
+
+    def state(self, values: Values, hand: Callable[[], Hand], probability: float) -> None:
+        """Add goals and constraints to a problem of a hand; an iteration samples a goal with ``probability``."""
+        for one in self.constraints:
+            constrain(values, one, lambda: hand().manip, TOLERANCE, self.holding)
+        if self.goals:
+            values.goal_sampler = Sampler(region_roots(values, hand(), self.goals, self.holding), probability)
+
+
+def region_roots(values: Values, hand: Hand, regions: Sequence[Region], holding: KinBody | None) -> RegionRoots:
+    """Return a source of arm configurations with the tool in one of several regions.
+
+    Args:
+        values: The problem, in which the arm joints of one active manipulator move, and perhaps those of its gripper.
+        hand: This manipulator and its tool.
+        regions: The regions of the tool, or of the body that it has grabbed.
+        holding: The grabbed body; None for the tool.
+
+    Raises:
+        ArgumentError: other joints move, the frame of a region was removed or moves with the arm, or a preshape has
+            a wrong number of values, or values of joints that do not move.
+    """
+    bodies, names = hand.tool.bodies, _names(regions)
+    tool = tool_frame(bodies, hand.manip)
+    sets = [of_tool(one.at_present(), hand.manip, holding) for one in regions]
+    for one, poses in zip(regions, sets, strict=True):
+        poses.sample(np.random.default_rng(0), 0)  # which needs bounds
+        if one.frame is not None and moving_frame(bodies, one.frame) is not None:
+            raise ArgumentError(f"region '{one.name}': its frame moves with the arm that should reach it")
+    assert tool is not None, "the tool of the arm moves"
+    errors = [at_values(bodies, region_error(one, tool, None)) for one in sets]
+    solver = _PoseSolver(hand, values.space(), errors, [_at_start(hand, one) for one in regions])
+    solve = solver.solve if solver.solves_poses else solver.search
+    return RegionRoots(sets, names, solve, lambda region, row: _repaired(values, errors[region], row))
+
+
+def preshaped_dofs(manip: Manipulator, regions: Sequence[Region]) -> list[int]:
+    """Return the gripper DOFs that the preshapes of regions change from their present values.
+
+    Raises:
+        ArgumentError: the number of values of a preshape differs from that of the gripper.
+    """
+    dofs = [int(dof) for dof in manip.GetGripperIndices()]
+    present, moved = manip.GetRobot().GetDOFValues()[dofs], set[int]()
+    for one in regions:
+        if one.preshape is None:
+            continue
+        if len(one.preshape) != len(dofs):
+            joints = f"the gripper of '{manip.GetName()}' has {len(dofs)} joints"
+            raise ArgumentError(f"region '{one.name}': its preshape has {len(one.preshape)} values, and {joints}")
+        moved |= {dof for dof, value, now in zip(dofs, one.preshape, present, strict=True) if abs(value - now) > _SAME}
+    return [dof for dof in dofs if dof in moved]
+
+
+def _at_start(hand: Hand, region: Region) -> Floats:
+    """Return the present configuration with the preshape of a region, shape (n,)."""
+    bodies, manip = hand.tool.bodies, hand.manip
+    values, active = bodies.values(), [dof for part in bodies.parts for dof in part.dofs]
+    for dof in preshaped_dofs(manip, [region]):
+        if dof not in active:
+            joint = manip.GetRobot().GetJointFromDOFIndex(dof).GetName()
+            raise ArgumentError(f"region '{region.name}': its preshape moves joint '{joint}', which is not active")
+    if region.preshape is not None:
+        for dof, value in zip(manip.description.gripper_dofs, region.preshape.tolist(), strict=True):
+            if dof in active:
+                values[active.index(dof)] = value
+    return values
+
+
+def _names(regions: Sequence[Region]) -> list[str]:
+    """Return unique names of regions; an unnamed region, or one whose name is taken, gets its index."""
+    given = Counter(one.name for one in regions)
+    return [
+        one.name if one.name and given[one.name] == 1 else f"{one.name or 'region'} {number}"
+        for number, one in enumerate(regions)
+    ]
+
+
+class _PoseSolver:
+    """IK of poses in regions, by the solver of an arm or by projection."""
+
+    def __init__(self, hand: Hand, space: Space, errors: Sequence[Error], starts: Sequence[Floats]) -> None:
+        self._manip, self._space, self._errors, self._starts = hand.manip, space, errors, starts
+        self._columns, manip = list(hand.tool.columns), hand.manip
+        self._rest = np.setdiff1d(np.arange(hand.tool.dof), self._columns)  # of the gripper
+        self._given, self._direction = manip.GetIkSolver(), np.array(manip.description.direction)
+        self.solves_poses = self._given is not None or manip.GetArmDOF() >= _FULL_POSE
+
+    def solve(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
+        """Return the joint values of all IK branches and turns for a pose of a region.
+
+        Solvers of other goal types leave a part of the pose free; their solutions are projected onto the region.
+        """
+        kind = _Type.Transform6D if self._given is None else self._given.kind
+        base = self._manip.GetBase()
+        T_base_tool = T_world_tool if base is None else inverse(base.GetTransform()) @ T_world_tool
+        goal = T_base_tool if kind == _Type.Transform6D else goal_of_tool(kind, T_base_tool, self._direction)
+        if self._given is None:
+            found, asked = self._manip.ik_solver(kind).solve_one(goal, limits=True), False
+        else:
+            found, asked = self._accepted(self._given, goal)
+        if not len(found):
+            return PoseSolutions(found, self._cause(kind, goal, asked=asked))
+        rows = np.tile(self._starts[region], (len(found), 1))
+        near = rows[0].copy()
+        rows[:, self._columns], near[self._columns] = found, self._manip.GetArmDOFValues()
+        rows = _some(rows, near, random)
+        if kind == _Type.Transform6D:
+            return PoseSolutions(rows, Cause.FILTER)
+        return PoseSolutions(self._moved(region, rows, self._space), Cause.REGION)
+
+    def _accepted(self, solver: IkSolver, goal: Floats) -> tuple[Floats, bool]:
+        """Return the solutions of a goal that user filters accept, and whether there are filters."""
+        asked = IkParameterization()
+        if goal.ndim == 1:
+            asked.SetValues(goal, solver.kind)
+        search = solver.search(goal if goal.ndim == 2 else asked, None, _NO_COLLISIONS)
+        return np.array(search.every()).reshape(-1, self._manip.GetArmDOF()), search.asks_users
+
+    def _cause(self, kind: _Type, goal: Floats, *, asked: bool) -> Cause:
+        """Return the reason why a goal has no solution; ``asked`` tells whether user filters were called."""
+        from ravemj.ik.candidates import shortfall
+
+        solver = self._manip.ik_solver(kind)
+        if asked and len(solver.solve_one(goal, limits=True)):
+            return Cause.FILTER
+        return Cause.LIMITS if shortfall(solver, goal)[1] else Cause.REACH
+
+    def search(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
+        """Return configurations in a region, projected from random ones; the sampled pose is not used."""
+        del T_world_tool
+        starts = np.array([self._space.sample(random) for _ in range(_TRIES)])
+        starts[:, self._rest] = self._starts[region][self._rest]
+        found = self._moved(region, starts, self._space)
+        endless = np.full(len(self._space.lower), np.inf)
+        unlimited = replace(self._space, lower=-endless, upper=endless)
+        is_limited = not len(found) and len(self._moved(region, starts[:2], unlimited))
+        return PoseSolutions(found, Cause.LIMITS if is_limited else Cause.REACH)
+
+    def _moved(self, region: int, rows: Floats, space: Space) -> Floats:
+        error, smallest = self._errors[region], TOLERANCE * _PROJECTED
+        ends = [project(row, error, space, smallest, _STEPS) for row in rows]
+        return np.array([end for steps, end in ends if steps >= 0]).reshape(-1, rows.shape[1])
+
+
+def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
+    """Return a subset of many solutions: for each branch the nearest turn, then adjacent turns.
+
+    Paths to farther turns are long, without new options at the goal.
+    """
+    rows = rows[np.argsort(np.linalg.norm(rows - near, axis=1), kind="stable")]
+    first = np.unique(np.round(np.mod(rows, 2 * np.pi), 6), axis=0, return_index=True)[1]
+    others = np.setdiff1d(np.arange(len(rows)), first)
+    return rows[[*random.permutation(first), *others][:_MOST_ROWS]]
+
+
+def _repaired(values: Values, error: Error, row: Floats) -> Floats | None:
+    """Project a configuration onto both the constraint and a region; None if that fails."""
+    manifold = values.conditions.manifold
+    if manifold is None:
+        return None
+    both = stacked([manifold.error, error], [1.0, manifold.threshold / TOLERANCE])
+    steps, found = project(row, both, values.space(), _PROJECTED * manifold.threshold, PROJECTION_STEPS)
+    return found if steps >= 0 else None

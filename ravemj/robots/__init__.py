@@ -1,0 +1,1 @@
+"""Real robots: streaming of motions to them, and joint states from them."""

@@ -1,0 +1,163 @@
+"""Whole-body inverse kinematics: a step of a humanoid beside bare MuJoCo with a QP, and beside mink."""
+
+import importlib.util
+import time
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+
+import ravemj
+from benchmarks.measure import ROOT, Row, take_turns
+from ravemj.core.transforms import Floats
+
+_LIMBS = ("LFoot", "RFoot", "LHand", "RHand")
+_STEPS, _DT = 100, 0.01
+_WEIGHTS = (1.0, 0.01, 1e-6)  # of contacts, centre of mass and posture
+_FINGER = (
+    '<Body name="F{0}" type="dynamic"><offsetfrom>{1}</offsetfrom><Translation>0 0 -0.08</Translation>'
+    '<Geom type="sphere"><radius>0.01</radius></Geom><Mass type="mimicgeom"><total>0.02</total></Mass></Body>'
+    '<Joint name="F{0}" type="hinge">'
+    "<Body>{1}</Body><Body>F{0}</Body><offsetfrom>F{0}</offsetfrom><Axis>0 1 0</Axis><limitsdeg>-60 60</limitsdeg>"
+    "<maxvel>6</maxvel></Joint>"
+)
+
+
+def rows() -> list[Row]:
+    """Measure a step with four contacts, the centre of mass on a circle and a posture, of 38 variables."""
+    steps = [_ours(exact=False), _bare(), _ours(exact=True), *_mink()]
+    measured = take_turns([_timed(step) for step in steps], 9)
+    found = [
+        Row("whole body: a step, weights alone", "µs", measured[0], measured[1], 4.0, note="floor: bare MuJoCo, a QP"),
+        Row("whole body: a step, exact contacts", "µs", measured[2], measured[0], 2.0, note="floor: weights alone"),
+    ]
+    if len(measured) > 3:
+        found.append(Row("whole body: a step, weights alone", "µs", measured[0], measured[3], 1.1, note="floor: mink"))
+    return found
+
+
+def _timed(step: Callable[[float], None]) -> Callable[[], float]:
+    """Return a function that measures a step [µs of the processor]."""
+    clock = [0.0]
+
+    def measure() -> float:
+        start = time.process_time()
+        for _ in range(_STEPS):
+            clock[0] += _DT
+            step(clock[0])
+        return (time.process_time() - start) / _STEPS * 1e6
+
+    return measure
+
+
+def _robot() -> ravemj.Robot:
+    """Return the biped with seven more joints, of fingers."""
+    text = (ROOT / "models" / "biped.robot.xml").read_text(encoding="utf-8")
+    fingers = "".join(_FINGER.format(number, "LHand" if number % 2 else "RHand") for number in range(7))
+    values = "<jointvalues>"
+    head, tail = text.split("    " + values)
+    env = ravemj.Environment()
+    robot = env.ReadRobotData(head + fingers + values + tail.replace("</jointvalues>", " 0" * 7 + "</jointvalues>"))
+    env.Add(robot)
+    return robot
+
+
+def _circle(com: Floats, t: float) -> Floats:
+    return com + 0.01 * np.array([np.cos(t) - 1, np.sin(t), 0])
+
+
+def _ours(*, exact: bool) -> Callable[[float], None]:
+    ik = ravemj.WholeBodyIK(_robot(), base=True)
+    ik.exact_contacts = exact
+    for name in _LIMBS:
+        ik.add_contact(name, weight=_WEIGHTS[0])
+    com = ik.add_com(weight=_WEIGHTS[1])
+    ik.add_posture(weight=_WEIGHTS[2])
+    start = np.array(com.target)
+
+    def step(t: float) -> None:
+        com.target = _circle(start, t)
+        ik.step(_DT)
+
+    return step
+
+
+def _free_model() -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """Return the same robot in a model of MuJoCo with a free joint at the pelvis."""
+    env = _robot().GetEnv()
+    spec = env.spec
+    spec.body("Pelvis").add_freejoint()
+    model, start = spec.compile(), env.data.qpos
+    data = mujoco.MjData(model)
+    data.qpos[7:] = start
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+def _bare() -> Callable[[float], None]:
+    """Return the same step by calls of MuJoCo and numpy: Jacobians, normal equations, box QP, integration."""
+    model, data = _free_model()
+    count = model.nv
+    bodies = [model.body(name).id for name in _LIMBS]
+    goals = [(data.xpos[body].copy(), data.xquat[body].copy()) for body in bodies]
+    start, posture = data.subtree_com[0].copy(), data.qpos.copy()
+    roots = np.sqrt(np.repeat(_WEIGHTS, [24, 3, count - 6]))
+    jacobian, error = np.zeros((27 + count - 6, count)), np.zeros(27 + count - 6)
+    jacobian[27:, 6:] = np.eye(count - 6)
+    factor, turn = np.zeros((count, count + 7)), np.zeros(3)
+    fastest = np.append(np.full(6, np.inf), np.full(count - 6, 6.0)) * _DT
+    lowest, highest = (
+        np.append(np.full(6, -np.inf), model.jnt_range[1:, 0]),
+        np.append(np.full(6, np.inf), model.jnt_range[1:, 1]),
+    )
+    values = np.zeros(count)
+
+    def step(t: float) -> None:
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        for index, (body, (place, wxyz)) in enumerate(zip(bodies, goals, strict=True)):
+            row = 6 * index
+            mujoco.mj_jacBody(model, data, jacobian[row : row + 3], jacobian[row + 3 : row + 6], body)
+            error[row : row + 3] = place - data.xpos[body]
+            mujoco.mju_subQuat(turn, wxyz, data.xquat[body])
+            error[row + 3 : row + 6] = data.xmat[body].reshape(3, 3) @ turn
+        mujoco.mj_jacSubtreeCom(model, data, jacobian[24:27], 1)
+        error[24:27] = _circle(start, t) - data.subtree_com[0]
+        error[27:] = posture[7:] - data.qpos[7:]
+        rows, wanted = jacobian * roots[:, None], error * roots
+        hessian = rows.T @ rows + 1e-8 * np.eye(count)
+        gradient = -(wanted @ rows)
+        values[6:] = data.qpos[7:]
+        scale, x = 1e6 / np.abs(gradient).max(), np.zeros(count)
+        lower, upper = np.maximum(lowest - values, -fastest), np.minimum(highest - values, fastest)
+        mujoco.mju_boxQP(x, factor, None, hessian * scale, gradient * scale, lower, upper)
+        mujoco.mj_integratePos(model, data.qpos, x, 1.0)
+
+    return step
+
+
+def _mink() -> list[Callable[[float], None]]:
+    """Return the same step by mink; none if it is not installed."""
+    if importlib.util.find_spec("mink") is None:
+        return []
+    import mink  # noqa: PLC0415 - of the group ``bench``
+
+    model, data = _free_model()
+    configuration = mink.Configuration(model, data.qpos.copy())
+    contact, balance, rest = _WEIGHTS
+    feet = [mink.FrameTask(name, "body", contact**0.5, contact**0.5) for name in _LIMBS]
+    com, posture = mink.ComTask(balance**0.5), mink.PostureTask(model, rest**0.5)
+    tasks: list[Any] = [*feet, com, posture]
+    for task in tasks:
+        task.set_target_from_configuration(configuration)
+    start = data.subtree_com[0].copy()
+    speeds = {model.joint(joint).name: 6.0 for joint in range(1, model.njnt)}
+    limits = [mink.ConfigurationLimit(model), mink.VelocityLimit(model, speeds)]
+
+    def step(t: float) -> None:
+        com.set_target(_circle(start, t))
+        velocity = mink.solve_ik(configuration, tasks, _DT, "daqp", damping=1e-8, limits=limits)
+        configuration.integrate_inplace(velocity, _DT)
+
+    return [step]

@@ -1,0 +1,153 @@
+"""Grasps of a robot: each reason for a rejection, invariance, arguments that are refused."""
+
+import numpy as np
+import pytest
+
+import ravemj
+
+HAND = """<Robot name="tongs"><KinBody>
+  <Body name="bar"/>
+  <Body name="left"><offsetfrom>bar</offsetfrom>
+    <Geom type="box"><Translation>0.006 0 0</Translation><Extents>0.005 0.01 0.03</Extents></Geom></Body>
+  <Body name="right"><offsetfrom>bar</offsetfrom>
+    <Geom type="box"><Translation>-0.006 0 0</Translation><Extents>0.005 0.01 0.03</Extents></Geom></Body>
+  <Joint name="l" type="slider"><Body>bar</Body><Body>left</Body><axis>1 0 0</axis><limits>0 0.04</limits></Joint>
+  <Joint name="r" type="slider"><Body>bar</Body><Body>right</Body><axis>-1 0 0</axis><limits>0 0.04</limits></Joint>
+</KinBody>
+<Manipulator name="hand"><base>bar</base><effector>bar</effector><direction>0 0 1</direction>
+  <joints>l r</joints><closingdirection>-1 -1</closingdirection></Manipulator></Robot>"""
+
+
+def kitchen(target="box", at=(0.5, 0, 0), floor=False):
+    env = ravemj.Environment()
+    assert env.Load(ravemj.model_path("panda"))
+    assert env.Load(ravemj.model_path(target))
+    body = env.GetKinBody(target)
+    body.SetTransform([1, 0, 0, 0, *at])
+    if floor:
+        add_box(env, "floor", [0, 0, -0.012, 1, 1, 0.01])
+    return env.GetRobots()[0], body
+
+
+def add_box(env, name, numbers):
+    body = ravemj.RaveCreateKinBody(env, "")
+    body.SetName(name)
+    body.InitFromBoxes([numbers], True)
+    env.Add(body)
+    return body
+
+
+@pytest.mark.parametrize("method", ["fly", "antipodal"])
+def test_the_panda_holds_the_box(method):
+    robot, box = kitchen()
+    before = robot.GetTransform(), robot.GetDOFValues()
+    found = ravemj.grasps(robot, box, method=method, proofs=2)
+    for old, new in zip(before, (robot.GetTransform(), robot.GetDOFValues()), strict=True):
+        np.testing.assert_array_equal(old, new)
+    qualities = [grasp.quality for grasp in found]
+    assert len(found) > 5
+    assert qualities == sorted(qualities, reverse=True)
+    assert qualities[-1] > 0
+    assert found[0].proof.held
+    arm = robot.GetActiveManipulator()
+    for grasp in found[:3]:
+        robot.SetDOFValues(grasp.arm, arm.GetArmIndices())
+        error = arm.GetTransform() - box.GetTransform() @ grasp.pose
+        assert np.abs(error).max() < 2e-4
+        assert set(np.sign(grasp.contacts[:, 3:].round(6) @ np.ones(3))) == {-1, 1}
+        half, middle = np.array([0.02, 0.03, 0.05]), [0, 0, 0.05]
+        inside = np.abs(grasp.contacts[:, :3] - middle) / half
+        np.testing.assert_allclose(inside.max(axis=1), 1, atol=2e-3)
+
+
+def test_each_reason_is_given():
+    seen: set[str] = set()
+    robot, box = kitchen(floor=True)
+    seen |= set(ravemj.grasps(robot, box, reach=False).counts)
+    assert {"touches 'floor' first", "finger 'finger' starts in contact", "not closed"} <= seen
+    seen = set(ravemj.grasps(robot, box, method="antipodal", reach=False).counts)
+    assert {"in collision with 'floor'", "in collision with 'box'", "too wide"} <= seen
+    box.SetTransform([1, 0, 0, 0, 3, 0, 0])
+    assert "no IK" in ravemj.grasps(robot, box).counts
+    box.SetTransform([1, 0, 0, 0, 0.5, 0, 0])
+    add_box(robot.GetEnv(), "wall", [0, 0, 0.4, 0.1, 0.1, 0.1])  # inside the arm
+    assert "arm in collision" in ravemj.grasps(robot, box).counts
+
+
+def tongs(*half):
+    env = ravemj.Environment()
+    assert env.LoadData(HAND)
+    return env.GetRobots()[0], add_box(env, "target", [0, 0, 0, *half])
+
+
+def test_tongs_fly_past_a_stick():
+    robot, stick = tongs(0.002, 0.002, 0.002)
+    assert "flies past the target" in ravemj.grasps(robot, stick, delta=0.005).counts
+
+
+def test_the_quality_does_not_depend_on_where_the_target_stands():
+    robot, box = tongs(0.021, 0.016, 0.022)
+    first = ravemj.grasps(robot, box, method="antipodal")
+    turned = ravemj.matrixFromAxisAngle([0.3, -0.5, 0.2])
+    turned[:3, 3] = [1, 2, 3]
+    box.SetTransform(turned)
+    second = ravemj.grasps(robot, box, method="antipodal")
+    assert len(first) == len(second) > 0
+    np.testing.assert_allclose([one.quality for one in first], [one.quality for one in second], rtol=0.02)
+
+
+def test_a_table_of_counts_is_printed():
+    robot, box = kitchen()
+    found = ravemj.grasps(robot, box, reach=False)
+    head, *rows = str(found).splitlines()
+    total = len(found) + len(found.rejected)
+    assert head.strip() == f"{len(found)}  grasps of {total} candidates, friction 0.4"
+    assert sum(int(row.split()[0]) for row in rows) == len(found.rejected)
+    assert all(grasp.reason for grasp in found.rejected)
+    assert not any(grasp.reason for grasp in found)
+
+
+def test_drawn_contacts_have_the_colour_of_what_limits_them():
+    robot, box = kitchen()
+    env = robot.GetEnv()
+    grasp = ravemj.grasps(robot, box, reach=False)[0]
+    assert ravemj.draw_grasp(box, grasp) == []  # no viewer
+    env.SetViewer("offscreen")
+    assert len(ravemj.draw_grasp(box, grasp)) == len(grasp.contacts) + 2
+    assert 0 < len(grasp.limiting) < len(grasp.contacts)
+    assert grasp.weakness.startswith(("turns about ", "slides along "))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"method": "magic"}, "method: is 'magic'; expected 'fly' or 'antipodal'"),
+        ({"friction": -1}, "friction"),
+        ({"friction": float("nan")}, "friction"),
+        ({"rolls": 0}, "rolls: is 0; expected 1 or more"),
+        ({"delta": 0}, "delta"),
+    ],
+)
+def test_wrong_arguments_are_refused(change, message):
+    robot, box = tongs(0.02, 0.02, 0.02)
+    with pytest.raises(ravemj.ArgumentError, match=message):
+        ravemj.grasps(robot, box, **change)
+
+
+def test_robots_that_cannot_grasp_are_refused():
+    robot, box = kitchen()
+    with pytest.raises(ravemj.ArgumentError, match="is the robot or in its hand"):
+        ravemj.grasps(robot, robot)
+    robot.Grab(box)
+    with pytest.raises(ravemj.ArgumentError, match="is the robot or in its hand"):
+        ravemj.grasps(robot, box)
+    env = ravemj.load(ravemj.model_path("puma560"))
+    with pytest.raises(ravemj.ArgumentError, match="no gripper joints that close"):
+        ravemj.grasps(env.GetRobots()[0], add_box(env, "box", [1, 0, 0, 0.1, 0.1, 0.1]))
+    robot, _ = tongs(0.02, 0.02, 0.02)
+    empty = ravemj.RaveCreateKinBody(robot.GetEnv(), "")
+    empty.SetName("empty")
+    empty.InitFromBoxes(np.zeros((0, 6)), True)
+    robot.GetEnv().Add(empty)
+    with pytest.raises(ravemj.ArgumentError, match="no shapes"):
+        ravemj.grasps(robot, empty)
