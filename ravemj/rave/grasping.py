@@ -76,9 +76,9 @@ def grasps(  # noqa: PLR0913 - keyword arguments
         raise ArgumentError(f"grasps: body: '{body.GetName()}' is the robot or in its hand; expected a body to grasp")
     with robot.GetEnv():
         state, target = robot.simulation_state, body.simulation_state
-        found = search(state, arm.description, target, choices, _reach(robot, arm) if reach else None)
-        best = [proved(state, arm.description, target, one, choices.friction) for one in found[:proofs]]
-    return Grasps([*best, *found[len(best) :], *found.rejected], choices.friction)
+        searched = search(state, arm.description, target, choices, _reach(robot, arm) if reach else None)
+        best = [proved(state, arm.description, target, grasp, choices.friction) for grasp in searched[:proofs]]
+    return Grasps([*best, *searched[len(best) :], *searched.rejected], choices.friction)
 
 
 def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:

@@ -249,8 +249,8 @@ class Grasper(Helper):
             parameters=parameters, friction=self.friction, forceclosure=forceclosurethreshold is not None
         )
         sweep = Sweep(startindex or 0, maxgrasps or 0, forceclosurethreshold, tries)
-        following, found = self._grasper.sweep(candidates_of(self._grasper, parts), request, sweep)
-        return following, [_result(one) for one in found]
+        following, grasps = self._grasper.sweep(candidates_of(self._grasper, parts), request, sweep)
+        return following, [_result(grasp) for grasp in grasps]
 
     def ConvexHull(
         self,
@@ -275,14 +275,14 @@ class Grasper(Helper):
             PlanningError: the points are flat.
         """
         array = checked_numbers(points, "ConvexHull: points")
-        found = hull(array) if array.ndim == 2 and len(array) else None
-        if found is None:
+        convex_hull = hull(array) if array.ndim == 2 and len(array) else None
+        if convex_hull is None:
             raise PlanningError("ConvexHull: the points are flat; they should span all dimensions")
-        faces = [list(face) for face in found.faces]
+        faces = [list(face) for face in convex_hull.faces]
         return (
-            found.planes if returnplanes else None,
+            convex_hull.planes if returnplanes else None,
             faces if returnfaces else None,
-            found.triangles if returntriangles else None,
+            convex_hull.triangles if returntriangles else None,
         )
 
     def _avoided(self) -> tuple[int, ...]:
@@ -310,8 +310,8 @@ def _table(rows: ArrayLike, width: int, name: str) -> Floats:
     return table
 
 
-def _result(found: Found) -> tuple[Any, ...]:
-    parameters, answer = found.parameters, found.answer
+def _result(grasp: Found) -> tuple[Any, ...]:
+    parameters, answer = grasp.parameters, grasp.answer
     return (
         parameters.position,
         parameters.direction,
@@ -320,7 +320,7 @@ def _result(found: Found) -> tuple[Any, ...]:
         parameters.manipulatordirection,
         answer.mindist or 0.0,
         answer.volume or 0.0,
-        found.preshape,
+        grasp.preshape,
         answer.end.T_world_base,
         answer.end.values,
         answer.contacts,

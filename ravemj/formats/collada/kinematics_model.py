@@ -130,10 +130,10 @@ class ModelReader:
     def settle(self, others: "list[ModelReader]") -> None:
         """Give the joints to the body, with what they follow, once all models of the body are read."""
         self._close_loops([end for reader in others for end in reader.ends])
-        for found in sorted(self._found, key=lambda found: found.place):  # OpenRAVE's order, where it wrote one
-            self.joints |= dict.fromkeys(found.keys, len(self._body.joints))
-            self.values.append(found.values)
-            self._body.joints.append(found.built)
+        for joint in sorted(self._found, key=lambda joint: joint.place):  # OpenRAVE's order, where it wrote one
+            self.joints |= dict.fromkeys(joint.keys, len(self._body.joints))
+            self.values.append(joint.values)
+            self._body.joints.append(joint.built)
         read_formulas(self._library, self.model, self.joints, self._body)
 
     def _close_loops(self, ends: "list[_LoopEnd]") -> None:
@@ -144,8 +144,8 @@ class ModelReader:
                 message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
                 self._library.warn("ignored-tag", message, start)
             elif local_name(start) == "attachment_start":
-                found = (end for end in ends if end[0] is not start and end[0].get("joint") == path)
-                end, child_link = next(found, (None, 0))
+                others = (end for end in ends if end[0] is not start and end[0].get("joint") == path)
+                end, child_link = next(others, (None, 0))
                 if end is None:
                     raise self._library.error("the other end of the loop is missing", start)
                 T_parent_frame = read_pose(self._library, start)
@@ -235,15 +235,15 @@ class ModelReader:
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
         """Return the element that an attachment refers to, and its ``<joint>``."""
         path = attachment.get("joint") or ""
-        found = self._library.resolve(path, self.model)
-        joint = None if found is None else found.element
+        resolved = self._library.resolve(path, self.model)
+        joint = None if resolved is None else resolved.element
         if joint is not None and local_name(joint) == "instance_joint":
             joint = self._library.follow(joint)
-        if found is None or joint is None or local_name(joint) != "joint":
+        if resolved is None or joint is None or local_name(joint) != "joint":
             raise self._library.error(f"there is no joint '{path}'", attachment)
         if next(children(joint, "revolute", "prismatic"), None) is None:
             raise self._library.error("the joint has no axis", joint)
-        return found.element, joint
+        return resolved.element, joint
 
     def _built_joint(
         self, joint: Element, axes: list[AxisReader], links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose

@@ -42,12 +42,12 @@ class Arm:
         return motion
 
     def _ends(self, places: Sequence[int]) -> list[int]:
-        found: list[int] = []
+        ends: list[int] = []
         for place in places:
             if place not in self.locked:
                 break
-            found.append(place)
-        return found
+            ends.append(place)
+        return ends
 
     @property
     def inner(self) -> list[int]:

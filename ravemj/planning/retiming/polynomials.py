@@ -248,12 +248,12 @@ class JerkLimited:
         """Return the duration of a segment [s]."""
         if not segment.is_from_rest_to_rest:
             return np.inf
-        return max((_double_s(*one)[3] for one in _joints(segment.step, limits)), default=0.0)
+        return max((_double_s(*joint)[3] for joint in _joints(segment.step, limits)), default=0.0)
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: one for each change of jerk, and its end."""
         joints = _joints(segment.step, limits)
-        changes = [_changes(_double_s(*one), duration) for one in joints]
+        changes = [_changes(_double_s(*joint), duration) for joint in joints]
         inner = np.unique(np.concatenate([np.zeros(1), *changes]))
         inner = inner[(inner > _SAME_TIME) & (inner < duration - _SAME_TIME)]
         times = np.append(inner[np.diff(inner, prepend=0.0) > _SAME_TIME], duration)
