@@ -104,7 +104,7 @@ def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:
         colour = _LIMITING if number in grasp.limiting else _OTHER
         drawn.append(env.drawarrow(point + _ARROW * normal, point, _THIN, colour))
     if grasp.weakest is not None:
-        along, colour = _weakest(grasp.weakest)
+        along, colour = _larger_part(grasp.weakest)
         center, along = body.GetCenterOfMass(), _radius(body) * T[:3, :3] @ along
         drawn += [env.drawarrow(center, center + way, 2 * _THIN, colour) for way in (along, -along)]
     return [handle for handle in drawn if handle is not None]
@@ -115,8 +115,8 @@ def _radius(body: KinBody) -> float:
     return float(np.linalg.norm(body.ComputeAABB().extents()))
 
 
-def _weakest(wrench: Floats) -> tuple[Floats, tuple[float, float, float]]:
-    """Return the direction of the larger part of a wrench, and the colour of its arrow."""
+def _larger_part(wrench: Floats) -> tuple[Floats, tuple[float, float, float]]:
+    """Return the direction of a wrench's force or torque, whichever is larger, and the colour of its arrow."""
     force, torque = wrench[:3], wrench[3:]
     part, colour = (force, _FORCE) if np.linalg.norm(force) >= np.linalg.norm(torque) else (torque, _TORQUE)
     return part / np.linalg.norm(part), colour

@@ -116,10 +116,10 @@ class Grasper(Helper):
             stablecontacts: Return only contacts that the closing fingers press against the target. OpenRAVE tests the
                 opposite direction, and returns none.
             forceclosure: Whether to compute ``mindist`` and ``volume``.
-            transformrobot: Whether the hand is placed and flies; otherwise only the fingers move.
+            transformrobot: Whether the hand is placed and moves to the target; otherwise only the fingers move.
             onlycontacttarget: Whether contact with another body is a failure.
             tightgrasp: Not used, as in OpenRAVE.
-            graspingnoise: Largest random displacement of a surface point of the target [m], in thought.
+            graspingnoise: Largest random error of a surface point of the target [m]: the target itself does not move.
             execute: Whether the controller moves the joints to those of the grasp; None: it does.
             translationstepmult: Factor of the steps for sliders and the flight [m/rad]; None: 0.1.
             outputfinal: Whether to return the last configuration.
@@ -207,7 +207,7 @@ class Grasper(Helper):
             rolls: Rotations of the tool [rad].
             manipulatordirections: Directions of the tool, shape (n, 3); None: the manipulator's.
             target: The body to grasp.
-            transformrobot: Whether the hand is placed and flies.
+            transformrobot: Whether the hand is placed and moves to the target.
             onlycontacttarget: Whether contact with another body is a failure.
             tightgrasp: Not used, as in OpenRAVE.
             graspingnoise: Largest displacement [m], and the number of grasps with noise (10) that have to end close to

@@ -151,7 +151,7 @@ class Batch:
     def _inverse_dynamics_by_mujoco(
         self, values: Floats, rates: Floats, accelerations: Floats, gravity: Floats, out: Floats
     ) -> bool:
-        """Compute the same one configuration after the other.
+        """Compute inverse dynamics with ``mj_rne``, one configuration at a time.
 
         Returns:
             False without a result if joints are coupled or have motors, or links are displaced.

@@ -191,9 +191,10 @@ class ModelReader:
         link.geometries += self._scene.geometry.read(node, pose_in_link, self._scene.bindings.moved)
 
     def _world(self, node: Node) -> Floats:
-        """Return the pose of a node as OpenRAVE composes it: in the first link, from below that link's node on.
+        """Return the pose of a node in the world as OpenRAVE composes it.
 
-        That node's own transform counts for its own shapes only, once more than it should.
+        It is the pose of the root link times the transforms of the nodes below that link's node. For shapes of that
+        node itself, its transform counts twice.
         """
         path = [*node.around()]
         if self._root not in path:

@@ -77,7 +77,7 @@ class CarryPoint:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
+        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
         return _names(self.pair)
 
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
@@ -133,7 +133,7 @@ class CarryPlane:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
+        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
         if self.pair is not None:
             return _names(self.pair)
         return [(2 if self.slider != 2 else 1, 2)]

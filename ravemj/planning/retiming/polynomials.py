@@ -21,7 +21,7 @@ class Polynomial:
     merges: bool
 
     def _first_time(self, way: Floats, limits: PathLimits) -> float:
-        """Return the initial time to try [s], if all joints move: the minimum from rest to rest."""
+        """Return the shortest duration to try [s] where all joints move; by default that from rest to rest."""
         return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:

@@ -60,7 +60,7 @@ class GraspParameters:
             manipulator's.
         standoff: Distance back after the contact [m].
         vintersectplane: Plane on which the tool stops, in place of a standoff: n.x + d = 0, shape (4,).
-        transformrobot: Whether the hand is placed and flies.
+        transformrobot: Whether the hand is placed and moves to the target.
         onlycontacttarget: Whether contact with another body is a failure.
         avoidcontact: Whether fingers stop before contact.
         leavescontact: Whether fingers that start in contact may leave it, if they avoid contact.
