@@ -131,7 +131,7 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
 def _descents(
     solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints
 ) -> Iterator[Found]:
-    """Yield the solutions below the closest of some samples and branches (K, 2)."""
+    """Yield the solutions that numeric descents reach from the samples and branches (K, 2) nearest to a solution."""
     for sample, branch in _distinct(missed, places).tolist():
         start = nearest_turns(solver.chain, solutions.values[sample, branch])[0]
         reached = solver.numeric.descend(pose, start)

@@ -51,7 +51,7 @@ class Connections:
 
     @cached_property
     def _placing(self) -> dict[int, int]:
-        """Joint that places each link placed by a joint."""
+        """For each link that a joint places, the index of this joint."""
         return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
 
     def between(self, link: int) -> set[int]:

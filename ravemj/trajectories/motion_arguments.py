@@ -170,7 +170,7 @@ def followed_file(simulation: Simulation, read: MotionFile) -> BodyMotion:
 
 
 def _named_robot(simulation: Simulation, names: Sequence[str]) -> BodyState:
-    """Return the first robot with the most joints among some names."""
+    """Return the robot to which the most of some joint names belong; of several, the first."""
     return max(_robots(simulation), key=lambda robot: len(set(names).intersection(robot.scene.dof_names)))
 
 
