@@ -167,8 +167,7 @@ class Context:
     def find(self, name: str, source: Source, *folders: str) -> str | None:
         """Look a file up in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
 
-        If none of them has it, as in a cloned repository that is not installed, the folders above the file that names it
-        are searched.
+        If none of them has it, as in a cloned repository, the folders above the file that names it are searched.
 
         Args:
             name: The file.
