@@ -168,9 +168,8 @@ class PathPlanner(Planner):
     def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
         """Yield alternative paths with their post-processing parameters, the quick ones first.
 
-        Other shortcuts of the same path mostly succeed. Otherwise each shortcut is certified, then also each edge of a
-        new
-        path.
+        Other shortcuts of the same path mostly succeed. Otherwise each shortcut is certified, then also each edge of
+        another path.
         """
         assert search is not None, "it has found the motion"
         proving = replace(values, conditions=replace(values.conditions, proves=True))
