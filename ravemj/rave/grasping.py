@@ -53,9 +53,9 @@ def grasps(  # noqa: PLR0913 - keyword arguments
         rolls: Number of rotations of the hand about each approach, or about the line of each pair. The default is 4 for
             ``fly`` and 8 for ``antipodal``.
         reach: Whether the arm has to reach a grasp without collisions; False: the hand alone counts.
-        proofs: Number of grasps, the best first, that are simulated: the fingers press with their largest force or
-            torque (10 N or N m if the model has none), the hand is lifted by 0.1 m and shaken along each axis with
-            5 m/s^2 for a second. ``Grasp.proof`` says whether the body moved in the hand by less than 5 mm and 5
+        proofs: Number of grasps that are simulated, those of ``distinct(proofs)``: the fingers press with their largest
+            force or torque (10 N or N m if the model has none), the hand is lifted by 0.1 m and shaken along each axis
+            with 5 m/s^2 for a second. ``Grasp.proof`` says whether the body moved in the hand by less than 5 mm and 5
             degrees.
 
     Returns:
@@ -77,8 +77,10 @@ def grasps(  # noqa: PLR0913 - keyword arguments
     with robot.GetEnv():
         state, target = robot.simulation_state, body.simulation_state
         searched = search(state, arm.description, target, choices, _reach(robot, arm) if reach else None)
-        best = [proved(state, arm.description, target, grasp, choices.friction) for grasp in searched[:proofs]]
-    return Grasps([*best, *searched[len(best) :], *searched.rejected], choices.friction)
+        best = searched.distinct(proofs)
+        rest = [grasp for grasp in searched if all(grasp is not chosen for chosen in best)]
+        best = [proved(state, arm.description, target, grasp, choices.friction) for grasp in best]
+    return Grasps([*best, *rest, *searched.rejected], choices.friction)
 
 
 def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:

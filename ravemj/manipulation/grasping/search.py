@@ -90,6 +90,16 @@ class Grasp:
         return f"{'slides along' if slides else 'turns about'} {direction}"
 
 
+_TWIN_DISTANCE, _TWIN_ANGLE = 0.015, np.radians(20)
+"""Distance of contacts [m] and angle of approaches [rad] below which one grasp is a near twin of another."""
+
+
+def _are_twins(grasp: Grasp, other: Grasp) -> bool:
+    apart = np.linalg.norm(grasp.contacts[:, None, :3] - other.contacts[None, :, :3], axis=2)
+    farthest = max(apart.min(axis=0).max(initial=0), apart.min(axis=1).max(initial=0))
+    return bool(farthest < _TWIN_DISTANCE and grasp.approach @ other.approach > np.cos(_TWIN_ANGLE))
+
+
 class Grasps(Sequence[Grasp]):
     """Grasps of an object, the best first, and the candidates that were rejected.
 
@@ -120,6 +130,18 @@ class Grasps(Sequence[Grasp]):
     def __len__(self) -> int:
         """Return the number of grasps."""
         return len(self.kept)
+
+    def distinct(self, most: int) -> list[Grasp]:
+        """Return at most ``most`` grasps, the best first, without near twins of better ones.
+
+        Twins approach within 20 degrees of each other, and each contact of either is within 1.5 cm of one of the other:
+        a hand moved a little, or turned by half a turn.
+        """
+        chosen: list[Grasp] = []
+        for grasp in self.kept:
+            if len(chosen) < most and not any(_are_twins(grasp, better) for better in chosen):
+                chosen.append(grasp)
+        return chosen
 
     @property
     def counts(self) -> dict[str, int]:
