@@ -124,7 +124,6 @@ def test_weld_has_a_dof_that_is_always_zero(load):
     np.testing.assert_allclose(position(kinbody, "C"), [2 * math.cos(0.4), 2 * math.sin(0.4), 0], atol=1e-12)
 
 
-@pytest.mark.filterwarnings("ignore:.*welded-joint")
 def test_disabled_joint_is_a_weld_without_dof(load):
     disabled = hinge("off", "A", "B").replace("<Joint ", '<Joint enable="false" ')
     kinbody = load(body("A") + body("B", 1) + body("C", 2) + disabled + hinge("j", "B", "C"))

@@ -3,6 +3,7 @@
 import logging
 import math
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -387,3 +388,68 @@ def test_unstable_physics_stays_where_it_was(env, caplog):
     np.testing.assert_array_equal(position(body), [0, 0, 1])
     env.StepSimulation(0.01)
     assert position(body)[2] == pytest.approx(1 - G / 2 * 0.01**2)
+
+
+PASSIVE = """<Robot name="r"><KinBody><Body name="a" type="static"/>
+<Body name="b"><Translation>0 0 0.3</Translation><Geom type="box"><Translation>0.2 0 0</Translation>
+<extents>0.2 0.02 0.02</extents></Geom><Mass type="mimicgeom"><density>1000</density></Mass></Body>
+<Joint name="p" type="hinge" enable="false"><Body>a</Body><Body>b</Body><offsetfrom>b</offsetfrom>
+<axis>0 1 0</axis><limitsdeg>-90 90</limitsdeg></Joint>{others}</KinBody></Robot>"""
+ACTIVE = """<Body name="c"><offsetfrom>b</offsetfrom><Translation>0.4 0 0</Translation></Body>
+<Joint name="j" type="hinge"><Body>b</Body><Body>c</Body><offsetfrom>c</offsetfrom><axis>0 1 0</axis></Joint>
+<Body name="d" type="static"><Geom type="sphere"><radius>0.01</radius></Geom></Body>
+<Joint name="m" type="hinge" enable="false" mimic_pos="2*p+0.1"><Body>a</Body><Body>d</Body><axis>0 1 0</axis></Joint>"""
+
+
+def fallen(seconds):
+    """Return the angle of a rod of 0.4 m that falls from level about its end, by Runge-Kutta steps."""
+    inertia, arm, step = (0.4**2 + 0.04**2) / 12 + 0.2**2, 0.2, 1e-4
+    state = np.zeros(2)
+
+    def rate(state):
+        return np.array([state[1], 9.81 * arm * np.cos(state[0]) / inertia])
+
+    for _ in range(round(seconds / step)):
+        a = rate(state)
+        b = rate(state + step / 2 * a)
+        c = rate(state + step / 2 * b)
+        state = state + step / 6 * (a + 2 * b + 2 * c + rate(state + step * c))
+    return state[0]
+
+
+class TestPassiveJoints:
+    """Joints without a DOF that follow nothing move freely in physics, as in OpenRAVE."""
+
+    @pytest.fixture
+    def dropped(self, request):
+        env = ravemj.Environment()
+        env.StopSimulation()
+        assert env.LoadData(PASSIVE.format(others=request.param))
+        engine = ravemj.RaveCreatePhysicsEngine(env, "ode")
+        env.SetPhysicsEngine(engine)
+        engine.SetGravity([0, 0, -9.81])
+        for _ in range(20):
+            env.StepSimulation(0.01)
+        return env.GetRobots()[0]
+
+    @pytest.mark.parametrize("dropped", [""], indirect=True)
+    def test_it_falls_like_a_rod(self, dropped):
+        (joint,) = dropped.GetPassiveJoints()
+        assert joint.GetValues() == pytest.approx([fallen(0.2)], abs=1e-6)
+        direction = dropped.GetLink("b").GetTransform()[:3, 0]
+        np.testing.assert_allclose(direction, [np.cos(fallen(0.2)), 0, -np.sin(fallen(0.2))], atol=1e-6)
+        assert mujoco.MjModel.from_xml_string(dropped.GetEnv().mjcf).njnt == 1
+
+    @pytest.mark.parametrize("dropped", [ACTIVE], indirect=True)
+    def test_joint_values_leave_it_where_it_is_and_others_follow_it(self, dropped):
+        value = dropped.GetJoint("p").GetValue(0)
+        assert value > 0.02
+        before = dropped.GetLink("b").GetTransform()
+        dropped.SetDOFValues([0.5])
+        np.testing.assert_allclose(dropped.GetLink("b").GetTransform(), before, atol=1e-12)
+        assert dropped.GetJoint("p").GetValue(0) == value
+        assert dropped.GetJoint("m").GetValue(0) == pytest.approx(2 * value + 0.1, abs=1e-9)
+        poses = dropped.batch_link_transforms([[0.5]])[0]
+        np.testing.assert_allclose(poses, dropped.GetLinkTransformations(), atol=1e-9)
+        jacobian = dropped.CalculateJacobian(dropped.GetLink("c").GetIndex(), dropped.GetLink("c").GetTransform()[:3, 3])
+        assert jacobian.shape == (3, 1)

@@ -405,7 +405,6 @@ class TestKinematics:
             np.testing.assert_array_equal(poses_of_others(bodies, body), before)
 
 
-@pytest.mark.filterwarnings("ignore:.*welded-joint")
 def test_nothing_follows_without_a_dof(write):
     bodies = "<Body name='A'/><Body name='B'/><Body name='C'/>"
     joints = "<Joint name='j' enable='false'><Body>A</Body><Body>B</Body></Joint>"

@@ -87,7 +87,6 @@ def test_the_picture_selects_in_the_tree(hand):
     assert hand.gui.overlay().chosen[2].startswith("joint 1 ")
 
 
-@pytest.mark.filterwarnings("ignore:.*welded-joint")
 def test_a_joint_of_two_axes_takes_turns_and_a_weld_stands_for_the_joint_above():
     env = ravemj.Environment()
     env.LoadData(TWO_AXES)

@@ -113,6 +113,7 @@ class BodyKinematics:
         self._position, self._rotation = self._one[:3, 3], self._one[:3, :3]
         self._link_poses = LinkPoses(data, self.body_ids)
         self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
+        self._set_free_passive()
         self.describe(body)
         self.set_values(np.array([axis.value for axis in body.dof_axes]))
 
@@ -144,6 +145,24 @@ class BodyKinematics:
             for first, joint, places in zip(self.first_dofs, body.joints, self.joint_qpos, strict=False)
             if not places and not joint.static
         ]
+
+    def _set_free_passive(self) -> None:
+        """Set passive joints that follow nothing to their first values; afterwards only physics moves them."""
+        body, active = self.body, len(self.first_dofs)
+        for joint, values, places in zip(body.passive_joints, self._passive_values, self.joint_qpos[active:], strict=True):
+            if joint.mimic is not None or not places:
+                continue
+            if not body.joints:  # no joint has placed the link
+                T_parent_child = body.links[joint.parent].T_world_link.inverse() @ body.links[joint.child].T_world_link
+                values[:] = measured_values(joint, T_parent_child)
+            if joint.kind == "spherical":
+                self.qpos[places[0] : places[0] + 4] = self._passive_ball(joint, places).to_qpos(values)
+            else:
+                self.qpos[places] = values
+
+    @staticmethod
+    def _passive_ball(joint: Joint, places: Sequence[int]) -> SphericalJoint:
+        return SphericalJoint(joint, slice(0), slice(places[0], places[0] + 4))
 
     def describe(self, body: KinBody) -> None:
         """Update the description of the body with changed limits or masses; links and joints are the same."""
@@ -247,7 +266,13 @@ class BodyKinematics:
         """Return the first value of each joint, active, then passive ones, for given DOF values."""
         plain = values.tolist()
         active = plain if len(self.first_dofs) == self.dof else [plain[first] for first in self.first_dofs]
-        return active + [passive[0] for passive in self._passive_values]
+        passive = [
+            self.qpos.item(places[0]) if places and joint.mimic is None and joint.kind != "spherical" else values[0]
+            for joint, values, places in zip(
+                self.body.passive_joints, self._passive_values, self.joint_qpos[len(active) :], strict=True
+            )
+        ]
+        return active + passive
 
     @property
     def multiples(self) -> list[tuple[int, Multiple, int]] | None:
@@ -264,9 +289,13 @@ class BodyKinematics:
             return np.array(
                 measured_values(joint, self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child))
             )
-        place = self._mimic_qpos.get(len(self.first_dofs) + index)
-        values = self._passive_values[index]
-        return np.array(values if place is None else [self.qpos[place], *values[1:]])
+        values, places = self._passive_values[index], self.joint_qpos[len(self.first_dofs) + index]
+        if joint.mimic is not None or not places:
+            return np.array([self.qpos[places[0]], *values[1:]] if places else values)
+        if joint.kind == "spherical":
+            ball = self._passive_ball(joint, places)
+            return np.array(ball.to_values(self.qpos[ball.qpos].tolist()))
+        return np.array([self.qpos[place] for place in places])
 
     def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
         """Copy MuJoCo's configuration from a model in which simulation moved the body.

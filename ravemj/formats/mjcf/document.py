@@ -48,7 +48,7 @@ class BodyNames(NamedTuple):
     Attributes:
         links: Name of the MuJoCo body of each link.
         joints: Names of the MuJoCo joints of each joint, active ones and then passive ones; none for joints that move
-            no link: welds, passive joints without a mimic equation, and joints that close loops.
+            no link: welds, and joints that close loops.
         geoms: For each link, the number of geoms of each geometry, in order.
     """
 
@@ -222,25 +222,16 @@ class _MjcfWriter:
             places = tuple(self._source_text(link.source) for link in body.links)
             stored = StoredNames(names.links, names.joints, counts, tuple(pairs), self.options.decomposed, places)
             self.texts.text_element(f"{PREFIX}{body.name}", body_text(body, stored, self.geometries.mesh_name))
-        self._report_loose(body, merging)
         self.equalities.write(joints, names.joints)
         if self.options.sensors:
             self.sensors.write_joints(joints, names.joints)
         if self.options.actuators is not None:
             self._write_actuators(index, body, names.joints)
 
-    def _report_loose(self, body: KinBody, merging: Merging) -> None:
-        """Warn of passive joints without a mimic equation, which move freely in OpenRAVE's physics."""
-        for joint in body.passive_joints:
-            if joint.mimic is None and joint.places_child and not joint.static and joint.child in merging.placing:
-                message = f"joint '{joint.name}' is passive and follows nothing; in MJCF and in physics it is a weld"
-                self.diagnostics.warn(
-                    "welded-joint", message, joint.source, "let it move: enable it, or give it a mimic"
-                )
-
     def _joint_names(self, body: KinBody, joint: Joint, active: bool, name: str) -> tuple[str, ...]:
         follows = joint.mimic is not None and joint.mimic.expression is not None and len(body.joints) > 0
-        if not joint.places_child or joint.static or not (active or follows) or joint.axes[0].direction == ZERO:
+        moves = active or follows or joint.mimic is None
+        if not joint.places_child or joint.static or not moves or joint.axes[0].direction == ZERO:
             return ()
         first = self._given.give("joint", body, name)
         is_single = len(joint.axes) == 1 or joint.kind == "spherical"
