@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from ravemj.core.transforms import Pose, Vec3, rotate
+from ravemj.core.transforms import Floats, Pose, Vec3, rotate
 from ravemj.ik.chain import Chain
+from ravemj.ik.following import FollowingChain
 from ravemj.ik.numeric import NumericSolver
 from ravemj.ik.redundancy import default_free, default_steps
 from ravemj.ik.solver import ArmSolutions, make_solver
@@ -15,18 +17,39 @@ from ravemj.ik.tasks import Task
 from ravemj.model.joints import directions_at, relative_pose
 from ravemj.model.manipulators import chain as joints_between
 from ravemj.model.manipulators import joint_dofs
+from ravemj.model.mimic import MimicJoints
 from ravemj.model.scene import Axis, Joint, KinBody, Manipulator
 
 
+class _MovingAxis(NamedTuple):
+    """Joint axis of an arm: where it is in the body, and what it is in the base frame.
+
+    Attributes:
+        joint: Index of the joint, active ones and then passive ones.
+        number: Index of the axis in the joint.
+        axis: The axis.
+        slides: Whether it is prismatic.
+        direction: Its direction.
+        point: A point on it [m].
+    """
+
+    joint: int
+    number: int
+    axis: Axis
+    slides: bool
+    direction: Vec3
+    point: Vec3
+
+
 def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
-    """Return the joints from the base of a manipulator to its tool, in the order of ``arm_dofs``.
+    """Return the joints from the base of a manipulator to its tool; its variables are in the order of ``arm_dofs``.
 
     Passive joints without mimic equation keep their loaded values. Joints locked later by equal limits still belong to
     the arm.
 
     Raises:
-        ValueError: the base, the end effector or joints between them are missing, or such a joint is a mimic or
-            spherical joint; the message names it.
+        ValueError: the base, the end effector or joints between them are missing, or such a joint is spherical; the
+            message names it.
     """
     name = f"manipulator '{manipulator.name}' of '{body.name}'"
     if manipulator.base is None or manipulator.effector is None:
@@ -35,7 +58,7 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
     if not way or not manipulator.arm_dofs:
         raise ValueError(f"{name} has no joint that moves between its base and its effector: name links farther apart")
     T_base_link = Pose()
-    moving: list[tuple[bool, Axis, Vec3, Vec3]] = []
+    moving: list[_MovingAxis] = []
     for index in way:
         joint = body.all_joints[index]
         locked_later = index < len(body.joints) and set(joint_dofs(body, index)) <= set(manipulator.arm_dofs)
@@ -44,32 +67,96 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
         elif index >= len(body.joints) and joint.mimic is None:
             T_base_link = T_base_link @ relative_pose(joint, [axis.value for axis in joint.axes])
         else:
-            moving += _axes(name, joint, T_base_link)
+            moving += _axes(name, index, joint, T_base_link)
             T_base_link = T_base_link @ relative_pose(joint, [0.0] * len(joint.axes))
-    axes = [axis for _, axis, _, _ in moving]
+    T_base_tool = np.array((T_base_link @ manipulator.T_effector_tool).matrix())
+    chain = _made(moving, T_base_tool, manipulator.direction)
+    if all(body.all_joints[moved.joint].mimic is None for moved in moving):
+        return chain
+    return _following(body, manipulator, chain, moving)
+
+
+def _made(moving: Sequence[_MovingAxis], T_base_tool: Floats, direction: Vec3) -> Chain:
+    axes = [moved.axis for moved in moving]
     chain = Chain.of(
-        [direction for _, _, direction, _ in moving],
-        [point for _, _, _, point in moving],
-        prismatic=[slides for slides, _, _, _ in moving],
+        [moved.direction for moved in moving],
+        [moved.point for moved in moving],
+        prismatic=[moved.slides for moved in moving],
         circular=[axis.circular for axis in axes],
-        T_base_tool=np.array((T_base_link @ manipulator.T_effector_tool).matrix()),
-        direction=manipulator.direction,
+        T_base_tool=T_base_tool,
+        direction=direction,
     )
     lower, upper = np.array([(axis.lower, axis.upper) for axis in axes], dtype=float).T
     return replace(chain, lower=lower, upper=upper)  # unchecked: between limits that scripts crossed is no solution
 
 
-def _axes(name: str, joint: Joint, T_base_parent: Pose) -> list[tuple[bool, Axis, Vec3, Vec3]]:
-    """Return for each joint axis whether it is prismatic, the axis, its direction and a point, in the base frame."""
-    if joint.mimic is not None or joint.kind == "spherical":
-        what = "follows other joints" if joint.mimic is not None else "is spherical"
-        raise ValueError(f"joint '{joint.name}' in {name} {what}: inverse kinematics needs joints of one value each")
+def _axes(name: str, index: int, joint: Joint, T_base_parent: Pose) -> list[_MovingAxis]:
+    """Return the axes of a joint, in the base frame."""
+    if joint.kind == "spherical":
+        message = f"joint '{joint.name}' in {name} is spherical: inverse kinematics needs joints of one value each"
+        raise ValueError(message)
     directions = directions_at(joint, [0.0] * len(joint.axes))
     point = (T_base_parent @ Pose(joint.anchor)).position
     return [
-        (joint.slides(index), axis, rotate(T_base_parent.wxyz, direction), point)
-        for index, (axis, direction) in enumerate(zip(joint.axes, directions, strict=True))
+        _MovingAxis(index, number, axis, joint.slides(number), rotate(T_base_parent.wxyz, direction), point)
+        for number, (axis, direction) in enumerate(zip(joint.axes, directions, strict=True))
     ]
+
+
+def _following(body: KinBody, manipulator: Manipulator, inner: Chain, moving: Sequence[_MovingAxis]) -> FollowingChain:
+    """Return the chain whose variables are the DOFs of an arm, for a chain of all its joints."""
+    places = {
+        dof: (index, dofs.index(dof))
+        for index in range(len(body.joints))
+        for dofs in [joint_dofs(body, index)]
+        for dof in dofs
+    }
+    own = [places[dof] for dof in manipulator.arm_dofs]
+    known = {(moved.joint, moved.number): moved for moved in moving}
+    variables = [known.get(place) or _aside(body, *place) for place in own]
+    outer = _made(variables, inner.T_base_tool, manipulator.direction)
+    columns = [own.index(place) if place in own else -1 for place in known]
+    followers = _Followers(body.all_joints, own, columns, [moved.joint for moved in moving])
+    return FollowingChain(
+        inner=inner, expand=followers, **{part.name: getattr(outer, part.name) for part in fields(Chain)}
+    )
+
+
+def _aside(body: KinBody, joint: int, number: int) -> _MovingAxis:
+    """Return the axis of a joint that moves the arm only through joints that follow it; its place does not matter."""
+    followed = body.all_joints[joint]
+    return _MovingAxis(joint, number, followed.axes[number], followed.slides(number), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
+
+
+class _Followers:
+    """Computes the values of all joints of an arm from those of its DOFs.
+
+    Args:
+        joints: All joints of the body; those that do not belong to the arm keep their loaded values.
+        own: Joint and number of its axis of each DOF.
+        columns: For each joint axis of the arm the index of its DOF; -1 for those of joints that follow others.
+        indices: For each joint axis of the arm the index of its joint.
+    """
+
+    def __init__(
+        self, joints: Sequence[Joint], own: list[tuple[int, int]], columns: list[int], indices: list[int]
+    ) -> None:
+        self._arguments = joints, own, columns, indices
+        self._mimic = MimicJoints(joints)
+        self._first = [joint.axes[0].value for joint in joints]
+
+    def __reduce__(self) -> tuple[type["_Followers"], tuple[object, ...]]:
+        return _Followers, self._arguments
+
+    def __call__(self, values: Floats) -> Floats:
+        _, own, columns, indices = self._arguments
+        first, given = list(self._first), values.tolist()
+        for (joint, number), value in zip(own, given, strict=True):
+            if not number:
+                first[joint] = value
+        self._mimic.evaluate(first)
+        pairs = zip(columns, indices, strict=True)
+        return np.array([first[index] if column < 0 else given[column] for column, index in pairs])
 
 
 class ArmSolver:
@@ -108,7 +195,7 @@ class ArmSolver:
 
     def _derived(self, chain: Chain) -> ArmSolutions:
         usual = self.free
-        if usual is None and self.task is not Task.TRANSFORM:
+        if usual is None and self.task is not Task.TRANSFORM and not isinstance(chain, FollowingChain):
             usual = default_free(chain, self.task.value, self.task.dof)
         solver = make_solver(chain, self.task, free=usual)
         if solver.closed is None and usual != self.free:
@@ -118,7 +205,9 @@ class ArmSolver:
 
 def _with_limits(solver: ArmSolutions | None, chain: Chain) -> ArmSolutions | None:
     """Return a solver with the limits of a chain; None if other properties of the chain differ."""
-    if solver is None or solver.chain.reach != chain.reach or solver.chain.dof != chain.dof:
+    if solver is None or isinstance(chain, FollowingChain) or isinstance(solver.chain, FollowingChain):
+        return None
+    if solver.chain.reach != chain.reach or solver.chain.dof != chain.dof:
         return None
     for part in ("axes", "points", "prismatic", "T_base_tool", "direction"):
         if not np.array_equal(getattr(solver.chain, part), getattr(chain, part)):

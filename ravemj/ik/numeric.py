@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from ravemj.ik.chain import Chain
+from ravemj.ik.following import FollowingChain
 from ravemj.ik.limits import nearest_turns
 from ravemj.ik.residuals import ToolState, component_rows, residual_and_jacobian, rotation_between
 from ravemj.ik.tasks import ANGLES, Task
@@ -189,6 +190,8 @@ class CompiledKinematics:
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
+        self._following = chain if isinstance(chain, FollowingChain) else None
+        chain = chain.inner if isinstance(chain, FollowingChain) else chain
         self.model = mujoco.MjModel.from_xml_string(_mjcf(chain))
         self.data = mujoco.MjData(self.model)
         self._qpos, self._place = self.data.qpos, self.data.site_xpos[0]
@@ -201,11 +204,13 @@ class CompiledKinematics:
 
     def __call__(self, values: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the tool's rotation (3, 3), position (3,) and Jacobian (6, n); the next call overwrites them."""
-        self._qpos[:] = values
+        following = self._following
+        self._qpos[:] = values if following is None else following.expand(values)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
         mujoco.mj_jacSite(self.model, self.data, *self._parts, 0)
-        return self._rows, self._place, self._jacobian
+        jacobian = self._jacobian if following is None else self._jacobian @ following.rates(values)
+        return self._rows, self._place, jacobian
 
 
 def _mjcf(chain: Chain) -> str:

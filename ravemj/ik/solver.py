@@ -17,6 +17,7 @@ from ravemj.ik import redundancy
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm, Solutions
 from ravemj.ik.derive import Validation, derive
+from ravemj.ik.following import FollowingChain
 from ravemj.ik.intervals import between_samples, closest
 from ravemj.ik.limits import all_turns, distances, nearest_turns
 from ravemj.ik.numeric import ACCURATE, DISTINCT, NumericSolver
@@ -313,6 +314,8 @@ def make_solver(
 ) -> ArmSolutions:
     """Make the solver of an arm: the first family that passes validation, else a numeric search.
 
+    Arms with joints that follow others are always solved numerically.
+
     Args:
         chain: The arm.
         task: The constrained components of the tool pose.
@@ -322,6 +325,8 @@ def make_solver(
     Raises:
         ValueError: a free joint that the arm does not have, or a step that is not above 0.
     """
+    if isinstance(chain, FollowingChain):
+        return ArmSolutions(chain, task, None, None, (), (), NumericSolver(chain, task))
     chosen = list(redundancy.choices(chain, task))[:_TRIED] if free is None else [tuple(sorted(free))]
     for joints in chosen:
         if any(not 0 <= joint < chain.dof for joint in joints):

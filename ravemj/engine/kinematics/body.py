@@ -148,8 +148,8 @@ class BodyKinematics:
 
     def _set_free_passive(self) -> None:
         """Set passive joints that follow nothing to their first values; afterwards only physics moves them."""
-        body, active = self.body, len(self.first_dofs)
-        for joint, values, places in zip(body.passive_joints, self._passive_values, self.joint_qpos[active:], strict=True):
+        body, of_passive = self.body, self.joint_qpos[len(self.first_dofs) :]
+        for joint, values, places in zip(body.passive_joints, self._passive_values, of_passive, strict=True):
             if joint.mimic is not None or not places:
                 continue
             if not body.joints:  # no joint has placed the link
