@@ -81,7 +81,7 @@ class Space:
         return float(np.linalg.norm(self.weights * self.difference(start, other)))
 
     def clamp(self, configuration: Floats) -> Floats:
-        """Return the weighted distance of two configurations: the root of the sum of (weight * difference)^2."""
+        """Return a configuration with each value inside its limits; circular angles have none."""
         limited = np.minimum(np.maximum(configuration, self.lower), self.upper)
         return np.where(self.coordinates.circular, configuration, limited)
 

@@ -89,3 +89,18 @@ def test_a_planner_that_is_none_is_named():
     made = trajectory([[0, 0], [1, 1]], "joint_values PUMA560 0")
     with pytest.raises(ravemj.openrave_exception, match="ExtendWaypoint: planner"):
         planningutils.ExtendWaypoint(2, [1], [0], made, env.GetRobots()[0])
+
+
+def test_the_linear_retimer_interpolates_the_numbers_of_quaternions():
+    """From q to -q, which is the same rotation, the numbers pass through 0, as in OpenRAVE (test_affinetraj)."""
+    spec = ravemj.RaveGetAffineConfigurationSpecification(ravemj.DOFAffine.Transform)
+    traj = ravemj.RaveCreateTrajectory(ravemj.Environment(), "")
+    traj.Init(spec)
+    for w, x in ((1, 2), (-1, -2)):
+        traj.Insert(traj.GetNumWaypoints(), [x, 0, 0, w, 0, 0, 0])
+    speeds = np.array([1.0] * 3 + [100] * 4)
+    assert planningutils.RetimeAffineTrajectory(traj, speeds, 1e6 * np.ones(7), False, "LinearTrajectoryRetimer")
+    assert traj.GetDuration() == pytest.approx(4, abs=1e-12)
+    np.testing.assert_allclose(traj.Sample(1, spec), [1, 0, 0, 0.5, 0, 0, 0], atol=1e-12)
+    derivative = traj.Sample(1, spec.ConvertToVelocitySpecification())
+    np.testing.assert_allclose(derivative, [-1, 0, 0, -0.5, 0, 0, 0], atol=1e-12)

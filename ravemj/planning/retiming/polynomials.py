@@ -177,9 +177,12 @@ def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
 
 
 def _angle(step: Floats) -> float:
-    """Return the angle of a difference of angles, rotation vectors or unit quaternions [rad]."""
+    """Return the angle of a difference of angles, rotation vectors or unit quaternions of any sign [rad]."""
     length = float(np.linalg.norm(step))
-    return 4 * float(np.arcsin(min(1.0, length / 2))) if len(step) == 4 else length
+    if len(step) != 4:
+        return length
+    angle = 4 * float(np.arcsin(min(1.0, length / 2)))
+    return min(angle, 2 * np.pi - angle)
 
 
 _SAME_TIME = 1e-10

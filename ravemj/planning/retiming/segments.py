@@ -119,6 +119,10 @@ class Profile(Interpolated, Protocol):
         ...
 
 
+_QUATERNION = 4
+"""Number of columns of a rotation that is a quaternion."""
+
+
 class Timed(NamedTuple):
     """Timed path.
 
@@ -164,6 +168,9 @@ def retime(
         path.start_at(float(deltas[0]))
     for index in range(1, len(points)):
         step = limits.coordinates.difference(points[index], points[index - 1])
+        if profile.interpolation == "linear" and len(limits.coordinates.rotation) == _QUATERNION:
+            columns = list(limits.coordinates.rotation)  # OpenRAVE interpolates their numbers, whatever their signs
+            step[columns] = points[index, columns] - points[index - 1, columns]
         ends = np.zeros((2, len(step))) if velocities is None else velocities[index - 1 : index + 1]
         segment = Segment(step, ends[0], ends[1])
         given = None if deltas is None else float(deltas[index])
