@@ -212,8 +212,9 @@ class TestInteractionMode:
             desk.await_picture()
             desk.click(again)
             await_that(lambda: desk.viewer.GetSelectedBody() is None, "the cube stays")
-            desk.await_picture()
-            assert np.ptp(desk.picture()[around], axis=2).max() < 10
+            await_that(
+                lambda around=around: np.ptp(desk.picture()[around], axis=2).max() < 10, "the cube is still seen"
+            )
 
     @BOTH
     def test_dragging_a_face_moves_the_body(self, desk):
@@ -266,7 +267,8 @@ class TestInteractionMode:
         desk.escape()
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)), keys=["Control"])
         areas = []
-        for _ in range(3):
+        for size in range(3):
+            await_that(lambda size=size: getattr(desk.viewer.interaction.selection, "size", -1) == size, "another size")
             desk.await_picture()
             picture = desk.picture()[CLEAR]
             areas.append(int(((picture[..., 0] > picture[..., 2] + 60) & (picture[..., 1] > 40)).sum()))
@@ -455,7 +457,7 @@ class TestPage:
 
         await_that(is_still, "it is sent again and again")
         count = len(frames)
-        assert 2 <= count <= 10  # text and picture, once while it moves and once crisp; more often on slow machines
+        assert 2 <= count <= 20  # text and picture, once while it moves and once crisp; more often on slow machines
         desk.robot.SetDOFValues([0.5, 0])
         await_that(lambda: (page.wait_for_timeout(20), len(frames) > count)[1], "nothing was sent")
 
@@ -539,9 +541,13 @@ class TestTrouble:
         own_desk.await_camera()
         own_desk.escape()
         await_that(lambda: own_desk.page.get_attribute("body", "data-mode") == "interaction", "another mode")
+        own_desk.page.evaluate(
+            "() => { const say = reconnecting.say.bind(reconnecting);"
+            "window.said = []; reconnecting.say = (...words) => { said.push(words[0]); say(...words); }; }"
+        )
         for connection in list(own_desk.viewer._clients):
             connection.socket.shutdown(2)
-        await_that(lambda: "reconnecting" in own_desk.page.inner_text("#notice"), "nothing is said")
+        await_that(lambda: "reconnecting" in own_desk.page.evaluate("said.join()"), "nothing is said")
         own_desk.robot.SetDOFValues([0.4, 0.4])
         await_that(lambda: own_desk.page.inner_text("#notice") == "", "it does not come back")
         own_desk.await_picture()
@@ -587,8 +593,8 @@ class TestTrouble:
                 server.end(number)
             said = "Connection lost" if number == signal.SIGKILL else "The viewer has been closed"
             page.wait_for_selector(f"#notice >> text={said}, reconnecting")
-            page.evaluate("window.setTimeout = () => 0")  # after the next try, in vain, only the button connects
-            page.wait_for_timeout(3000)
+            page.evaluate("() => { clearTimeout(reconnecting.timer); window.setTimeout = () => 0; }")
+            page.wait_for_function("socket.readyState === WebSocket.CLOSED")  # from now on only the button connects
             with Served(folder, "view", *options):
                 page.get_by_role("button", name="Try now").click()
                 page.wait_for_selector("#notice span", state="hidden")

@@ -447,7 +447,7 @@ def test_other_keys_and_buttons_do_nothing(desk):
         assert desk.ask("viewer.GetSelectedBody()") == "None"
         assert not desk.array("robot.GetDOFValues()").any()
         desk.escape()
-    assert desk.ask("viewer.interaction.mode.value") == "camera"
+    await_that(lambda: desk.ask("viewer.interaction.mode.value") == "camera", "keys change the mode")
     desk.escape()
     desk.wheel(3)
     for how in ({"keys": ["shift"]}, {"button": Button.MIDDLE}, {"button": Button.RIGHT}, {}):
@@ -457,7 +457,7 @@ def test_other_keys_and_buttons_do_nothing(desk):
     assert desk.ask("viewer.GetSelectedBody()") == "None"
     desk.escape()
     desk.move(5, 240)
-    assert np.array_equal(desk.settled_picture(), picture)
+    await_that(lambda: np.array_equal(desk.settled_picture(), picture), "the picture has changed")
 
 
 def test_a_drag_goes_on_beyond_the_window(desk):
