@@ -1,6 +1,6 @@
 """The page of the viewer in a real browser, with its mouse, keys and fingers.
 
-The server draws, but for tests of ``BOTH``: these are done once more by a page that draws by itself, with WebGL.
+The server draws; but in tests of ``BOTH`` the page does, with WebGL, and the server only with ``-m stress``.
 """
 
 import contextlib
@@ -23,7 +23,7 @@ from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.interaction.shortcuts import TOUCH_GESTURES
 
 pytestmark = NEEDS_A_BROWSER
-BOTH = pytest.mark.parametrize("desk", ["browser", "webgl_browser"], indirect=True)
+BOTH = pytest.mark.parametrize("desk", one_in(2, ["webgl_browser", "browser"]), indirect=True)
 SLIDING = """<Robot name="Sliding"><KinBody>
 <Body name="Base"><Geom type="box"><extents>0.05 0.05 0.05</extents></Geom></Body>
 <Body name="Block"><Translation>0 0.2 0</Translation>
@@ -462,7 +462,9 @@ class TestPage:
         await_that(lambda: (page.wait_for_timeout(20), len(frames) > count)[1], "nothing was sent")
 
     @pytest.mark.parametrize(
-        "own_desk", [(pendulum, {"device_scale_factor": 2}), (pendulum, {"device_scale_factor": 1.5})], indirect=True
+        "own_desk",
+        one_in(2, [(pendulum, {"device_scale_factor": 1.5}), (pendulum, {"device_scale_factor": 2})]),
+        indirect=True,
     )
     def test_pictures_have_the_pixels_of_the_screen_and_follow_its_size(self, own_desk):
         ratio = own_desk.page.evaluate("devicePixelRatio")
@@ -555,7 +557,7 @@ class TestTrouble:
         own_desk.click(own_desk.at(own_desk.point(2, 0.15, 0, 0)))
         await_that(lambda: own_desk.viewer.GetSelectedBody() == own_desk.robot, "clicks do nothing any more")
 
-    @pytest.mark.parametrize("how", ["SetViewer", "Destroy", "quitmainloop"])
+    @pytest.mark.parametrize("how", one_in(3, ["SetViewer", "Destroy", "quitmainloop"]))
     def test_a_page_says_that_its_viewer_is_closed(self, own_desk, how):
         own_desk.drag((320, 100), (340, 130))
         if how == "SetViewer":
@@ -601,7 +603,7 @@ class TestTrouble:
                 page.keyboard.press("Escape")
                 page.wait_for_selector("[data-mode=interaction]")
 
-    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+    @pytest.mark.parametrize("number", one_in(2, [signal.SIGKILL, signal.SIGINT]))
     def test_with_another_address_at_each_start_it_says_that_its_server_has_ended(self, browser, folder, number):
         with contextlib.closing(browser.new_page()) as page:
             page.clock.install()

@@ -57,6 +57,7 @@ def test_play_ends_by_ctrl_c_and_by_closing_while_it_moves(display, folder):
     await_that(lambda: not display.windows(), "the window stays")
 
 
+@pytest.mark.stress
 def test_a_window_that_grows_has_no_black_bands_before_it_is_drawn(display, folder):
     with Started(display, folder, *PLAY, "--duration", "6000") as command:
         window = display.await_window()
@@ -71,6 +72,7 @@ def test_a_window_that_grows_has_no_black_bands_before_it_is_drawn(display, fold
         display.await_pose(window, "hanging")
 
 
+@pytest.mark.stress
 def test_points_are_as_wide_while_pictures_are_coarse_as_when_they_are_crisp(display, folder):
     (folder / "coarse.py").write_text("""
 import ravemj
@@ -123,6 +125,7 @@ while input():
     terminal.close(force=True)
 
 
+@pytest.mark.stress
 def test_play_with_an_output_opens_no_window(display, folder):
     words = ("play", "env.xml", "-o", "frames", "--size", "96x72", "--fps", "2")
     seen = []
@@ -206,6 +209,7 @@ input()
     assert finish(terminal)[1] == 0
 
 
+@pytest.mark.stress
 def test_viewers_replace_each_other_and_two_environments_have_two_windows(display, folder):
     (folder / "two.py").write_text("""
 import time, openravepy
@@ -236,6 +240,7 @@ input()
     assert finish(terminal)[1] == 0
 
 
+@pytest.mark.stress
 def test_a_window_closes_with_its_forgotten_environment(display, folder):
     (folder / "forgets.py").write_text("""
 import gc, openravepy
@@ -264,6 +269,7 @@ while input() == 'gc':
     assert finish(terminal)[1] == 0
 
 
+@pytest.mark.stress
 def test_a_script_that_fails_or_exits_shows_its_own_end(display, folder):
     start = "import openravepy, sys\nenv = openravepy.Environment()\nenv.Load('env.xml')\nenv.SetViewer('qtcoin')\n"
     for end, code, message in (("sys.exit(3)", 3, ""), ("raise ValueError('mine')", 1, "ValueError: mine\n")):
