@@ -120,8 +120,8 @@ def start_values(path: str, robot: Robot) -> list[float]:
     numbers = cast("list[object]", content) if isinstance(content, list) else []
     checked = [float(number) for number in numbers if isinstance(number, int | float) and abs(number) < LARGEST_NUMBER]
     if len(numbers) != len(values) or len(checked) < len(values):
-        found = f"{len(numbers)} values" if isinstance(content, list) else "something other than a list"
-        raise SourceError(f"found {found}, expected {len(values)} joint values", Source(path), hint)
+        given = f"{len(numbers)} values" if isinstance(content, list) else "something other than a list"
+        raise SourceError(f"found {given}, expected {len(values)} joint values", Source(path), hint)
     state = robot.simulation_state
     beyond = largest_excess(Joints(state, range(state.dof)), np.array([checked]))
     if beyond is not None:

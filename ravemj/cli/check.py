@@ -23,16 +23,16 @@ def check(options: argparse.Namespace) -> int:
         from ravemj.cli.sim_checks import check as check_sim  # noqa: PLC0415 - rarely wanted
 
         return check_sim(options)
-    found: dict[tuple[object, ...], Diagnostic] = {}  # a file that several models include is reported once
+    reported: dict[tuple[object, ...], Diagnostic] = {}  # a file that several models include is reported once
     for model in options.models:
         findings = checking.check(model_file(model), given(options))
-        fresh = {key: finding for finding in findings if (key := _key(finding)) not in found}
-        found.update(fresh)
+        fresh = {key: finding for finding in findings if (key := _key(finding)) not in reported}
+        reported.update(fresh)
         if not options.json:
             print_findings(fresh.values(), sys.stdout)
-    counts = Counter(finding.severity for finding in found.values())
+    counts = Counter(finding.severity for finding in reported.values())
     if options.json:
-        print(json.dumps([_entry(finding) for finding in found.values()], indent=2))
+        print(json.dumps([_entry(finding) for finding in reported.values()], indent=2))
     else:
         files = _number(len(options.models), "file")
         print(f"{_number(counts['error'], 'error')}, {_number(counts['warning'], 'warning')} in {files}")

@@ -43,8 +43,8 @@ def check(path: str | os.PathLike[str], given: Mapping[str, str] | None = None) 
     return [*map(_finding, env.diagnostics), *_outside_files(path, env.named_files), *notes]
 
 
-def _finding(found: Diagnostic) -> Diagnostic:
-    return replace(found, severity="error") if found.code in FATAL_CODES else found
+def _finding(diagnostic: Diagnostic) -> Diagnostic:
+    return replace(diagnostic, severity="error") if diagnostic.code in FATAL_CODES else diagnostic
 
 
 def _fatal(error: SourceError) -> Diagnostic:

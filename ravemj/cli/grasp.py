@@ -14,7 +14,7 @@ from ravemj.cli.grasp_page import write_grasps
 from ravemj.cli.models import chosen_robots, load_model, model_file
 from ravemj.core.output import check_file
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, RavemjError
 from ravemj.graphics.video import known_suffix
 from ravemj.manipulation.grasping.search import Grasp, Grasps
 from ravemj.rave import Environment, KinBody, RaveCreateKinBody, Robot, load
@@ -22,7 +22,7 @@ from ravemj.rave.grasping import grasps
 from ravemj.rave.manipulator import Manipulator
 
 _SHOWN = 10
-"""Number of grasps that are simulated, printed and shown."""
+"""Maximum number of grasps, without near twins, that are simulated, printed and shown."""
 
 _AHEAD = 0.5  # m, from the base to the place of a target that nobody placed
 _FLOOR_GAP = 0.001  # m, below the lowest point of the robot, so that its base does not touch the floor
@@ -41,24 +41,39 @@ def grasp(options: argparse.Namespace) -> int:
     robot = arm.GetRobot()
     robot.SetActiveManipulator(arm)
     target = _target(env, robot, options)
-    found, note = _found(robot, target, options)
-    _print(arm, target, found, note)
-    if options.output is not None and found:
-        write_grasps(options.output, arm, target, found[:_SHOWN], [*([note] if note else []), *str(found).split("\n")])
-        print(f"wrote {os.path.abspath(options.output)} ({min(_SHOWN, len(found))} grasps; any browser shows them)")
-    return 0 if found else 1
+    result, note = _found(robot, target, options)
+    _print(arm, target, result, note)
+    if options.output is not None and result:
+        shown = result.distinct(_SHOWN)
+        write_grasps(options.output, arm, target, shown, [*([note] if note else []), *str(result).split("\n")])
+        print(f"wrote {os.path.abspath(options.output)} ({len(shown)} grasps; any browser shows them)")
+    return 0 if result else 1
 
 
 def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[Grasps, str]:
     """Return the grasps that the arm reaches, or those of the hand alone, and a note that says so."""
     find = partial(grasps, robot, target, method=options.method, friction=options.friction, proofs=_SHOWN)
-    found = find()
-    unreached = sum(found.counts.get(reason, 0) for reason in ("no IK", "arm in collision"))
-    if found or not unreached:
-        return found, ""
-    why = "out of reach" if found.counts.get("no IK") else "the arm is in collision"
+    unsolvable = _unsolvable(robot)
+    if unsolvable:
+        return find(reach=False), f"{unsolvable}; so these are grasps of the hand alone"
+    result = find()
+    unreached = sum(result.counts.get(reason, 0) for reason in ("no IK", "arm in collision"))
+    if result or not unreached:
+        return result, ""
+    why = "out of reach" if result.counts.get("no IK") else "the arm is in collision"
     note = f"{why}: the arm takes the hand to none of {unreached} grasps, so these are grasps of the hand alone"
     return find(reach=False), note
+
+
+def _unsolvable(robot: Robot) -> str:
+    """Return why the inverse kinematics of the active manipulator cannot be solved; empty if it can."""
+    arm = robot.GetActiveManipulator()
+    try:
+        if arm is not None and arm.GetArmDOF():
+            arm.ik_solver()
+    except RavemjError as error:
+        return error.message
+    return ""
 
 
 def _target(env: Environment, robot: Robot, options: argparse.Namespace) -> KinBody:
@@ -121,26 +136,26 @@ def _put_down(env: Environment, robot: Robot, body: KinBody) -> None:
     env.Add(floor, True)
 
 
-def _print(arm: Manipulator, target: KinBody, found: Grasps, note: str) -> None:
+def _print(arm: Manipulator, target: KinBody, result: Grasps, note: str) -> None:
     """Print the best grasps, and how many candidates were rejected for which reason."""
-    if found:
+    if result:
         title = f"Grasps of '{target.GetName()}' by '{arm.GetName()}' of '{arm.GetRobot().GetName()}', the best first"
         rows = table(title, "#>", "quality>", "epsilon>", "contacts>", "weakest", "shaken")
-        for number, one in enumerate(found[:_SHOWN], 1):
+        for number, listed in enumerate(result.distinct(_SHOWN), 1):
             rows.add_row(
                 str(number),
-                f"{one.quality:.3f}",
-                f"{one.epsilon:.5f}",
-                str(len(one.contacts)),
-                one.weakness,
-                _shaken(one),
+                f"{listed.quality:.3f}",
+                f"{listed.epsilon:.5f}",
+                str(len(listed.contacts)),
+                listed.weakness,
+                _shaken(listed),
             )
         console().print(rows)
-        proof = found[0].proof
+        proof = result[0].proof
         assert proof is not None
         forces = ", ".join(f"{force:g}" for force in proof.forces)
         print(f"shaken: {proof.mass:.3g} kg, friction {proof.friction:g}, fingers press with {forces} N or N m")
-    print(found)
+    print(result)
     if note:
         print(note)
 

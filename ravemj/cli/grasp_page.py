@@ -91,7 +91,7 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
     robot.Clone(arm.GetRobot(), 0)
     robot.SetName(f"{arm.GetRobot().GetName()} {number}")
     env.Add(robot, True)
-    copied = next(one for one in robot.GetManipulators() if one.GetName() == arm.GetName())
+    copied = next(manipulator for manipulator in robot.GetManipulators() if manipulator.GetName() == arm.GetName())
     shown = {link.GetIndex() for link in copied.GetChildLinks()}
     for link in robot.GetLinks():
         for geometry in link.GetGeometries():

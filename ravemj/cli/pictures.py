@@ -82,8 +82,8 @@ def _check_length(motion: BodyMotion, fps: float) -> None:
     """
     count = number_of_frames(motion.duration, fps)
     if count > _MOST_FRAMES:
-        found = f"{motion.duration:g} s at {fps:g} frames a second are {count:.3g} frames"
-        raise ArgumentError(f"{found}, and at most {_MOST_FRAMES:,} are drawn; give a smaller --duration or --fps")
+        length = f"{motion.duration:g} s at {fps:g} frames a second are {count:.3g} frames"
+        raise ArgumentError(f"{length}, and at most {_MOST_FRAMES:,} are drawn; give a smaller --duration or --fps")
 
 
 def _motion(env: Environment, options: argparse.Namespace) -> BodyMotion:

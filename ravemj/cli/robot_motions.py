@@ -57,8 +57,8 @@ def set_accelerations(robot: Robot, limits: Sequence[float] | None) -> None:
     dof = robot.GetDOF()
     if len(limits) not in {1, dof} or min(limits) <= 0:
         names = ", ".join(robot.simulation_state.scene.dof_names)
-        found = f"found {', '.join(f'{limit:g}' for limit in limits) or 'none'}"
-        raise ArgumentError(f"--acceleration: {found}; expected one above 0, or {dof}: one for each joint: {names}")
+        given = f"found {', '.join(f'{limit:g}' for limit in limits) or 'none'}"
+        raise ArgumentError(f"--acceleration: {given}; expected one above 0, or {dof}: one for each joint: {names}")
     robot.SetDOFAccelerationLimits(np.broadcast_to(limits, dof))
 
 

@@ -60,7 +60,9 @@ class KDTree:
         parts = [self._nearest(queries[first : first + step], k) for first in range(0, len(queries), step)]
         if not parts:
             return np.zeros((0, k), dtype=np.int_), np.zeros((0, k))
-        return np.concatenate([one for one, _ in parts]), np.concatenate([one for _, one in parts])
+        return np.concatenate([neighbors for neighbors, _ in parts]), np.concatenate(
+            [neighbors for _, neighbors in parts]
+        )
 
     kPriSearchArray = kSearchArray
 

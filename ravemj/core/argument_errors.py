@@ -103,10 +103,10 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
             continue
         kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
-            found = "None" if value is None else f"of type {type(value).__name__}"
+            description = "None" if value is None else f"of type {type(value).__name__}"
             wanted = " or ".join(dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else f"a {kind}" for kind in kinds))
             caller = type(args[0]).__name__ if function.__name__ == "__init__" else function.__name__
-            return f"{caller}: {name}: is {found}, and should be {wanted}"
+            return f"{caller}: {name}: is {description}, and should be {wanted}"
     return None
 
 

@@ -72,8 +72,8 @@ def exit_in_c(
 
     The method is called before the block begins.
     """
-    found: Any = _Exit(find)
-    return found
+    exit_: Any = _Exit(find)
+    return exit_
 
 
 @block

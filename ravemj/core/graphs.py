@@ -166,10 +166,10 @@ class ShortestPaths:
         sizes, lines = Counter(whole), Counter(whole[pair[0]] for _, pair in joined)
         near_parts = {(label, label) for label in members}
         near_parts |= {ordered_pair(part[first], part[second]) for _, (first, second) in joined}
-        for one, other in near_parts:
-            is_tree = lines[whole[one]] == 2 * (sizes[whole[one]] - 1)  # each edge stands in there twice
-            for first, second in itertools.product(members[one], members[other]):
-                is_new = first < second or (first > second and one != other)
+        for first_part, other in near_parts:
+            is_tree = lines[whole[first_part]] == 2 * (sizes[whole[first_part]] - 1)  # each edge stands in there twice
+            for first, second in itertools.product(members[first_part], members[other]):
+                is_new = first < second or (first > second and first_part != other)
                 if is_new and (is_tree or sum(is_heavy[index] for index in self.path(first, second)) <= 1):
                     yield ordered_pair(first, second)
 

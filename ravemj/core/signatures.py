@@ -90,13 +90,13 @@ def _fields(constructor: FunctionType) -> dict[str, str]:
         kind = pkgutil.resolve_name(f"{constructor.__module__}:{constructor.__qualname__.rpartition('.')[0]}")
     except (AttributeError, ImportError, ValueError):
         return {}
-    found: dict[str, str] = {}
+    annotations: dict[str, str] = {}
     for base in reversed(kind.__mro__):
         definition = _definition(base)
         body = definition.body if isinstance(definition, ast.ClassDef) else []
         fields = [line for line in body if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name)]
-        found |= {ast.unparse(line.target): _text(line.annotation) for line in fields}
-    return found
+        annotations |= {ast.unparse(line.target): _text(line.annotation) for line in fields}
+    return annotations
 
 
 def _definition(thing: type | FunctionType) -> ast.stmt | None:

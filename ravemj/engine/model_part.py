@@ -21,13 +21,13 @@ class ModelPart:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, names: "BodyNames") -> None:
         self._model = model
         self.names = names  # of links and joints in the model
-        found = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names.links]
-        self.body_ids: Ints = np.array(found, dtype=int)  # MuJoCo's index of each link
-        first = min(found, default=0)
-        bodies = slice(first, first + len(found))
+        ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names.links]
+        self.body_ids: Ints = np.array(ids, dtype=int)  # MuJoCo's index of each link
+        first = min(ids, default=0)
+        bodies = slice(first, first + len(ids))
         self._positions, self._quaternions = model.body_pos[bodies], model.body_quat[bodies]  # views of the model
         self._roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
-        joints = np.flatnonzero((model.jnt_bodyid >= first) & (model.jnt_bodyid < first + len(found)))
+        joints = np.flatnonzero((model.jnt_bodyid >= first) & (model.jnt_bodyid < first + len(ids)))
         self.qpos = self.qvel = slice(0, 0)  # indices of the body in ``qpos`` and ``qvel``
         self.is_free = False  # whether its roots have free joints, as in its own model; else the world holds them
         if len(joints):

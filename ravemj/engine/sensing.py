@@ -172,14 +172,14 @@ def _frustum(camera: Intrinsics | FlashLidar, color: Vec3) -> Primitives:
     return line_list(_FRUSTUM * corners, _LINE, _colors(len(corners), color, 1.0))
 
 
-def scan_figure(device: Laser | FlashLidar, found: Scan, color: Vec3) -> Primitives:
+def scan_figure(device: Laser | FlashLidar, measured: Scan, color: Vec3) -> Primitives:
     """Return the drawing of a laser's measurement in the world: the hits, and the scanned surface."""
-    ends = found.origin + found.distances[:, None] * found.directions
-    met = ends[found.is_hit]
+    ends = measured.origin + measured.distances[:, None] * measured.directions
+    met = ends[measured.is_hit]
     dots = points(met, _POINT, _colors(len(met), color, 1.0)) if len(met) else NOTHING
     if isinstance(device, FlashLidar):
         return dots
-    return merge([dots, _fan(found.origin, ends, color, _FAN_OPACITY)])
+    return merge([dots, _fan(measured.origin, ends, color, _FAN_OPACITY)])
 
 
 def _fan(origin: Floats, ends: Floats, color: Vec3, opacity: float) -> Primitives:

@@ -170,7 +170,7 @@ def _standing(
     """Return inertia and torque at each DOF due to the weight on half of the feet, as in a trot."""
     transforms = kinematics.link_transforms()
     bounds = [link_bounds(link, T_world_link) for link, T_world_link in zip(body.links, transforms, strict=True)]
-    lows = [np.inf if one is None else one.low[2] for one in bounds]
+    lows = [np.inf if extent is None else extent.low[2] for extent in bounds]
     feet = [index for index, low in enumerate(lows) if np.isfinite(low) and low <= min(lows) + _FOOT]
     inertia, torque = np.zeros(kinematics.dof), np.zeros(kinematics.dof)
     mass = sum(link.inertial.mass for link in body.links) / max(len(feet) // 2, 1)

@@ -132,17 +132,17 @@ def _shapes(translation: Translation) -> Point:
 
 def _shapes_off(model: mujoco.MjModel, link: Link, name: str) -> float | None:
     """Return the error of a link's bounding box relative to its diagonal; None without collision shapes."""
-    wanted = [geometry_bounds(one, np.eye(4)) for one in link.geometries]
-    wanted = [one for one in wanted if (one.high > one.low).any()]
+    wanted = [geometry_bounds(geometry, np.eye(4)) for geometry in link.geometries]
+    wanted = [bounds for bounds in wanted if (bounds.high > bounds.low).any()]
     if not wanted:
         return 0.0
     of_link = model.geom_bodyid == model.body(name).id
     solid = [geom for geom in colliding(model).tolist() if of_link[geom]]
     if not solid:
         return None
-    low, high = np.min([one.low for one in wanted], axis=0), np.max([one.high for one in wanted], axis=0)
+    low, high = np.min([bounds.low for bounds in wanted], axis=0), np.max([bounds.high for bounds in wanted], axis=0)
     boxes = [box(model, geom, model.geom_pos[geom], _rotation(model.geom_quat[geom])) for geom in solid]
-    first, last = np.min([one[0] for one in boxes], axis=0), np.max([one[1] for one in boxes], axis=0)
+    first, last = np.min([bounds[0] for bounds in boxes], axis=0), np.max([bounds[1] for bounds in boxes], axis=0)
     return float(max(np.abs(first - low).max(), np.abs(last - high).max()) / np.linalg.norm(high - low))
 
 
@@ -154,7 +154,7 @@ def _rotation(wxyz: Floats) -> Floats:
 
 def _touching(translation: Translation) -> Point:
     model, data = translation.model, translation.home
-    pairs = {tuple(sorted(model.body(one).name for one in model.geom_bodyid[touch.geom])) for touch in data.contact}
+    pairs = {tuple(sorted(model.body(body).name for body in model.geom_bodyid[touch.geom])) for touch in data.contact}
     excluded = len(translation.excluded)
     point = Point("self-collision", f"{excluded} pair{'' if excluded == 1 else 's'} excluded")
     point.missed = [f"'{first}' and '{second}' touch at the start" for first, second in sorted(pairs)]

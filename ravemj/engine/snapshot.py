@@ -21,12 +21,12 @@ def snapshot(body: BodyState) -> KinBody:
     links = [replace(link, enabled=enabled) for link, enabled in zip(scene.links, body.link_enabled, strict=True)]
     grabs = tuple(
         Grab(
-            body=one.body.scene.name,
-            link=one.link,
-            T_link_body=pose_of(one.T_link_body),
-            ignored=tuple(sorted(one.ignored)),
+            body=grab.body.scene.name,
+            link=grab.link,
+            T_link_body=pose_of(grab.T_link_body),
+            ignored=tuple(sorted(grab.ignored)),
         )
-        for one in body.grabs
+        for grab in body.grabs
     )
     if body.known_kinematics is None:  # it is where its description has it
         return replace(scene, links=tuple(links), grabs=grabs)
@@ -50,7 +50,7 @@ def _settled(joint: Joint, values: Sequence[float], poses: Sequence[Pose]) -> Jo
     """Return a joint with its values, and with the pose of its child if that differs from the values."""
     axes = tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
     expected = relative_pose(joint, values)
-    found = poses[joint.parent].inverse() @ poses[joint.child]
-    if not joint.places_child or np.abs(expected.matrix() - found.matrix()).max() <= ROUNDING:
+    T_parent_child = poses[joint.parent].inverse() @ poses[joint.child]
+    if not joint.places_child or np.abs(expected.matrix() - T_parent_child.matrix()).max() <= ROUNDING:
         return replace(joint, axes=axes)
-    return replace(joint, axes=axes, T_parent_child=joint.T_parent_child @ expected.inverse() @ found)
+    return replace(joint, axes=axes, T_parent_child=joint.T_parent_child @ expected.inverse() @ T_parent_child)

@@ -221,7 +221,7 @@ def _scene_text(scene: Scene, excluded: Sequence[tuple[str, str]]) -> XmlLines:
 
 
 def _check_state(scene: Scene, choices: TranslationChoices) -> None:
-    known = dict.fromkeys(one.name for body in scene.bodies for one in body.configurations)
+    known = dict.fromkeys(configuration.name for body in scene.bodies for configuration in body.configurations)
     if choices.state is not None and choices.state not in known:
         raise ArgumentError(f"there is no state '{choices.state}'; the model has {', '.join(known) or 'none'}")
 
@@ -233,17 +233,17 @@ def _gains(
     given = [] if choices.gains is None else read_gains(choices.gains)
     check_used(given, [name for body in scene.bodies for name in body.dof_names])
     timestep = choices.timestep or TIMESTEP
-    found: list[Gains | None] = []
+    gains: list[Gains | None] = []
     for body, start in zip(scene.bodies, starts, strict=True):
         if not len(start):
-            found.append(None)
+            gains.append(None)
             continue
-        stands = choices.base == "free" or (choices.base == "openrave" and not any(one.static for one in body.links))
+        stands = choices.base == "free" or (choices.base == "openrave" and not any(link.static for link in body.links))
         gravity = DEFAULT_GRAVITY if scene.gravity is None else scene.gravity
         loads = loads_of(body, start, gravity, stands=stands)
         _warn_of_motors(body, loads, diagnostics)
-        found.append(_with_given(body, loads, timestep, given))
-    return tuple(found)
+        gains.append(_with_given(body, loads, timestep, given))
+    return tuple(gains)
 
 
 def _with_given(body: KinBody, loads: ServoLoads, timestep: float, given: Sequence[GivenGains]) -> Gains:
@@ -260,7 +260,7 @@ def _warn_of_motors(body: KinBody, loads: ServoLoads, diagnostics: Diagnostics) 
     for joint in body.joints:
         has_motors = joint.places_child and not (joint.static or joint.is_ball)
         for axis in range(len(joint.axes) if has_motors else 0):
-            needed, effort, moved = (float(one[dof + axis]) for one in (loads.start, loads.effort, loads.inertia))
+            needed, effort, moved = (float(values[dof + axis]) for values in (loads.start, loads.effort, loads.inertia))
             unit = "N" if joint.slides(axis) else "N m"
             if needed > effort:
                 message = f"the motor of joint '{joint.name}' gives {effort:.4g} {unit}, and gravity needs {needed:.4g}"
@@ -321,10 +321,10 @@ def _touching(compiled: Compiled, names: Sequence[mjcf.BodyNames], qpos: Floats)
     falls = [not falling.isdisjoint(body.links) for body in names]
     pairs: set[tuple[str, str]] = set()
     for touch in data.contact:
-        first, second = sorted(model.body(one).name for one in model.geom_bodyid[touch.geom].tolist())
+        first, second = sorted(model.body(geom_body).name for geom_body in model.geom_bodyid[touch.geom].tolist())
         if first in owner and second in owner:
-            one, other = owner[first], owner[second]
-            if one == other or not (falls[one] or falls[other]):
+            first_body, other = owner[first], owner[second]
+            if first_body == other or not (falls[first_body] or falls[other]):
                 pairs.add((first, second))
     return tuple(sorted(pairs))
 
@@ -354,7 +354,7 @@ def _named_poses(
     bodies: Sequence[KinBody], starts: Sequence[Floats], choices: TranslationChoices
 ) -> Iterator[tuple[str, list[Floats]]]:
     yield HOME, list(starts)
-    names = dict.fromkeys(one.name for body in bodies for one in body.configurations)
+    names = dict.fromkeys(configuration.name for body in bodies for configuration in body.configurations)
     for name in names:
         values = [
             named_values(body, name) if any(one.name == name for one in body.configurations) else start

@@ -98,9 +98,9 @@ class FileAccess:
     def named_diagnostics(self) -> Diagnostics:
         """Return the findings with the names of dropped files in place of their paths."""
         named = Diagnostics()
-        for found in self.diagnostics:
-            source = self._named_source(found.source)
-            named.add(replace(found, message=self.named(found.message), source=source))
+        for finding in self.diagnostics:
+            source = self._named_source(finding.source)
+            named.add(replace(finding, message=self.named(finding.message), source=source))
         return named
 
     def _named_source(self, source: Source) -> Source:

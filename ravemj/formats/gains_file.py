@@ -33,7 +33,7 @@ def read_gains(path: AnyPath) -> list[GivenGains]:
         SourceError: it cannot be read, or a line is not of this form.
     """
     text = content_of(str(path)).decode("utf-8", "replace")
-    found: list[GivenGains] = []
+    gains: list[GivenGains] = []
     for number, line in enumerate(text.splitlines(), 1):
         source = Source(str(path), number)
         words = line.split("#")[0].rsplit("," if "," in line else None, 2)
@@ -45,13 +45,13 @@ def read_gains(path: AnyPath) -> list[GivenGains]:
             raise SourceError(f"'{line.strip()}' is not 'joint, kp, kv'", source, "as in: elbow*, 300, 20") from None
         if not (math.isfinite(kp) and math.isfinite(kv) and kp > 0 and kv >= 0):
             raise SourceError(f"the gains {kp:g} and {kv:g} of '{name}' are not positive numbers", source)
-        found.append(GivenGains(name, kp, kv, source))
-    return found
+        gains.append(GivenGains(name, kp, kv, source))
+    return gains
 
 
 def gains_of(name: str, given: Iterable[GivenGains]) -> GivenGains | None:
     """Return the last gains whose pattern has the name of a joint, or None."""
-    matching = [one for one in given if one.pattern == name or fnmatch.fnmatchcase(name, one.pattern)]
+    matching = [gains for gains in given if gains.pattern == name or fnmatch.fnmatchcase(name, gains.pattern)]
     return matching[-1] if matching else None
 
 
@@ -62,7 +62,7 @@ def check_used(given: Iterable[GivenGains], names: Iterable[str]) -> None:
         SourceError: one has none.
     """
     known = list(names)
-    for one in given:
-        if not any(name == one.pattern or fnmatch.fnmatchcase(name, one.pattern) for name in known):
+    for gains in given:
+        if not any(name == gains.pattern or fnmatch.fnmatchcase(name, gains.pattern) for name in known):
             hint = f"there are: {', '.join(known) or 'none'}"
-            raise SourceError(f"no joint is called '{one.pattern}'", one.source, hint)
+            raise SourceError(f"no joint is called '{gains.pattern}'", gains.source, hint)

@@ -45,19 +45,19 @@ def read_file(
         The result; its ``failure`` is the error that ended the reading, if any.
     """
     place, wanted = _without_scheme(os.fspath(path)), ""
-    found = find(place, "")
-    if found is None:
+    existing = find(place, "")
+    if existing is None:
         place, wanted = collada.split_uri(place)
-        found = find(place, "")
-    if found is None:
+        existing = find(place, "")
+    if existing is None:
         failure = missing(os.fspath(path))
-    elif not os.path.isfile(found):
-        kind = "folder" if os.path.isdir(found) else "device or pipe"
-        failure = SourceError(f"this is a {kind}, not a model file", Source(found))
-    elif is_mesh(found):
-        return _read_mesh_file(found, given, access or FileAccess.opened(found))
+    elif not os.path.isfile(existing):
+        kind = "folder" if os.path.isdir(existing) else "device or pipe"
+        failure = SourceError(f"this is a {kind}, not a model file", Source(existing))
+    elif is_mesh(existing):
+        return _read_mesh_file(existing, given, access or FileAccess.opened(existing))
     else:
-        return _read_model(found, wanted, given, metre, access or FileAccess.opened(found))
+        return _read_model(existing, wanted, given, metre, access or FileAccess.opened(existing))
     return Reading(Scene(), Diagnostics(), failure)
 
 
@@ -142,9 +142,9 @@ def _read_collada(
         if not content.bodies and content.others:
             message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
             context.diagnostics.error("no-kinematics", message, source, "read it with ReadKinBodyURI")
-        found, names = (*content.bodies, *content.others), _NameSuffixes()
-        give(given, found)
-        for built in found:
+        built_bodies, names = (*content.bodies, *content.others), _NameSuffixes()
+        give(given, built_bodies)
+        for built in built_bodies:
             built.name = names.give(built.name or "body")
             bodies.append(built.freeze(context.diagnostics))
             if built.refusal is not None:

@@ -66,24 +66,24 @@ def robot_file(name: str, *, download: bool = False, say: Callable[[str], None] 
         ArgumentError: there is no such robot, or it is not on this machine and may not be fetched.
         RavemjError: it cannot be fetched.
     """
-    found = _described(name) or _in_menagerie(name)
-    if found is None:
+    package = _described(name) or _in_menagerie(name)
+    if package is None:
         close = difflib.get_close_matches(name, robot_names(), 1, _LIKENESS)
         hint = f"; did you mean {close[0]}?" if close else ""
         reason = hint or (f"; {INSTALL}" if not robot_names() else "")
         raise ArgumentError(f"there is no robot '{name}'{reason}")
-    if found.path is not None:
-        return found
+    if package.path is not None:
+        return package
     if not download:
         message = f"'{name}' is not on this machine; with --download (in Python download=True) it is fetched from"
-        raise ArgumentError(f"{message} {found.origin}")
+        raise ArgumentError(f"{message} {package.origin}")
     if say is not None:
-        say(f"fetching '{name}' from {found.origin}")
+        say(f"fetching '{name}' from {package.origin}")
     try:
-        return found._replace(path=found.fetch())
+        return package._replace(path=package.fetch())
     except Exception as error:  # of git, of the network, of the packages
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise RavemjError(f"cannot fetch '{name}' from {found.origin}: {reason[:200]}") from None
+        raise RavemjError(f"cannot fetch '{name}' from {package.origin}: {reason[:200]}") from None
 
 
 def _folder(package: str) -> Path | None:
@@ -107,8 +107,8 @@ def _described(name: str) -> RobotFile | None:
     here = path if path is not None and os.path.isfile(path) else None
 
     def fetch() -> str:
-        found: Any = importlib.import_module(f"{_DESCRIPTIONS}.{name}")
-        return next(str(getattr(found, key)) for key in _FILES if hasattr(found, key))
+        module: Any = importlib.import_module(f"{_DESCRIPTIONS}.{name}")
+        return next(str(getattr(module, key)) for key in _FILES if hasattr(module, key))
 
     return RobotFile(here, values.origin, values.arguments, fetch)
 
@@ -116,16 +116,18 @@ def _described(name: str) -> RobotFile | None:
 @cache
 def _repositories(folder: str) -> dict[str, dict[str, str]]:
     """Return address, commit and cache folder of each repository."""
-    found: dict[str, dict[str, str]] = {}
+    repositories: dict[str, dict[str, str]] = {}
     for node in ast.walk(ast.parse(Path(folder, "_repositories.py").read_text(encoding="utf-8"))):
         if not isinstance(node, ast.Dict):
             continue
         for key, value in zip(node.keys, node.values, strict=True):
             if isinstance(key, ast.Constant) and isinstance(value, ast.Call):
                 fields = [(word.arg, word.value) for word in value.keywords]
-                texts = {str(arg): str(one.value) for arg, one in fields if isinstance(one, ast.Constant)}
-                found[str(key.value)] = texts
-    return found
+                texts = {
+                    str(arg): str(constant.value) for arg, constant in fields if isinstance(constant, ast.Constant)
+                }
+                repositories[str(key.value)] = texts
+    return repositories
 
 
 class _Assignments(ast.NodeVisitor):
@@ -156,7 +158,7 @@ class _Assignments(ast.NodeVisitor):
             return
         if isinstance(value, ast.Dict):
             pairs = zip(value.keys, value.values, strict=True)
-            self.arguments = {str(_constant(key)): str(_constant(one)) for key, one in pairs}
+            self.arguments = {str(_constant(key)): str(_constant(constant)) for key, constant in pairs}
             return
         text = self._text(value)
         if text is not None:
@@ -173,7 +175,7 @@ class _Assignments(ast.NodeVisitor):
         function = ast.unparse(value.func)
         if function.endswith("clone_to_cache"):
             return self._cached(str(_constant(value.args[0])))
-        parts = [self._text(one) for one in value.args]
+        parts = [self._text(argument) for argument in value.args]
         return os.path.join(*cast("list[str]", parts)) if function.endswith("join") and None not in parts else None
 
     def _cached(self, repository: str) -> str:

@@ -119,8 +119,8 @@ def external_bodies(
         scheme: What URIs of files in the folders of ``OPENRAVE_DATA`` start with; None for relative ones.
     """
     asked = [(number, body) for number, body in enumerate(scene.bodies) if body.name in names]
-    found = {body.name: _external(path, body, number, diagnostics, scheme) for number, body in asked}
-    return {name: external for name, external in found.items() if external is not None}
+    references = {body.name: _external(path, body, number, diagnostics, scheme) for number, body in asked}
+    return {name: external for name, external in references.items() if external is not None}
 
 
 def _external(
@@ -151,10 +151,10 @@ def _referred(path: AnyPath, body: KinBody, reference: ExternalBody) -> KinBody:
         SourceError: The reference cannot be read.
     """
     document = collada.write(Scene((body,)), Diagnostics(), {body.name: reference})
-    found = read_text(document.encode(), os.fspath(path), FileAccess.opened(os.fspath(path))).bodies
-    if not found:
+    bodies = read_text(document.encode(), os.fspath(path), FileAccess.opened(os.fspath(path))).bodies
+    if not bodies:
         raise SourceError("the reference leads nowhere", body.source)
-    return found[0].freeze(Diagnostics())
+    return bodies[0].freeze(Diagnostics())
 
 
 def _save_openrave_xml(path: Path, scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat) -> None:

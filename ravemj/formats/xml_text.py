@@ -67,16 +67,18 @@ def text_of(content: Content, tag: str) -> str:
         OutputError: XML cannot hold one of its characters, or a number is not finite, which OpenRAVE reads as 0.
     """
     if isinstance(content, str):
-        found = _FORBIDDEN.search(content)
-        if found is not None:
-            raise OutputError(f"no XML file can hold the character {found[0]!r} of {content!r}; choose another name")
+        forbidden = _FORBIDDEN.search(content)
+        if forbidden is not None:
+            raise OutputError(
+                f"no XML file can hold the character {forbidden[0]!r} of {content!r}; choose another name"
+            )
         return content
     if isinstance(content, bool):
         return "true" if content else "false"
     numbers = (content,) if isinstance(content, float | int) else tuple(content)
     if not all(map(math.isfinite, numbers)):
-        found = " ".join(map(str, numbers))
-        raise OutputError(f"no file of OpenRAVE's can hold the number in '{tag}': {found}; choose a finite one")
+        forbidden = " ".join(map(str, numbers))
+        raise OutputError(f"no file of OpenRAVE's can hold the number in '{tag}': {forbidden}; choose a finite one")
     return " ".join([repr(float(number) + 0.0).removesuffix(".0") for number in numbers])  # + 0.0: -0 becomes 0
 
 

@@ -67,7 +67,7 @@ def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: A
         ArgumentError: they do not match the type; with the code ``Assert``, a direction is not a unit vector.
     """
     if kind not in GOAL_TYPES:
-        known = ", ".join(sorted(one.name for one in GOAL_TYPES))
+        known = ", ".join(sorted(goal_type.name for goal_type in GOAL_TYPES))
         raise ArgumentError(f"type: is {kind.name}, and should be one of {known}")
     if kind == _Type.Transform6D:
         return pose_of(goal_transform(value, "value")).numbers()

@@ -53,7 +53,7 @@ class PoseSet:
         object.__setattr__(self, "_Tw_0", inverse(self.T0_w))
         object.__setattr__(self, "_Te_w", inverse(self.Tw_e))
         bounds = list(zip(self.lower.tolist(), self.upper.tolist(), strict=True))
-        object.__setattr__(self, "_bounds", bounds[:3] + [_at_most_a_turn(*one) for one in bounds[3:]])
+        object.__setattr__(self, "_bounds", bounds[:3] + [_at_most_a_turn(*interval) for interval in bounds[3:]])
 
     def moved(self, T_world_0: Floats) -> "PoseSet":
         """Return the same region in another frame; ``T_world_0`` is the present pose of frame 0, shape (4, 4)."""

@@ -322,8 +322,8 @@ def known_suffix(path: AnyPath, known: Iterable[str]) -> str:
     suffix = _FOLDER if text.endswith(("/", os.sep)) else Path(text).suffix.lower()
     if suffix not in known:
         names = ", ".join(name or "a folder (no suffix or a final /)" for name in known)
-        found = f"'{suffix}' is none of" if suffix else "its name has no suffix, and should end with one of"
-        raise ArgumentError(f"cannot write {text}: {found} {names}")
+        mistake = f"'{suffix}' is none of" if suffix else "its name has no suffix, and should end with one of"
+        raise ArgumentError(f"cannot write {text}: {mistake} {names}")
     return suffix
 
 

@@ -31,12 +31,12 @@ def solve_each(
     poses = goal_poses(solver.chain, solver.task, goals)
     if solver.closed is None:
         return _joined(solver, {goal: _one(solver, poses, goal, free, limits=limits) for goal in range(len(poses))})
-    found = solver.solve(goals, free=free, limits=False)
-    rows, sources, _ = found.rows
+    solutions = solver.solve(goals, free=free, limits=False)
+    rows, sources, _ = solutions.rows
     if limits:
         rows, kept = all_turns_with_sources(solver.chain, rows)
         sources = sources[kept]
-    again = found.merged.copy()
+    again = solutions.merged.copy()
     if solver.free and free is None:
         again |= np.bincount(sources, minlength=len(poses)) == 0
     if not again.any():
@@ -54,7 +54,7 @@ def _one(solver: ArmSolutions, poses: Floats, goal: int, free: Floats | None, *,
 
 
 def _joined(solver: ArmSolutions, rows: dict[int, Floats]) -> tuple[Floats, Ints]:
-    counts = np.array([len(found) for found in rows.values()], dtype=int)
+    counts = np.array([len(group) for group in rows.values()], dtype=int)
     values = np.concatenate([np.zeros((0, solver.chain.dof)), *rows.values()])
     return values, np.repeat(np.array([*rows], dtype=int), counts)
 

@@ -58,9 +58,9 @@ def ranked(solver: ArmSolutions, goal: Floats, start: Floats) -> list[tuple[Floa
         goal: A pose (4, 4), or another goal of the task.
         start: The configuration, shape (n,).
     """
-    found = solver.solve(goal[None], limits=False)
-    valid, chain = found.valid[0], solver.chain
-    rows = found.values[0][valid]
+    solutions = solver.solve(goal[None], limits=False)
+    valid, chain = solutions.valid[0], solver.chain
+    rows = solutions.values[0][valid]
     names = [name for name, good in zip(branch_names(solver, len(valid)), valid.tolist(), strict=True) if good]
     if solver.free and not nearest_turns(chain, rows, start)[1].any():
         more = solver.solve_one(goal)
@@ -95,8 +95,8 @@ def everything(
     if not len(rows) or free is not None or solver.closed is None or not solver.free:
         return
     pose, samples = goal_poses(solver.chain, solver.task, goal), solver.free_samples()
-    found = solver.at(pose, samples, limits=limits)
-    for group in beyond_samples(solver, pose, samples, found, limits=limits, fine=fine):
+    solutions = solver.at(pose, samples, limits=limits)
+    for group in beyond_samples(solver, pose, samples, solutions, limits=limits, fine=fine):
         yield all_turns(solver.chain, group) if limits else group
 
 
@@ -126,18 +126,18 @@ def _groups(
 
 
 def _searched(solver: ArmSolutions, pose: Floats, seed: Floats) -> Iterator[Floats]:
-    found = solver.numeric.solve(pose, seed)
-    if found is not None:
-        yield found[None]
+    solution = solver.numeric.solve(pose, seed)
+    if solution is not None:
+        yield solution[None]
         rest = solver.numeric.solve_all(pose)
-        yield rest[np.abs(rest - found).max(axis=1, initial=0.0) > DISTINCT]
+        yield rest[np.abs(rest - solution).max(axis=1, initial=0.0) > DISTINCT]
 
 
 def beyond_samples(
     solver: ArmSolutions,
     pose: Floats,
     samples: Floats,
-    found: Solutions,
+    solutions: Solutions,
     seed: Floats | None = None,
     *,
     limits: bool = True,
@@ -152,16 +152,16 @@ def beyond_samples(
         solver: A solver in closed form with free joints.
         pose: A pose (4, 4).
         samples: The samples, shape (K, k).
-        found: The solver's results of ``at`` for them.
+        solutions: The results of ``at`` for them.
         seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
         limits: Whether to enforce joint limits.
         fine: Whether to continue after the ends, the middle and eight points of each interval.
     """
     values = [samples]
-    for rows in solver.between(pose, samples, found, seed, limits=limits):
+    for rows in solver.between(pose, samples, solutions, seed, limits=limits):
         values.append(rows[:1, list(solver.free)])
         yield rows
-    if len(solver.free) != 1 or (len(values) == 1 and excess(solver.chain, found, limits=limits).min() > TOLERANCE):
+    if len(solver.free) != 1 or (len(values) == 1 and excess(solver.chain, solutions, limits=limits).min() > TOLERANCE):
         return
     ends = np.array(redundancy.free_range(solver.chain, *solver.free))
     inside = intervals(solver, pose, np.unique(np.concatenate([*values, ends[:, None]])), limits=limits)
@@ -172,7 +172,7 @@ def beyond_samples(
             count += len(rows)
             yield rows
     while fine and count < _MOST:
-        inside = [one for one in inside if one.high - one.low > _FINEST * parts * step]
+        inside = [interval for interval in inside if interval.high - interval.low > _FINEST * parts * step]
         if not inside:
             return
         scattered = np.argsort(np.arange(parts) * 0.618 % 1)  # since the caller may stop early
@@ -185,8 +185,8 @@ def shortfall(solver: ArmSolutions, goal: Floats, free: Floats | None = None) ->
     """Return whether a goal is unreachable for free joint values, and whether limits exclude solutions."""
     if solver.closed is None:
         return True, False
-    found = solver.solve(goal[None], free=free, limits=False)
-    tries = max(1, found.valid.shape[1] // len(solver.closed.branch_names))
-    reached = found.valid.reshape(tries, -1).any(axis=1)
-    _, inside = nearest_turns(solver.chain, found.of(0))
+    solutions = solver.solve(goal[None], free=free, limits=False)
+    tries = max(1, solutions.valid.shape[1] // len(solver.closed.branch_names))
+    reached = solutions.valid.reshape(tries, -1).any(axis=1)
+    _, inside = nearest_turns(solver.chain, solutions.of(0))
     return not reached.all(), not inside.all()

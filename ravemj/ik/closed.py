@@ -56,8 +56,8 @@ class Solutions:
 
     def only(self, pose: int) -> "Solutions":
         """Return the solutions for one of the poses as those for a single pose."""
-        one = slice(pose, pose + 1)
-        return Solutions(self.values[one], self.valid[one], self.merged[one], self.errors[one])
+        row = slice(pose, pose + 1)
+        return Solutions(self.values[row], self.valid[row], self.merged[row], self.errors[row])
 
     @classmethod
     def joined(cls, parts: Sequence["Solutions"]) -> "Solutions":
@@ -180,9 +180,9 @@ class ClosedForm:
             else:
                 given[joint] = turns[joint] = np.stack([np.cos(column), np.sin(column)])[:, None]
         at = {self._locked[joint]: value for joint, value in given.items()}
-        found = self.family.solve(self._motion(poses, at), at)
+        solved = self.family.solve(self._motion(poses, at), at)
         for index, joint in self._answers:
-            turns[joint] = found[index] * reach if self.chain.prismatic[joint] else found[index]
+            turns[joint] = solved[index] * reach if self.chain.prismatic[joint] else solved[index]
         branches = shape[0]
         return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
 
@@ -191,9 +191,9 @@ class ClosedForm:
         motion = pose @ self._tool
         motion[:3, 3] /= self.chain.reach
         x, y, z, _ = motion.tolist()
-        found = solver.solve((tuple(x[:3]), tuple(y[:3]), tuple(z[:3]), (x[3], y[3], z[3])))
-        numbers = chain.from_iterable(chain.from_iterable(found))
-        turns = np.fromiter(numbers, float, 12 * len(found)).reshape(-1, 6, 2)
+        solved = solver.solve((tuple(x[:3]), tuple(y[:3]), tuple(z[:3]), (x[3], y[3], z[3])))
+        numbers = chain.from_iterable(chain.from_iterable(solved))
+        turns = np.fromiter(numbers, float, 12 * len(solved)).reshape(-1, 6, 2)
         return turns[:, self._order].transpose(1, 2, 0)[..., None]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:

@@ -92,8 +92,8 @@ def derive(
     if (task is Task.PLANAR and not _is_planar(exact, free)) or (general and task is not Task.TRANSFORM):
         return None
     deviation = np.abs(exact.axes - chain.axes).max() + _sideways(exact, chain)
-    found = general_families(exact, locked) if general else families(exact, task, locked)
-    for family in itertools.islice(found, _TRIED):
+    candidates = general_families(exact, locked) if general else families(exact, task, locked)
+    for family in itertools.islice(candidates, _TRIED):
         solver = ClosedForm(chain, task, family, snapped=deviation > 1e-12)
         certificate = _prove(solver)
         if certificate is not None:

@@ -50,37 +50,37 @@ class FreeInterval(NamedTuple):
     high: float
 
 
-def excess(chain: Chain, found: Solutions, *, limits: bool = True) -> Floats:
+def excess(chain: Chain, solutions: Solutions, *, limits: bool = True) -> Floats:
     """Return the combined excess of branches over pose error and limits, shape (N, B); 0 for solutions."""
-    missed = np.where(found.valid, 0.0, found.errors)
+    missed = np.where(solutions.valid, 0.0, solutions.errors)
     if limits:
-        missed = missed + beyond_limits(chain, found.values)
+        missed = missed + beyond_limits(chain, solutions.values)
     return np.where(np.isfinite(missed), missed, np.inf)
 
 
-def closest(chain: Chain, found: Solutions, most: int) -> list[Floats]:
+def closest(chain: Chain, solutions: Solutions, most: int) -> list[Floats]:
     """Return the joint values of the branches with the least excess, each of shape (n,)."""
-    missed = excess(chain, found)
+    missed = excess(chain, solutions)
     places = _distinct(missed, np.argwhere(np.isfinite(missed)), most)
-    return [nearest_turns(chain, found.values[sample, branch])[0] for sample, branch in places.tolist()]
+    return [nearest_turns(chain, solutions.values[sample, branch])[0] for sample, branch in places.tolist()]
 
 
 Found = tuple[Floats, Solutions | None]
 """A solution within the limits, shape (n,), and what the closed form says of its free joints, if that is known."""
 
 
-def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, found: Solutions) -> Iterator[Found]:
+def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, solutions: Solutions) -> Iterator[Found]:
     """Yield solutions for values of the free joints between their samples.
 
     Args:
         solver: A solver in closed form.
         pose: The pose (4, 4).
         free: Samples of the free joints, shape (K, k).
-        found: The closed-form solutions of each sample.
+        solutions: The closed-form solutions of each sample.
     """
-    missed = excess(solver.chain, found)
+    missed = excess(solver.chain, solutions)
     if free.shape[1] > 1:
-        yield from _descents(solver, pose, found, missed, np.argwhere((missed > 0) & (missed < _CLOSE)))
+        yield from _descents(solver, pose, solutions, missed, np.argwhere((missed > 0) & (missed < _CLOSE)))
         return
     low, high = free_range(solver.chain, *solver.free)
     values = free[:, 0]
@@ -111,15 +111,15 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
             break
         before = np.array([sample for sample, _ in some])
         points = values[before, None] + (values[before + 2] - values[before])[:, None] * _FRACTIONS
-        parts.append(found := solver.at(pose, points.reshape(-1, 1)))
-        missed = excess(solver.chain, found)
+        parts.append(solutions := solver.at(pose, points.reshape(-1, 1)))
+        missed = excess(solver.chain, solutions)
         for number, (_, own) in enumerate(some):
             around = missed[number * count : (number + 1) * count, own]
             rows, hits = np.nonzero(around <= TOLERANCE)
             if len(rows):
                 middle = len(rows) // 2
                 row = number * count + int(rows[middle])
-                yield found.values[row, own[hits[middle]]], found.only(row)
+                yield solutions.values[row, own[hits[middle]]], solutions.only(row)
             else:
                 rows, hits = _valleys(around)
                 rest.append(np.column_stack([(first + number) * count + rows, own[hits]]))
@@ -128,10 +128,12 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
         yield from _descents(solver, pose, closer, excess(solver.chain, closer), np.concatenate(rest))
 
 
-def _descents(solver: "ArmSolutions", pose: Floats, found: Solutions, missed: Floats, places: Ints) -> Iterator[Found]:
-    """Yield the solutions below the closest of some samples and branches (K, 2)."""
+def _descents(
+    solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints
+) -> Iterator[Found]:
+    """Yield the solutions that numeric descents reach from the samples and branches (K, 2) nearest to a solution."""
     for sample, branch in _distinct(missed, places).tolist():
-        start = nearest_turns(solver.chain, found.values[sample, branch])[0]
+        start = nearest_turns(solver.chain, solutions.values[sample, branch])[0]
         reached = solver.numeric.descend(pose, start)
         if reached.error < ACCURATE:
             yield reached.values, None
@@ -197,10 +199,10 @@ def _good(solver: "ArmSolutions", pose: Floats, free: Floats, *, limits: bool) -
 
 
 def rows_at(
-    solver: "ArmSolutions", pose: Floats, found: list[FreeInterval], fractions: Floats, *, limits: bool = True
+    solver: "ArmSolutions", pose: Floats, inside: list[FreeInterval], fractions: Floats, *, limits: bool = True
 ) -> Floats:
     """Return the solutions (K, n) at fractions of intervals, from 0 at their low ends to 1."""
-    branch, low, high = (np.array(column) for column in zip(*found, strict=True))
+    branch, low, high = (np.array(column) for column in zip(*inside, strict=True))
     free = (low + (high - low) * fractions[:, None]).ravel()
     solutions = solver.at(pose, free[:, None], limits=limits)
     rows, branches = np.arange(len(free)), np.tile(branch, len(fractions))

@@ -128,20 +128,20 @@ class NumericSolver:
         """
         for number in range(self.starts if starts is None else starts):
             start = seed if seed is not None and number == 0 else self.start(number)
-            found = self.descend(pose, start)
-            if found.error < ACCURATE:
-                values, inside = nearest_turns(self.chain, found.values, 0.0 if seed is None else seed)
-                return values if inside else found.values
+            reached = self.descend(pose, start)
+            if reached.error < ACCURATE:
+                values, inside = nearest_turns(self.chain, reached.values, 0.0 if seed is None else seed)
+                return values if inside else reached.values
         return None
 
     def solve_all(self, pose: Floats) -> Floats:
         """Return the solutions within the limits found from all starts, shape (K, n); it may miss some."""
         rows: list[Floats] = []
         for number in range(self.starts):
-            found = self.descend(pose, self.start(number))
-            if found.error < ACCURATE:
-                values, inside = nearest_turns(self.chain, found.values)
-                values = values if inside else found.values
+            reached = self.descend(pose, self.start(number))
+            if reached.error < ACCURATE:
+                values, inside = nearest_turns(self.chain, reached.values)
+                values = values if inside else reached.values
                 if all(self.chain.differences(values, other) > DISTINCT for other in rows):
                     rows.append(values)
         return np.array(rows).reshape(-1, self.chain.dof)

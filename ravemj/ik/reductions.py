@@ -124,14 +124,16 @@ class ReducedForm:
         if self.task in (Task.ROTATION, Task.DIRECTION):
             goals = poses.copy()
             goals[..., :3, 3] = 0 if self.task is Task.ROTATION else poses[..., :3, :3] @ self.chain.direction
-        found = self.inner.solve(goals, locked)
-        valid = found.valid
+        solutions = self.inner.solve(goals, locked)
+        valid = solutions.valid
         if self.task is Task.LOOK_AT:
-            valid = valid & (found.values[..., self._virtual[0]] >= 0)  # the look-at point is in front
+            valid = valid & (solutions.values[..., self._virtual[0]] >= 0)  # the look-at point is in front
         elif self.task is Task.DIRECTION:
-            valid = valid & (np.abs(found.values[..., self._virtual[0]]) < 1e-6)  # otherwise the direction is opposite
-        errors = np.where(found.valid & ~valid, 1.0, found.errors)
-        return Solutions(found.values[..., self._real], valid, found.merged, errors)
+            valid = valid & (
+                np.abs(solutions.values[..., self._virtual[0]]) < 1e-6
+            )  # otherwise the direction is opposite
+        errors = np.where(solutions.valid & ~valid, 1.0, solutions.errors)
+        return Solutions(solutions.values[..., self._real], valid, solutions.merged, errors)
 
 
 def derive_reduced(

@@ -41,7 +41,7 @@ def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None
     """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
-    found: list[Floats] = []
+    rows: list[Floats] = []
     for tool, jacobian in zip(tools, jacobians, strict=True):
         wanted = tool.copy() if goal is None else goal
         if goal is None and task is Task.LOOK_AT:
@@ -49,8 +49,8 @@ def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None
         elif goal is None and task is Task.LOCAL_PLACE:
             wanted[3, :3] = 0.3, 0.2, 0.1
         motion = ToolState(tool[:3, :3], tool[:3, 3], jacobian)
-        found.append(residual_and_jacobian(chain, task, wanted, motion, scale)[1])
-    return found
+        rows.append(residual_and_jacobian(chain, task, wanted, motion, scale)[1])
+    return rows
 
 
 def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
@@ -127,14 +127,14 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
     """
     axes, points = chain.placed_axes(rows)
     turning = np.nonzero(~chain.prismatic)[0].tolist()
-    found: list[tuple[Floats, int, int, float]] = []
+    singular: list[tuple[Floats, int, int, float]] = []
     for first, second in itertools.combinations(turning, 2):
         tilt = np.abs(np.cross(axes[first], axes[second])).max(axis=1)
         if tilt.min() < _COAXIAL:
             away = np.abs(np.cross(axes[first], points[second] - points[first])).max(axis=1) / chain.reach
             for row in np.nonzero((tilt < _COAXIAL) & (away < _COAXIAL))[0]:
-                found.append((rows[row], first, second, float(np.sign(axes[first, row] @ axes[second, row]))))
-    return found
+                singular.append((rows[row], first, second, float(np.sign(axes[first, row] @ axes[second, row]))))
+    return singular
 
 
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:

@@ -77,11 +77,11 @@ def null_space_path(
         ahead = rows[-1] + step * direction
         if (ahead < lower).any() or (ahead > upper).any():
             break
-        found = solver.numeric.descend(pose, ahead)
-        if found.error > ACCURATE or np.linalg.norm(found.values - ahead) > step:
+        reached = solver.numeric.descend(pose, ahead)
+        if reached.error > ACCURATE or np.linalg.norm(reached.values - ahead) > step:
             break
-        rows.append(found.values)
-        if len(rows) > 3 and distances(chain, found.values, start) < 0.6 * step:
+        rows.append(reached.values)
+        if len(rows) > 3 and distances(chain, reached.values, start) < 0.6 * step:
             break
     return np.array(rows)
 
@@ -116,10 +116,10 @@ def sweep(solver: ArmSolutions, goal: ArrayLike, seed: Floats, *, step: float = 
 def _followed(solver: ArmSolutions, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
     """Return configurations for values of the free joint, each nearest to the previous one, until there is none."""
     assert solver.closed is not None
-    found = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])
+    solutions = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])
     rows, last = list[Floats](), start
     for index in range(len(values)):
-        near, inside = nearest_turns(solver.chain, found.of(index), last)
+        near, inside = nearest_turns(solver.chain, solutions.of(index), last)
         near = near[inside]
         away = np.abs(near - last).max(axis=1, initial=0.0)
         if not len(near) or away.min() > _JUMP:

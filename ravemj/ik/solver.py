@@ -138,23 +138,23 @@ class ArmSolutions:
             values = self.free_samples() if free is None else np.asarray(free, dtype=float).reshape(-1, len(self.free))
             tries = len(values)
             poses, values = np.repeat(poses, tries, axis=0), np.tile(values, (count, 1))
-            found = _solve_alike(self.closed, poses, values, limits=limits)
+            solutions = _solve_alike(self.closed, poses, values, limits=limits)
         else:
-            found = _solve_alike(self.closed, poses, None, limits=limits)
+            solutions = _solve_alike(self.closed, poses, None, limits=limits)
         shape = (count, -1) if count else (0, len(self.closed.branch_names) * tries)
-        rows, valid = found.values.reshape(*shape, self.chain.dof), found.valid.reshape(shape)
+        rows, valid = solutions.values.reshape(*shape, self.chain.dof), solutions.valid.reshape(shape)
         if limits:
             rows, inside = nearest_turns(self.chain, rows)
             valid = valid & inside
-        merged = np.logical_or.reduce(found.merged.reshape(count, tries), axis=1)
-        return Solutions(rows, valid, merged, found.errors.reshape(shape))
+        merged = np.logical_or.reduce(solutions.merged.reshape(count, tries), axis=1)
+        return Solutions(rows, valid, merged, solutions.errors.reshape(shape))
 
     def _search_all(self, poses: Floats) -> Solutions:
         rows = [self.numeric.solve_all(pose) for pose in poses]
         most = max(map(len, rows), default=0)
         values, valid = np.zeros((len(poses), most, self.chain.dof)), np.zeros((len(poses), most), dtype=bool)
-        for index, found in enumerate(rows):
-            values[index, : len(found)], valid[index, : len(found)] = found, True
+        for index, row in enumerate(rows):
+            values[index, : len(row)], valid[index, : len(row)] = row, True
         return Solutions(values, valid, np.zeros(len(poses), dtype=bool), np.zeros(valid.shape))
 
     def solve_one(self, goal: ArrayLike, *, free: Floats | None = None, limits: bool = True) -> Floats:
@@ -170,13 +170,13 @@ class ArmSolutions:
         samples = self.free_samples()
         if free is not None and self.free:
             samples = np.asarray(free, dtype=float).reshape(-1, len(self.free))
-        found = self.at(pose, samples, limits=False)
-        rows = found.rows[0]
-        rows = self.spread(rows) if found.merged.any() else rows
+        solutions = self.at(pose, samples, limits=False)
+        rows = solutions.rows[0]
+        rows = self.spread(rows) if solutions.merged.any() else rows
         kept = all_turns(self.chain, rows) if limits else rows
         if given or len(kept):
             return kept
-        rows = next(self.between(pose, samples, found, limits=limits), rows)
+        rows = next(self.between(pose, samples, solutions, limits=limits), rows)
         return all_turns(self.chain, rows) if limits else rows
 
     def at(self, pose: Floats, free: Floats, *, limits: bool = True) -> Solutions:
@@ -185,18 +185,18 @@ class ArmSolutions:
         return self.closed.solve(np.repeat(pose[None], len(free), axis=0), free, limits=limits)
 
     def between(
-        self, pose: Floats, samples: Floats, found: Solutions, seed: Floats | None = None, *, limits: bool = True
+        self, pose: Floats, samples: Floats, solutions: Solutions, seed: Floats | None = None, *, limits: bool = True
     ) -> Iterator[Floats]:
         """Yield all solutions for free joint values between their samples, each of shape (K, n).
 
         Args:
             pose: The pose (4, 4).
             samples: The samples, shape (K, k).
-            found: The result of ``at`` for them.
+            solutions: The result of ``at`` for them.
             seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
             limits: Whether to enforce limits; turns are left to the caller.
         """
-        for row, here in between_samples(self, pose, samples, found):
+        for row, here in between_samples(self, pose, samples, solutions):
             more = here if here is not None and limits else self.at(pose, row[None, list(self.free)], limits=limits)
             others = self.spread(more.of(0), seed) if more.merged[0] else more.of(0)
             yield np.vstack([row, others[self.chain.differences(others, row) > DISTINCT]])
@@ -268,19 +268,19 @@ class ArmSolutions:
         starts = [] if seed is None else [seed]
         if self.closed is not None:
             samples = self.free_samples()
-            found = self.at(pose, samples[:: max(1, len(samples) // _MOST_SAMPLES)])
-            starts += closest(self.chain, found, _NEAREST_STARTS)
+            reached = self.at(pose, samples[:: max(1, len(samples) // _MOST_SAMPLES)])
+            starts += closest(self.chain, reached, _NEAREST_STARTS)
         starts += [self.numeric.start(number) for number in range(_NEAREST_STARTS - len(starts) + 1)]
-        found = (self.numeric.nearest(pose, start) for start in starts)
-        best = min(found, key=lambda one: round(one.error, 9))  # the first of those equal up to rounding
+        reached = (self.numeric.nearest(pose, start) for start in starts)
+        best = min(reached, key=lambda descent: round(descent.error, 9))  # the first of those equal up to rounding
         distance, angle = self.numeric.shortfall(pose, best.values)
         values = nearest_turns(self.chain, best.values, 0.0 if seed is None else seed)[0]
         return Reachable(values, self.chain.forward(values), distance, angle)
 
     def descent(self, pose: Floats, seed: Floats) -> Floats:
         """Return the solution found by descent from a configuration, shape (1, n), or none, shape (0, n)."""
-        found = self.numeric.descend(pose, seed)
-        return found.values[None][: int(found.error < ACCURATE)]
+        reached = self.numeric.descend(pose, seed)
+        return reached.values[None][: int(reached.error < ACCURATE)]
 
     def _best(
         self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None

@@ -88,7 +88,7 @@ def solve_quadratic(k: Floats, linear: Floats, square: Floats) -> Floats:
     u1, v1, u2, v2 = a1 * c1 + b1 * s1, b1 * c1 - a1 * s1, a2 * c2 + b2 * s2, b2 * c2 - a2 * s2
     tangents = _quartic(a0 - u1 + u2, 2 * v1 - 4 * v2, 2 * a0 - 6 * u2, 2 * v1 + 4 * v2, a0 + u1 + u2)
     angles = (2 * np.arctan(tangents) + shift).reshape(-1, *shift.shape[-1:])
-    a0, a1, b1, a2, b2 = (np.concatenate([one] * 4, axis=-2) for one in (a0, a1, b1, a2, b2))
+    a0, a1, b1, a2, b2 = (np.concatenate([coefficient] * 4, axis=-2) for coefficient in (a0, a1, b1, a2, b2))
     for _ in range(2):
         c1, s1, c2, s2 = np.cos(angles), np.sin(angles), np.cos(2 * angles), np.sin(2 * angles)
         value = a0 + a1 * c1 + b1 * s1 + a2 * c2 + b2 * s2

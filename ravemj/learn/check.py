@@ -107,23 +107,23 @@ class Check:
             return "it returns NaN or infinity; is something divided by zero, or out of the domain of acos or sqrt?"
         right = np.asarray(self.answer(*arguments))
         if self._shape(numbers) != self._shape(right) and (numbers.size or right.size):
-            found = f"an array of shape {numbers.shape}" if numbers.size else "an empty list"
-            return f"it returns {found}, and should return {self._expected(arguments)}"
+            returned = f"an array of shape {numbers.shape}" if numbers.size else "an empty list"
+            return f"it returns {returned}, and should return {self._expected(arguments)}"
         return None
 
-    def distance(self, one: Floats, other: Floats) -> float:
+    def distance(self, answer: Floats, other: Floats) -> float:
         """Return the largest difference of two answers.
 
         Quaternions may have the other sign. Rows in any order are points or joint values that a judge decides about.
         """
-        if not one.size:
+        if not answer.size:
             return 0.0
-        if self.judge is not None and self.kind in _POINTS and one.ndim == 2 and not self.any_length:
-            between = np.abs(one[:, np.newaxis] - other).max(axis=-1)
+        if self.judge is not None and self.kind in _POINTS and answer.ndim == 2 and not self.any_length:
+            between = np.abs(answer[:, np.newaxis] - other).max(axis=-1)
             return float(max(between.min(axis=0).max(), between.min(axis=1).max()))
         if self.kind == "quaternion":
-            return float(min(np.abs(one - other).max(), np.abs(one + other).max()))
-        return float(np.abs(one - other).max())
+            return float(min(np.abs(answer - other).max(), np.abs(answer + other).max()))
+        return float(np.abs(answer - other).max())
 
     def _shape(self, answer: object) -> tuple[int | str, ...]:
         shape = np.asarray(answer).shape

@@ -88,11 +88,11 @@ def check_file(exercise: Path, check: Check, seed: int) -> Verdict:
 
 def _copied(arguments: Arguments) -> Arguments:
     """Return arguments with arrays of their own, which a function may change."""
-    return tuple(copy.copy(one) if hasattr(one, "dtype") else one for one in arguments)
+    return tuple(copy.copy(argument) if hasattr(argument, "dtype") else argument for argument in arguments)
 
 
 def _verdict(check: Check, asked: Sequence[Arguments], given: Sequence[object], seed: int) -> Verdict:
-    complaints = [check.complaint(one, arguments) for one, arguments in zip(given, asked, strict=True)]
+    complaints = [check.complaint(returned, arguments) for returned, arguments in zip(given, asked, strict=True)]
     wrong = [number for number, complaint in enumerate(complaints) if complaint is not None]
     right = len(asked) - len(wrong)
     if not wrong:
@@ -190,7 +190,7 @@ def call_text(check: Check, arguments: Arguments) -> str:
     if not arguments:
         return ""
     name = check.function if isinstance(check.function, str) else "joint values"
-    return f"{name}({', '.join(shortened(one, 80) for one in arguments)})"
+    return f"{name}({', '.join(shortened(argument, 80) for argument in arguments)})"
 
 
 def error_text(error: BaseException, path: Path) -> str:

@@ -75,7 +75,7 @@ def recognized(check: Check, asked: Sequence[Arguments], given: Sequence[object]
         given: What the student's function answered to each.
     """
     try:
-        answers = [np.asarray(one, dtype=float) for one in given]
+        answers = [np.asarray(answer, dtype=float) for answer in given]
         right = [np.asarray(check.answer(*arguments), dtype=float) for arguments in asked]
     except (TypeError, ValueError):
         return None
@@ -92,22 +92,22 @@ def _candidates(
     for sentence, function in check.mistakes.items():
         yield sentence, _answers(function, asked)
     for sentence, convert in _ANGLES if check.angles else ():
-        yield sentence, _answers(check.answer, [_converted(check, one, convert) for one in asked])
+        yield sentence, _answers(check.answer, [_converted(check, arguments, convert) for arguments in asked])
     if check.kind == "joint values":
         yield "Angles are off by whole turns: bring them into the limits.", _by_turns(right, given)
     changes = [*_ANSWERS.get(check.kind, ()), *(_LENGTHS if check.kind in _WITH_LENGTHS else ()), _NEGATIVE]
     for sentence, change in changes if check.kind != "boolean" else ():
-        yield sentence, [change(one) for one in right]
+        yield sentence, [change(answer) for answer in right]
     if check.kind in {"vector", "joint values"} and right[0].ndim == 1:
         yield from _reordered(right)
 
 
 def _by_turns(right: Sequence[Floats], given: Sequence[Floats]) -> list[Floats] | None:
     """Return the right answers, turned to those that are given."""
-    if any(one.shape != other.shape for one, other in zip(right, given, strict=True)):
+    if any(answer.shape != other.shape for answer, other in zip(right, given, strict=True)):
         return None
     turn = 2 * np.pi
-    return [one + turn * np.round((other - one) / turn) for one, other in zip(right, given, strict=True)]
+    return [answer + turn * np.round((other - answer) / turn) for answer, other in zip(right, given, strict=True)]
 
 
 def _reordered(right: Sequence[Floats]) -> Iterator[tuple[str, list[Floats]]]:
@@ -116,7 +116,7 @@ def _reordered(right: Sequence[Floats]) -> Iterator[tuple[str, list[Floats]]]:
     for order in orders:
         yield (
             f"The numbers are in another order: {list(order)} in place of {list(range(count))}.",
-            [one[list(order)] for one in right],
+            [answer[list(order)] for answer in right],
         )
 
 
@@ -131,14 +131,15 @@ def _answers(function: Callable[..., object], asked: Sequence[Arguments]) -> lis
 
 def _converted(check: Check, arguments: Arguments, convert: Transformation) -> Arguments:
     return tuple(
-        convert(np.asarray(one, dtype=float)) if index in check.angles else one for index, one in enumerate(arguments)
+        convert(np.asarray(argument, dtype=float)) if index in check.angles else argument
+        for index, argument in enumerate(arguments)
     )
 
 
 def _agree(check: Check, answers: Sequence[Floats], wrong: Sequence[Floats] | None) -> bool:
     tolerance = max(check.tolerance, 1e-5)
     return wrong is not None and all(
-        one.shape == other.shape
-        and check.distance(one, other) <= tolerance * max(1.0, float(np.abs(other).max(initial=0)))
-        for one, other in zip(answers, wrong, strict=True)
+        answer.shape == other.shape
+        and check.distance(answer, other) <= tolerance * max(1.0, float(np.abs(other).max(initial=0)))
+        for answer, other in zip(answers, wrong, strict=True)
     )

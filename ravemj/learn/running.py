@@ -93,8 +93,8 @@ class _Output:
         """Return why there is no verdict."""
         if "Timeout (" in self.errors:
             name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it
-            found = re.search(rf'File "{re.escape(name)}", line (\d+)', self.errors)
-            where = f": it was in line {found[1]}" if found else ""
+            last_place = re.search(rf'File "{re.escape(name)}", line (\d+)', self.errors)
+            where = f": it was in line {last_place[1]}" if last_place else ""
             return f"no end after {seconds:g} s{where}; is there a loop that never ends?"
         if "MemoryError" in self.errors:
             return "out of memory"
@@ -160,11 +160,13 @@ class Progress:
         known = {exercise: verdict for exercise in present if not fresh and (verdict := self.known(exercise))}
         yield from known.items()
 
-        def work(one: Exercise) -> tuple[Exercise, str, Verdict]:
-            return one, self._key(one), run_check(one, self.file(one))
+        def work(exercise: Exercise) -> tuple[Exercise, str, Verdict]:
+            return exercise, self._key(exercise), run_check(exercise, self.file(exercise))
 
         try:
-            for exercise, key, verdict in _side_by_side(work, [one for one in present if one not in known]):
+            for exercise, key, verdict in _side_by_side(
+                work, [unchecked for unchecked in present if unchecked not in known]
+            ):
                 self._known[exercise.name] = key, verdict
                 yield exercise, verdict
         finally:

@@ -141,8 +141,8 @@ class ArmSearch:
     def every(self) -> list[Floats]:
         """Return all accepted joint values, each of shape (n,); none if a callback ends the search."""
         with self.moving():
-            found = list(self.all_good())
-        return [] if self.ended else found
+            solutions = list(self.all_good())
+        return [] if self.ended else solutions
 
     def all_good(self) -> Iterator[Floats]:
         """Yield all accepted joint values, each of shape (n,); points between samples only if no sample is accepted.

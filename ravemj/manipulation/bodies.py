@@ -90,7 +90,7 @@ class Bodies:
         moving = [group for group in groups if group.kind in {JOINTS[0], AFFINE[0]} and not _is_unbound(group)]
         self.parts = [_part(simulation, group) for group in moving]
         self._unbound = [group for group in groups if _is_unbound(group)]
-        self.dof = max((one.columns.stop for one in (*self.parts, *self._unbound)), default=0)
+        self.dof = max((part.columns.stop for part in (*self.parts, *self._unbound)), default=0)
         self.bodies = list(dict.fromkeys(part.body for part in self.parts))
         self._free: set[BodyState] = set()  # bodies whose joints do not move, and which need no self-collision checks
 
@@ -231,14 +231,14 @@ class Bodies:
 
     def collisions(self) -> list[Findings]:
         """Return the present collisions: of each body with itself, and with other bodies."""
-        checker, found = self._checker(), list[Findings]()
+        checker, all_findings = self._checker(), list[Findings]()
         with self._simulation.lock:
             world = checker.world()
             for body in self.bodies:
                 moved = self.moved(body)
                 tests = itself(world, body, moved), body_and_others(world, body, moved)
-                found += [checker.find(world, pairs) for pairs in tests]
-        return [findings for findings in found if findings.collisions]
+                all_findings += [checker.find(world, pairs) for pairs in tests]
+        return [findings for findings in all_findings if findings.collisions]
 
     def beyond_limits(self, values: Floats) -> list[str]:
         """Return the names of joints whose values exceed their limits; circular joints have none."""
@@ -361,9 +361,9 @@ class Conditions:
         if self.bodies is None:
             return FREE
         self.bodies.move(values)
-        found = self.bodies.collision(told) & options
-        if found or not options & USER:
-            return found
+        violated = self.bodies.collision(told) & options
+        if violated or not options & USER:
+            return violated
         keeps_all = all(constraint(values) for constraint in self.constraints)
         return FREE if keeps_all and (self.manifold is None or self.manifold.has(values)) else USER
 

@@ -152,7 +152,7 @@ class BodySpaces:
 
 def _check_grabs(moving: Sequence[BodyState]) -> None:
     for body in moving:
-        for held in (one for grab in body.grabs for one in held_with(grab.body) if one in moving):
+        for held in (held_body for grab in body.grabs for held_body in held_with(grab.body) if held_body in moving):
             raise UncertifiableError(f"'{held.scene.name}' moves by itself while '{body.scene.name}' holds it")
 
 
@@ -160,7 +160,7 @@ def _pairs(world: CollisionWorld, bodies: Bodies, body: BodyState) -> Ints:
     """Return the collision pairs of a body's geoms, the smaller index first, shape (n, 2)."""
     moved = bodies.moved(body)
     asked = body_and_others(world, body, moved), itself(world, body, moved)
-    return np.sort(np.concatenate([np.stack([one.first, one.second], axis=1) for one in asked]), axis=1)
+    return np.sort(np.concatenate([np.stack([pairs.first, pairs.second], axis=1) for pairs in asked]), axis=1)
 
 
 def _chains(world: CollisionWorld, body: BodyState, bases: dict[BodyState, int]) -> list[tuple[int, Chain]]:
@@ -168,12 +168,12 @@ def _chains(world: CollisionWorld, body: BodyState, bases: dict[BodyState, int])
     model, ids = world.model.model, world.model.part(body).body_ids
     base = (bases[body], bases[body] + 1) if body in bases else ()
     chains = [Chain((*joints_above(model, int(link)), *base)) for link in ids]
-    found = [(geom, chain) for link, chain in enumerate(chains) for geom in _geoms(world, body, link)]
+    geoms = [(geom, chain) for link, chain in enumerate(chains) for geom in _geoms(world, body, link)]
     for grab in body.grabs:
         for held in held_with(grab.body):
             links = range(len(held.scene.links))
-            found += [(geom, chains[grab.link]) for link in links for geom in _geoms(world, held, link)]
-    return found
+            geoms += [(geom, chains[grab.link]) for link in links for geom in _geoms(world, held, link)]
+    return geoms
 
 
 def _geoms(world: CollisionWorld, body: BodyState, link: int) -> list[int]:

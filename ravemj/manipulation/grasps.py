@@ -147,10 +147,10 @@ class GraspSearch:
             return None
         T_target_tool = self._table.pose(number)
         T_world_tool = self._target.link_transform(0) @ T_target_tool
-        found = Grasp(number, preshape, self._approaches(T_world_tool, self._direction(number, T_world_tool)))
-        if found.rows and self._places:
-            found.T_world_goals = self._goals(T_target_tool)
-        return found if found.rows and (found.T_world_goals or not self._places) else None
+        grasp = Grasp(number, preshape, self._approaches(T_world_tool, self._direction(number, T_world_tool)))
+        if grasp.rows and self._places:
+            grasp.T_world_goals = self._goals(T_target_tool)
+        return grasp if grasp.rows and (grasp.T_world_goals or not self._places) else None
 
     def _preshaped(self, number: int) -> Floats | None:
         """Move the gripper to the preshape of a grasp and return its values; None if they are outside the limits."""
@@ -204,16 +204,16 @@ class GraspSearch:
 
     def _goals(self, T_target_tool: Floats) -> list[Floats]:
         """Return the tool poses at the destinations where the target can be put down with a grasp."""
-        options, found = self._options, list[Floats]()
+        options, goals = self._options, list[Floats]()
         count = len(self._places)
         for place in self._random.permutation(count).tolist() if options.randomdests else range(count):
             T_world_target = self._places[place]
             T_world_tool = T_world_target @ T_target_tool
             if self._is_free(T_world_target) and self._is_reached(T_world_tool):
-                found.append(T_world_tool)
-            if len(found) == options.seeddests > 0:
+                goals.append(T_world_tool)
+            if len(goals) == options.seeddests > 0:
                 break
-        return found
+        return goals
 
     def _is_free(self, T_world_target: Floats) -> bool:
         """Return whether the target at a pose collides with nothing but the robot."""

@@ -262,9 +262,9 @@ def check(joints: Joints, points: JointTrajectory, *, moving: bool) -> None:
         for end, row in (("start", 0), ("end", -1)):
             joint = int(np.abs(velocities[row]).argmax())
             if abs(velocities[row, joint]) > _REST:
-                found = f"moves at {velocities[row, joint]:.4g} {joints.units[joint]}/s at {points.times[row]:.4g} s"
+                excess = f"moves at {velocities[row, joint]:.4g} {joints.units[joint]}/s at {points.times[row]:.4g} s"
                 hint = f"the {end}, where it should be at rest; moving=True or --moving allows it"
-                raise ArgumentError(f"joint '{joints.names[joint]}' {found}, {hint}")
+                raise ArgumentError(f"joint '{joints.names[joint]}' {excess}, {hint}")
     _check_rates(joints, points.times, velocities, [axis.max_velocity for axis in axes], "/s")
     if accelerations is not None:
         _check_rates(joints, points.times, accelerations, [axis.max_acceleration for axis in axes], "/s^2")
@@ -285,8 +285,8 @@ def largest_excess(joints: Joints, values: Floats) -> Excess | None:
     if not excess[row, joint] > EXACT * max(1.0, abs(values[row, joint])):
         return None
     unit, bounds = joints.units[joint], f"[{limits.lower[joint]:.6g}, {limits.upper[joint]:.6g}]"
-    found = f"is at {values[row, joint]:.6g} {unit}, {excess[row, joint]:.3g} {unit} outside of its limits {bounds}"
-    return Excess(row, f"joint '{joints.names[joint]}' {found}")
+    deviation = f"is at {values[row, joint]:.6g} {unit}, {excess[row, joint]:.3g} {unit} outside of its limits {bounds}"
+    return Excess(row, f"joint '{joints.names[joint]}' {deviation}")
 
 
 def _check_values(joints: Joints, times: Floats, values: Floats) -> None:
@@ -301,8 +301,8 @@ def _check_rates(joints: Joints, times: Floats, rates: Floats, limits: Sequence[
     if excess[row, joint] > 0:
         word = "a velocity" if per_time == "/s" else "an acceleration"
         unit = joints.units[joint] + per_time
-        found = f"{word} of {rates[row, joint]:.4g} {unit} at {times[row]:.4g} s"
-        raise ArgumentError(f"joint '{joints.names[joint]}' has {found}, and its limit is {limits[joint]:.4g} {unit}")
+        largest = f"{word} of {rates[row, joint]:.4g} {unit} at {times[row]:.4g} s"
+        raise ArgumentError(f"joint '{joints.names[joint]}' has {largest}, and its limit is {limits[joint]:.4g} {unit}")
 
 
 def from_state(joints: Joints, points: JointTrajectory, measured: Floats) -> JointTrajectory:
@@ -323,9 +323,9 @@ def from_state(joints: Joints, points: JointTrajectory, measured: Floats) -> Joi
     joint = int(leap.argmax())
     if not leap[joint] <= LARGEST_LEAP:
         unit = joints.units[joint]
-        found = f"starts at {shifted[0, joint]:.6g} {unit}, and the robot is at {here[joint]:.6g} {unit}"
+        deviation = f"starts at {shifted[0, joint]:.6g} {unit}, and the robot is at {here[joint]:.6g} {unit}"
         allowed = f"at most {LARGEST_LEAP} {unit} are allowed"
-        raise ArgumentError(f"joint '{joints.names[joint]}' {found}, {leap[joint]:.3g} {unit} apart; {allowed}")
+        raise ArgumentError(f"joint '{joints.names[joint]}' {deviation}, {leap[joint]:.3g} {unit} apart; {allowed}")
     return replace(points, positions=shifted)
 
 

@@ -31,13 +31,13 @@ def find_path(problem: Problem, search: Callable[[Problem], Search], spacing: fl
 
     ``spacing`` is the maximum weighted distance of waypoints, 0 for none.
     """
-    found, edges = search(problem), problem.edges
-    if isinstance(edges, ConstrainedEdges) and found.path is not None:
-        path = bent_path(edges, shorten(edges, found.path, _SHORTCUTS, problem.random))
-        found = replace(found, path=path, end=End.stuck if path is None else found.end)
-    if spacing > 0 and found.path is not None:
-        found = replace(found, path=_spaced(edges.space, found.path, spacing))
-    return found
+    search_, edges = search(problem), problem.edges
+    if isinstance(edges, ConstrainedEdges) and search_.path is not None:
+        path = bent_path(edges, shorten(edges, search_.path, _SHORTCUTS, problem.random))
+        search_ = replace(search_, path=path, end=End.stuck if path is None else search_.end)
+    if spacing > 0 and search_.path is not None:
+        search_ = replace(search_, path=_spaced(edges.space, search_.path, spacing))
+    return search_
 
 
 def _spaced(space: Space, path: Floats, spacing: float) -> Floats:
@@ -57,8 +57,8 @@ def jittered(conditions: Conditions, space: Space, configurations: Sequence[Floa
     random = np.random.default_rng(0)
     with conditions.kept():
         test = conditions.allowed()
-        found = [nearby(space, one, test, _JITTER_TRIES, jitter, random) for one in configurations]
-    return [old if new is None else new for old, new in zip(configurations, found, strict=True)]
+        moved = [nearby(space, configuration, test, _JITTER_TRIES, jitter, random) for configuration in configurations]
+    return [old if new is None else new for old, new in zip(configurations, moved, strict=True)]
 
 
 def free_configuration(

@@ -49,13 +49,13 @@ class Tally:
 
     def note(self, region: int, refusals: Sequence["RefusedError"]) -> None:
         """Count a sample that gave starts or goals (no refusals), or the refusals of all its solutions."""
-        last = max(refusals, key=lambda one: _ORDER.index(one.cause), default=None)
+        last = max(refusals, key=lambda refused: _ORDER.index(refused.cause), default=None)
         self.counts[region][None if last is None else last.cause] += 1
         if last is None:
             return
         self.examples.setdefault(last.cause, last)
         if last.cause is Cause.CONSTRAINT:
-            off = min(one.off for one in refusals if one.cause is Cause.CONSTRAINT)
+            off = min(refused.off for refused in refusals if refused.cause is Cause.CONSTRAINT)
             self._off = min(self._off[0], off), max(self._off[1], off)
 
     def named(self) -> dict[str, dict[str, int]]:
@@ -176,12 +176,12 @@ def refusal(conditions: Conditions, space: Space, allowed: Allowed, values: Floa
     if allowed(values):
         return None
     told: list[Findings] = []
-    found = conditions.violation(values, told=told)
-    if found == USER:
+    violated = conditions.violation(values, told=told)
+    if violated == USER:
         off = 0.0 if conditions.manifold is None else conditions.manifold.off(values)
         return RefusedError(name, _off(conditions, off), Cause.CONSTRAINT, values=values, off=off)
-    if found:
-        cause = Cause.SELF_COLLISION if found == SELF_COLLISION else Cause.COLLISION
+    if violated:
+        cause = Cause.SELF_COLLISION if violated == SELF_COLLISION else Cause.COLLISION
         return RefusedError(name, f"it collides: {colliding(told[-1])}", cause, values=values, findings=told[-1])
     return None
 
@@ -191,7 +191,7 @@ def troubles(bodies: Bodies, values: Floats) -> list[str]:
     beyond = bodies.beyond_limits(values)
     bodies.move(values)
     pairs = (findings.collisions[0][:2] for findings in bodies.collisions())
-    hits = [" hits ".join(one.body.scene.links[one.link].name for one in pair) for pair in pairs]
+    hits = [" hits ".join(geom.body.scene.links[geom.link].name for geom in pair) for pair in pairs]
     return [*([f"beyond limits: {', '.join(beyond)}"] if beyond else []), *hits]
 
 

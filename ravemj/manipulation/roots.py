@@ -169,7 +169,7 @@ class RegionRoots:
         self, region: int, row: Floats, refuse: Refuse, roots: list[Floats], refusals: list[RefusedError]
     ) -> None:
         why = refuse(row)
-        tried = sum(one.cause is Cause.CONSTRAINT for one in refusals)
+        tried = sum(refusal.cause is Cause.CONSTRAINT for refusal in refusals)
         if why is not None and why.cause is Cause.CONSTRAINT and tried < _REPAIRS:
             repaired = self._repair(region, row)
             if repaired is not None and refuse(repaired) is None:

@@ -181,10 +181,10 @@ class MovedTool:
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
             T_world_tool, jacobian = self.motion(values)
-            found = T_task_world @ T_world_tool @ T_tool_point
+            T_task_point = T_task_world @ T_world_tool @ T_tool_point
             arm = T_world_tool[:3, :3] @ T_tool_point[:3, 3]
             moves = jacobian[:3] - np.cross(arm, jacobian[3:], axisb=0, axisc=0)  # v_point = v_tool + omega x arm
-            error = np.append(rotation_between(found[:3, :3], np.eye(4)), -found[:3, 3])
+            error = np.append(rotation_between(T_task_point[:3, :3], np.eye(4)), -T_task_point[:3, 3])
             return freedoms * error, freedoms[:, None] * np.vstack([rotation @ jacobian[3:], rotation @ moves])
 
         return Manifold(lacking, threshold)

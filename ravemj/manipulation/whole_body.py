@@ -69,7 +69,7 @@ class Moving:
         self._frames.append((link, T_link_frame))
         self._rotations = np.array([frame[:3, :3] for _, frame in self._frames])
         self._offsets = np.array([frame[:3, 3] for _, frame in self._frames])
-        self._ids = self._kinematics.body_ids[[one for one, _ in self._frames]]
+        self._ids = self._kinematics.body_ids[[placed_link for placed_link, _ in self._frames]]
         self._poses = np.tile(np.eye(4), (len(self._frames), 1, 1))
         self._stamp = -1
         return len(self._frames) - 1
@@ -121,9 +121,9 @@ class Moving:
         mass = float(self.body.inertias.masses.sum())
         held = [(grab.link, *_weight(grab.body)) for grab in self.body.grabs]
         points = np.array([point for _, _, point in held])
-        total = mass + sum(one for _, one, _ in held)
+        total = mass + sum(held_mass for _, held_mass, _ in held)
         moved = self.jacobians([link for link, _, _ in held], points)[:, :3]
-        shares = np.array([one for _, one, _ in held]) / total
+        shares = np.array([held_mass for _, held_mass, _ in held]) / total
         return com * mass / total + shares @ points, jacobian * mass / total + np.tensordot(shares, moved, 1)
 
     def limits(
@@ -184,30 +184,30 @@ class Moving:
 
     def inequalities(self) -> list[Inequality]:
         """Return the constraints of distances, and of the centre of mass over its support."""
-        found = [one for keeper in self.keepers if (one := self._distances(keeper)) is not None]
+        inequalities = [inequality for keeper in self.keepers if (inequality := self._distances(keeper)) is not None]
         for normals, offsets in self.edges:
             com, jacobian = self.com()
-            found.append(Inequality(-normals @ jacobian[:2], normals @ com[:2] - offsets))
-        return found
+            inequalities.append(Inequality(-normals @ jacobian[:2], normals @ com[:2] - offsets))
+        return inequalities
 
     def nearest(self, keeper: Keeper) -> tuple[float, str]:
         """Return the smallest distance of pairs [m], infinite if none is near, and the names of both links."""
         near = self._near(keeper)
         if not near:
             return math.inf, ""
-        distance, owners, _ = min(near, key=lambda one: one[0])
+        distance, owners, _ = min(near, key=lambda pair: pair[0])
         return distance, " and ".join(body.scene.links[link].name for body, link in owners)
 
     def _near(self, keeper: Keeper) -> list[tuple[float, tuple[tuple[BodyState, int], tuple[BodyState, int]], Floats]]:
         """Return for each near pair the distance, both links, and the segment between them, shape (6,)."""
         world, pairs = keeper.pairs()
-        found: list[tuple[float, tuple[tuple[BodyState, int], tuple[BodyState, int]], Floats]] = []
+        near: list[tuple[float, tuple[tuple[BodyState, int], tuple[BodyState, int]], Floats]] = []
         for number in np.flatnonzero(pairs.gaps() < keeper.seen).tolist():
             first, second = pairs.geoms(number)
             distance, segment = world.shapes.closest(first, second, keeper.seen)
             if distance < keeper.seen:
-                found.append((distance, (world.owner(first), world.owner(second)), segment))
-        return found
+                near.append((distance, (world.owner(first), world.owner(second)), segment))
+        return near
 
     def _distances(self, keeper: Keeper) -> Inequality | None:
         """Return constraints that keep near pairs at the minimum distance, and separate closer ones."""

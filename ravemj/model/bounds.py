@@ -21,8 +21,8 @@ def link_bounds(link: Link, T_a_link: Floats) -> Bounds | None:
 
 def links_bounds(links: Iterable[Link], T_a_links: Iterable[Floats]) -> Bounds | None:
     """Return the bounds of several links at their poses; None if they are empty."""
-    found = (link_bounds(link, T_a_link) for link, T_a_link in zip(links, T_a_links, strict=True))
-    return _enclosing(bounds for bounds in found if bounds is not None)
+    each_bounds = (link_bounds(link, T_a_link) for link, T_a_link in zip(links, T_a_links, strict=True))
+    return _enclosing(bounds for bounds in each_bounds if bounds is not None)
 
 
 class BodyBounds:
@@ -32,7 +32,7 @@ class BodyBounds:
         """Collect the geometries of links."""
         extents: list[tuple[int, Geometry, Extent]] = []
         self._corners: list[tuple[int, Floats]] = []  # by link, vertices in its frame, shape (4, n)
-        for index, geometry in [(index, one) for index, link in enumerate(links) for one in link.geometries]:
+        for index, geometry in [(index, shape) for index, link in enumerate(links) for shape in link.geometries]:
             extent = geometry.shape.extent()
             if extent is not None:
                 if max(*extent.box, extent.disk, extent.ball) > 0.0:
@@ -41,7 +41,7 @@ class BodyBounds:
                 points = np.vstack((vertices.T, np.ones(len(vertices))))
                 self._corners.append((index, geometry.T_link_geometry.matrix() @ points))
         self._links = np.array([index for index, _, _ in extents], dtype=int)
-        self._poses = np.array([one.T_link_geometry.matrix() for _, one, _ in extents]).reshape(-1, 4, 4)
+        self._poses = np.array([shape.T_link_geometry.matrix() for _, shape, _ in extents]).reshape(-1, 4, 4)
         self._centres = np.array([(*extent.centre, 1.0) for _, _, extent in extents]).reshape(-1, 4, 1)
         self._boxes = np.array([extent.box for _, _, extent in extents]).reshape(-1, 3, 1)
         self._radii = np.array([(extent.disk, extent.ball) for _, _, extent in extents]).reshape(-1, 2)

@@ -182,7 +182,10 @@ class BodyBuilder:
         """
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
-        named = [NamedJoint(one.name, len(one.axes) if one.active else 0, one.equations, one.source) for one in listed]
+        named = [
+            NamedJoint(joint.name, len(joint.axes) if joint.active else 0, joint.equations, joint.source)
+            for joint in listed
+        ]
         mimics = resolve(named, diagnostics)
         decided = self._decide(listed, mimics)
         poses = [link.pose for link in self.links]

@@ -51,7 +51,7 @@ class Connections:
 
     @cached_property
     def _placing(self) -> dict[int, int]:
-        """Joint that places each link placed by a joint."""
+        """For each link that a joint places, the index of this joint."""
         return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
 
     def between(self, link: int) -> set[int]:
@@ -93,12 +93,12 @@ _known: dict[tuple[int, int, int], Connections] = {}
 def connections(body: KinBody) -> Connections:
     """Return the connections of a body's links, cached as long as the joints are the same."""
     key = id(body.joints), id(body.passive_joints), len(body.links)
-    found = _known.get(key)
-    if found is None:
+    graph = _known.get(key)
+    if graph is None:
         if len(_known) >= _MOST_BODIES:
             _known.clear()
-        found = _known[key] = Connections(body)
-    return found
+        graph = _known[key] = Connections(body)
+    return graph
 
 
 def joint_dofs(body: KinBody, joint: int) -> tuple[int, ...]:
@@ -162,9 +162,9 @@ def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
         up, down = list(joints_above(body, joint.child)), list(joints_above(body, joint.parent))
         while up and down and up[-1] == down[-1]:  # above the lowest common ancestor
             del up[-1], down[-1]
-        links = [joint.child, *(joints[one].parent for one in up)]
+        links = [joint.child, *(joints[climbed].parent for climbed in up)]
         if links[-1] == (joints[down[-1]].parent if down else joint.parent):  # otherwise both have different roots
-            links += [joints[one].child for one in reversed(down)]
+            links += [joints[climbed].child for climbed in reversed(down)]
             loops.append(list(zip(links, [*up, *reversed(down), index], strict=True)))
     return loops
 
@@ -208,8 +208,8 @@ def separate_pairs(body: KinBody) -> list[Pair]:
     """Return the sorted pairs of links that are not adjacent, the smaller index first; see ``adjacent_pairs``."""
     known = connections(body)
     groups: dict[int, list[int]] = {}
-    for link, one in enumerate(body.links):
-        if one.geometries:
+    for link, moved in enumerate(body.links):
+        if moved.geometries:
             groups.setdefault(known.parts[link] if body.joined_links_adjacent else 0, []).append(link)
     left_out = {*body.adjacent, *(known.close_pairs if body.joined_links_adjacent else ())}
     pairs = (pair for group in groups.values() for pair in itertools.combinations(group, 2))

@@ -36,7 +36,7 @@ CONFIGURATIONS = 5
 """Number of random configurations to compare."""
 
 _FARTHEST = 10.0  # range of random values of joints without limits [rad or m]
-_AXIS_FIELDS = tuple(one.name for one in fields(Axis) if one.name not in {"direction", "reference"})
+_AXIS_FIELDS = tuple(field.name for field in fields(Axis) if field.name not in {"direction", "reference"})
 """Compared fields of axes: all but the direction, which not every joint has, and the derived reference."""
 
 
@@ -79,10 +79,10 @@ class _Comparison:
         if first.view is not None and second.view is not None:
             yield from self._near(part, "background", *(view.background or WHITE for view in (first.view, second.view)))
             yield from self._poses(part, "camera", first.view.T_world_camera, second.view.T_world_camera)
-        for one, other in zip(first.bodies, second.bodies, strict=False):
-            yield from self._bodies(one, other)
-        for one, other in zip(first.sensors, second.sensors, strict=False):
-            yield from self._sensors(f"sensor '{one.name}'", one, other)
+        for item, other in zip(first.bodies, second.bodies, strict=False):
+            yield from self._bodies(item, other)
+        for item, other in zip(first.sensors, second.sensors, strict=False):
+            yield from self._sensors(f"sensor '{item.name}'", item, other)
 
     def _bodies(self, first: KinBody, second: KinBody) -> Iterator[Difference]:
         part = f"'{first.name}'"
@@ -99,10 +99,10 @@ class _Comparison:
         yield from structure
         if len(first.links) == len(second.links) and separate_pairs(first) != separate_pairs(second):
             yield from self._same(part, "adjacent links", *(sorted(adjacent_pairs(body)) for body in (first, second)))
-        for one, other in zip(first.links, second.links, strict=False):
-            yield from self._links(f"{part} link '{one.name}'", one, other)
-        for one, other in zip(first.all_joints, second.all_joints, strict=False):
-            yield from self._joints(f"{part} joint '{one.name}'", one, other)
+        for item, other in zip(first.links, second.links, strict=False):
+            yield from self._links(f"{part} link '{item.name}'", item, other)
+        for item, other in zip(first.all_joints, second.all_joints, strict=False):
+            yield from self._joints(f"{part} joint '{item.name}'", item, other)
         yield from self._equations(part, first, second)
         yield from self._attached(part, first, second)
         if not structure:
@@ -114,20 +114,22 @@ class _Comparison:
         from ravemj.model.mimic_texts import mimic_texts  # noqa: PLC0415 - slow to import, and rarely wanted
 
         texts = mimic_texts(first), mimic_texts(second)
-        for joint, one, other in zip(first.all_joints, *texts, strict=False):
-            for quantity in sorted(one.keys() | other.keys()):
-                yield from self._same(f"{part} joint '{joint.name}'", quantity, one.get(quantity), other.get(quantity))
+        for joint, equations, other in zip(first.all_joints, *texts, strict=False):
+            for quantity in sorted(equations.keys() | other.keys()):
+                yield from self._same(
+                    f"{part} joint '{joint.name}'", quantity, equations.get(quantity), other.get(quantity)
+                )
 
     def _attached(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
         yield from self._same(part, "manipulators", _names(first.manipulators), _names(second.manipulators))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
-        for one, other in zip(first.manipulators, second.manipulators, strict=False):
-            yield from self._manipulators(f"{part} manipulator '{one.name}'", one, other)
+        for item, other in zip(first.manipulators, second.manipulators, strict=False):
+            yield from self._manipulators(f"{part} manipulator '{item.name}'", item, other)
         yield from self._same(part, "holds", *([(x.body, x.link, x.ignored) for x in y.grabs] for y in (first, second)))
-        for one, other in zip(first.grabs, second.grabs, strict=False):
-            yield from self._poses(part, "pose of what it holds", one.T_link_body, other.T_link_body)
-        for one, other in zip(first.sensors, second.sensors, strict=False):
-            yield from self._sensors(f"{part} sensor '{one.name}'", one, other)
+        for item, other in zip(first.grabs, second.grabs, strict=False):
+            yield from self._poses(part, "pose of what it holds", item.T_link_body, other.T_link_body)
+        for item, other in zip(first.sensors, second.sensors, strict=False):
+            yield from self._sensors(f"{part} sensor '{item.name}'", item, other)
 
     def _links(self, part: str, first: Link, second: Link) -> Iterator[Difference]:
         yield from self._poses(part, "pose", first.T_world_link, second.T_world_link)
@@ -150,19 +152,19 @@ class _Comparison:
 
     def _shapes(self, part: str, first: Sequence[Geometry], second: Sequence[Geometry]) -> Iterator[Difference]:
         yield from self._same(part, "shapes", _types(first), _types(second))
-        for index, (one, other) in enumerate(zip(first, second, strict=False)):
-            yield from self._geometries(f"{part} shape {index}", one, other)
+        for index, (geometry, other) in enumerate(zip(first, second, strict=False)):
+            yield from self._geometries(f"{part} shape {index}", geometry, other)
 
     def _joints(self, part: str, first: Joint, second: Joint) -> Iterator[Difference]:
         for name in ("kind", "parent", "child", "places_child"):
             yield from self._same(part, name.replace("_", " "), getattr(first, name), getattr(second, name))
         if first.kind != "slider":  # every point is as good there
             yield from self._near(part, "anchor", first.anchor, second.anchor)
-        for one, other in zip(first.axes, second.axes, strict=False):
+        for axis, other in zip(first.axes, second.axes, strict=False):
             if first.kind != "spherical":  # a rotation vector in the axes of the parent
-                yield from self._near(part, "direction", one.direction, other.direction)
+                yield from self._near(part, "direction", axis.direction, other.direction)
             for name in _AXIS_FIELDS:
-                yield from self._near(part, name.replace("_", " "), getattr(one, name), getattr(other, name))
+                yield from self._near(part, name.replace("_", " "), getattr(axis, name), getattr(other, name))
         yield from self._same(part, "parameters", first.parameters, second.parameters)
         mimics = [None if joint.mimic is None else joint.mimic.dofs for joint in (first, second)]
         yield from self._same(part, "follows DOFs", *mimics)
@@ -218,16 +220,16 @@ class _Comparison:
     def _configurations(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
         """Compare the poses of all links in random configurations; report the largest difference."""
         random = np.random.default_rng(0)
-        found: list[Difference] = []
+        differences: list[Difference] = []
         for _ in range(CONFIGURATIONS if first.joints else 0):
             values = [_random_value(axis, random) for axis in first.dof_axes]
             poses = [poses_in(body, values) for body in (first, second)]
             named = " ".join(f"{value:.3g}" for value in values)
-            for link, one, other in zip(first.links, *poses, strict=True):
+            for link, pose, other in zip(first.links, *poses, strict=True):
                 place = f"{part} link '{link.name}' at the values {named}"
-                found += self._poses(place, "pose", one, other)
-        if found:
-            yield max(found, key=lambda difference: difference.error or math.inf)
+                differences += self._poses(place, "pose", pose, other)
+        if differences:
+            yield max(differences, key=lambda difference: difference.error or math.inf)
 
     def _poses(self, part: str, quantity: str, first: Pose | None, second: Pose | None) -> Iterator[Difference]:
         if first is None or second is None:
@@ -249,16 +251,16 @@ class _Comparison:
     def _near(self, part: str, quantity: str, first: ArrayLike, second: ArrayLike) -> Iterator[Difference]:
         if first is second:
             return
-        one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
-        if one.shape != other.shape:
-            yield Difference(part, quantity, one.tolist(), other.tolist())
+        numbers, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+        if numbers.shape != other.shape:
+            yield Difference(part, quantity, numbers.tolist(), other.tolist())
             return
         with np.errstate(invalid="ignore"):
-            errors = np.abs(one - other) / max(1.0, np.abs(one).max(initial=0.0))
-        is_same = (one == other) | (np.isnan(one) & np.isnan(other))
+            errors = np.abs(numbers - other) / max(1.0, np.abs(numbers).max(initial=0.0))
+        is_same = (numbers == other) | (np.isnan(numbers) & np.isnan(other))
         error = float(np.where(is_same, 0.0, errors).max(initial=0.0))
         if not error <= self.tolerance:
-            yield Difference(part, quantity, one.tolist(), other.tolist(), error)
+            yield Difference(part, quantity, numbers.tolist(), other.tolist(), error)
 
     def _same(self, part: str, quantity: str, first: object, second: object) -> Iterator[Difference]:
         if first != second:

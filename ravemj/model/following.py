@@ -40,7 +40,7 @@ def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Kin
         raise ArgumentError(finding.message)
     joints = tuple(replace(body.all_joints[place], mimic=mimics.get(new)) for new, place in enumerate(order))
     changed = replace(body, joints=joints[: len(active)], passive_joints=joints[len(active) :])
-    manipulators = tuple(_found_again(one, body, changed) for one in body.manipulators)
+    manipulators = tuple(_found_again(manipulator, body, changed) for manipulator in body.manipulators)
     return replace(changed, manipulators=manipulators), order
 
 

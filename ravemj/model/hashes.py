@@ -30,7 +30,7 @@ def _structure(body: KinBody) -> tuple[object, ...]:
 def of_robot(body: KinBody, structure: str) -> str:
     """Return the hash of a robot with its manipulators and sensors; ``structure`` is ``of_body`` of it."""
     tools = [_tool(arm) for arm in body.manipulators]
-    return _digest(structure, tools, [(one.link, one.T_link_sensor, one.type) for one in body.sensors])
+    return _digest(structure, tools, [(sensor.link, sensor.T_link_sensor, sensor.type) for sensor in body.sensors])
 
 
 def of_arm(body: KinBody, arm: Manipulator) -> str:
@@ -67,11 +67,11 @@ def _tool(arm: Manipulator) -> tuple[object, ...]:
 def _links(body: KinBody) -> list[object]:
     """Return the shapes of all links, and the poses of links that no joint places."""
     placed = {joint.child for joint in body.all_joints if joint.places_child}
-    found: list[object] = []
+    entries: list[object] = []
     for index, link in enumerate(body.links):
         at_root = None if index in placed else body.links[0].T_world_link.inverse() @ link.T_world_link
-        found.append((at_root, [_geometry(geometry) for geometry in link.geometries]))
-    return found
+        entries.append((at_root, [_geometry(geometry) for geometry in link.geometries]))
+    return entries
 
 
 def _geometry(geometry: Geometry) -> tuple[object, ...]:
@@ -107,8 +107,8 @@ def _plain(part: object) -> object:
     if isinstance(part, Mesh):
         return part.digest
     if isinstance(part, Pose):
-        sign = 1.0 if next((one for one in part.wxyz if abs(one) > 10**-DIGITS), 1.0) > 0 else -1.0
-        return [_plain(number) for number in (*part.position, *(sign * one for one in part.wxyz))]
+        sign = 1.0 if next((component for component in part.wxyz if abs(component) > 10**-DIGITS), 1.0) > 0 else -1.0
+        return [_plain(number) for number in (*part.position, *(sign * component for component in part.wxyz))]
     if isinstance(part, tuple | list):
         return [_plain(member) for member in cast("Iterable[object]", part)]
     if is_dataclass(part):

@@ -123,8 +123,8 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
     depths = [0 if index == 0 or static else _UNREACHED for index, static in enumerate(static_links)]
     parents = _parents(neighbours)
     children: list[list[int]] = [[] for _ in static_links]
-    for link, found in enumerate(parents):
-        for parent in found:
+    for link, own_parents in enumerate(parents):
+        for parent in own_parents:
             children[parent].append(link)
     # In each round, links get their depths in the order of the file, once that of a parent is known.
     turns = [(1, child) for link, depth in enumerate(depths) if depth != _UNREACHED for child in children[link]]

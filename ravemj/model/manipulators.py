@@ -79,7 +79,7 @@ def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
             joint,
             *(other for other in body.passive_joints if other.mimic is not None and dof in other.mimic.dofs),
         ]
-        if not any(one.parent in between and one.child in between for one in moved):
+        if not any(moved_joint.parent in between and moved_joint.child in between for moved_joint in moved):
             message = f"manipulator '{manipulator.name}': joint '{joint.name}' does not move its effector"
             link = body.links[effector].name
             hint = f"name as base a link between '{body.links[0].name}' and '{link}'"
@@ -109,7 +109,7 @@ def _gripper(
 
     The signs are assigned to the names in order; joints of the arm get none.
     """
-    found: dict[int, list[float]] = {}
+    directions_by_dof: dict[int, list[float]] = {}
     signs = iter([math.copysign(1.0, value) if value else 0.0 for value in built.closing_direction])
     for name in built.gripper_joints:
         index = next((i for i, joint in enumerate(body.joints) if joint.name == name), None)
@@ -120,8 +120,8 @@ def _gripper(
             message = f"manipulator '{built.name}': '{name}' is not an active joint outside of the arm; left out"
             diagnostics.warn("unknown-joint", message, built.source)
         else:
-            found.setdefault(index, own)
-    return found
+            directions_by_dof.setdefault(index, own)
+    return directions_by_dof
 
 
 def _direction(built: ManipulatorBuilder, diagnostics: Diagnostics) -> Vec3:

@@ -72,17 +72,21 @@ def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int,
         return {}
     ends = list(accumulate(joint.dof for joint in joints))
     dofs = [range(end - joint.dof, end) for joint, end in zip(joints, ends, strict=True)]
-    found: dict[int, Mimic] = {}
+    resolved: dict[int, Mimic] = {}
     for index, expression in mimics.items():
         joint, followed = joints[index], _followed(index, mimics)
         equations = joint.equations or Equations()
         if index in followed:
             message = f"joint '{joint.name}' follows itself through others; none of them moves"
             diagnostics.warn("bad-mimic", message, joint.source)
-            found[index] = Mimic(*equations, None, ())
+            resolved[index] = Mimic(*equations, None, ())
         else:
-            found[index] = Mimic(*equations, expression, tuple(sorted({dof for one in followed for dof in dofs[one]})))
-    return found
+            resolved[index] = Mimic(
+                *equations,
+                expression,
+                tuple(sorted({dof for followed_joint in followed for dof in dofs[followed_joint]})),
+            )
+    return resolved
 
 
 def leaders(expression: "Expression") -> tuple[int, ...]:
@@ -185,8 +189,8 @@ class MimicJoints:
         """Do the same for many configurations, with arrays of shape (N,) for each joint."""
         for joint, expression, _, _, lower, upper in self.joints:
             named = {f"joint{leader}": values[leader] for leader in leaders(expression)}
-            found = np.broadcast_to(expression.evaluate_many(named), np.shape(values[joint]))
-            values[joint] = np.clip(found, lower, upper)
+            followed = np.broadcast_to(expression.evaluate_many(named), np.shape(values[joint]))
+            values[joint] = np.clip(followed, lower, upper)
 
 
 def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:

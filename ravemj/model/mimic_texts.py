@@ -12,14 +12,14 @@ def mimic_texts(body: KinBody) -> list[dict[str, str]]:
     Joints that are not mimic joints have none.
     """
     names = joint_variables([joint.name for joint in body.all_joints])
-    found: list[dict[str, str]] = [{} for _ in body.all_joints]
-    for texts, joint in zip(found, body.all_joints, strict=True):
+    texts_by_joint: list[dict[str, str]] = [{} for _ in body.all_joints]
+    for texts, joint in zip(texts_by_joint, body.all_joints, strict=True):
         if joint.mimic is not None:
             texts["follows"] = _respelled(joint.mimic.position, names)
             for order, text in (("velocity", joint.mimic.velocity), ("acceleration", joint.mimic.acceleration)):
                 for name, partial in _partials(text).items():
                     texts[f"{order} with '{name}'"] = _respelled(partial, names)
-    return found
+    return texts_by_joint
 
 
 def _partials(text: str) -> dict[str, str]:

@@ -27,12 +27,12 @@ def motion_bounds(body: KinBody) -> Floats:
     """
     reaches = [_joint_reach(body, joint) for joint in body.all_joints]
     rates = _rates(body)
-    found = np.zeros(len(body.dof_axes))
+    largest = np.zeros(len(body.dof_axes))
     for link in range(len(body.links)):
         joints = joints_above(body, link)
         if link_bounds(body.links[link], np.eye(4)) is not None and joints:
-            found = np.maximum(found, sum(reaches[joint] @ rates[joint] for joint in joints))
-    return found
+            largest = np.maximum(largest, sum(reaches[joint] @ rates[joint] for joint in joints))
+    return largest
 
 
 def reach(body: KinBody) -> float:
@@ -58,11 +58,11 @@ def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
     Point and axis, a unit vector or zero for none, are fixed to the link and in its frame.
     """
     across = np.eye(3) - np.outer(axis, axis)
-    found = [-math.inf]
+    distances = [-math.inf]
     bounds = link_bounds(body.links[link], np.eye(4))
     if bounds is not None:
         corners = np.stack(np.meshgrid(*zip(*bounds, strict=True), indexing="ij"), axis=-1).reshape(-1, 3)
-        found.append(float(np.linalg.norm((corners - point) @ across, axis=1).max()))
+        distances.append(float(np.linalg.norm((corners - point) @ across, axis=1).max()))
     for joint in body.all_joints:
         if joint.parent != link or not joint.places_child:
             continue
@@ -74,8 +74,8 @@ def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
             beyond = _farthest(body, joint.child, _point_in_child(joint, anchor), np.zeros(3))
             off = across @ (anchor - point)
             beyond += _stroke(joint)
-        found.append(beyond + float(np.linalg.norm(off)))
-    return max(found)
+        distances.append(beyond + float(np.linalg.norm(off)))
+    return max(distances)
 
 
 def _stroke(joint: Joint) -> float:

@@ -29,7 +29,12 @@ def start_values(body: KinBody, state: str | None = None) -> Floats:
 
 def named_values(body: KinBody, name: str) -> Floats:
     """Return the joint values of a named configuration, shape (dof,); missing ones are 0, clamped to the limits."""
-    given = {key: value for one in body.configurations if one.name == name for key, value in one.values}
+    given = {
+        key: value
+        for configuration in body.configurations
+        if configuration.name == name
+        for key, value in configuration.values
+    }
     values = _nearest_to_zero(body.dof_axes)
     first = 0
     for joint in body.joints:

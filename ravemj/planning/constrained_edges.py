@@ -86,8 +86,8 @@ class ConstrainedEdges(Edges):
         if self._manifold.off(configuration) <= _INSIDE * self._manifold.threshold:
             return configuration
         smallest = _PROJECTED * self._manifold.threshold
-        steps, found = project(configuration, self._manifold.error, self.space, smallest, PROJECTION_STEPS)
-        return configuration if steps < 0 else found
+        steps, projected = project(configuration, self._manifold.error, self.space, smallest, PROJECTION_STEPS)
+        return configuration if steps < 0 else projected
 
     def line(self, start: Floats, step: Floats) -> bool:
         """Return whether the projected edge from an allowed configuration is allowed everywhere, including its end."""
@@ -144,5 +144,5 @@ class ConstrainedEdges(Edges):
 def bent_path(edges: ConstrainedEdges, points: Floats) -> Floats | None:
     """Return the configurations along a path of projected edges, shape (m, n); None if one is not allowed."""
     bent = [edges.bent(start, end) for start, end in pairwise(points)]
-    rows = [one[1:] for one in bent if one is not None]
+    rows = [rows_of_edge[1:] for rows_of_edge in bent if rows_of_edge is not None]
     return np.concatenate([points[:1], *rows]) if len(rows) == len(bent) else None

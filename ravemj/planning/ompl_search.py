@@ -36,7 +36,7 @@ def planner_classes() -> Mapping[str, Ompl] | None:
     except ImportError:
         return None
     classes = inspect.getmembers(geometric, inspect.isclass)
-    return {name.lower(): one for name, one in classes if issubclass(one, base.Planner)}
+    return {name.lower(): planner for name, planner in classes if issubclass(planner, base.Planner)}
 
 
 def search_with_ompl(
@@ -83,8 +83,8 @@ def _searched(
         return questions.point(space.values(state))
 
     class EdgeValidator(base.MotionValidator):
-        def checkMotion(self, one: Ompl, other: Ompl) -> bool:  # noqa: N802 - OMPL's name
-            return questions.line(space.values(one), space.values(other))
+        def checkMotion(self, start: Ompl, other: Ompl) -> bool:  # noqa: N802 - OMPL's name
+            return questions.line(space.values(start), space.values(other))
 
     information = base.SpaceInformation(space.made)
     information.setStateValidityChecker(is_allowed)
@@ -124,8 +124,8 @@ def _solve(solver: Ompl, condition: Ompl, questions: "_Questions") -> None:
         questions.count = solver.milestoneCount()
 
 
-def _nearest(space: Space, configurations: Sequence[Floats], one: Floats) -> int:
-    return int(np.argmin([space.distance(other, one) for other in configurations]))
+def _nearest(space: Space, configurations: Sequence[Floats], configuration: Floats) -> int:
+    return int(np.argmin([space.distance(other, configuration) for other in configurations]))
 
 
 def _apply(solver: Ompl, settings: Mapping[str, str]) -> None:
@@ -207,14 +207,14 @@ class _OmplSpace:
         self.made = base.CompoundStateSpace(parts, weights) if self._circles else parts[0]
 
     def values(self, state: Ompl) -> Floats:
-        found, first = np.empty(len(self._weights)), int(bool(self._straight))
+        values, first = np.empty(len(self._weights)), int(bool(self._straight))
         if self._straight:
             box = state[0] if self._circles else state
-            found[self._straight] = [box[axis] for axis in range(len(self._straight))]
-            found[self._straight] /= self._weights[self._straight]
+            values[self._straight] = [box[axis] for axis in range(len(self._straight))]
+            values[self._straight] /= self._weights[self._straight]
         for place, column in enumerate(self._circles, first):
-            found[column] = state[place].value
-        return found
+            values[column] = state[place].value
+        return values
 
     def state(self, information: Ompl, values: Floats) -> Ompl:
         state, first = information.allocState(), int(bool(self._straight))

@@ -71,7 +71,7 @@ def descend(
             steps = [down] if _comes_nearer(edges, path[-1], down, error, left) else []
             steps = steps or _random_steps(edges, path[-1], random, tries)
             if steps:
-                path.append(min(steps, key=lambda one: float(np.linalg.norm(error(one)[0]))))
+                path.append(min(steps, key=lambda step: float(np.linalg.norm(error(step)[0]))))
             iteration += 1
             stopped = budget.end(iteration)
     return Search(stopped or End.stuck, None, -1, -1, iteration, ())

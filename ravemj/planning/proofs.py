@@ -200,17 +200,17 @@ class Proof:
 
 def is_proved(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = ()) -> bool:
     """Return whether a motion is proven free of collisions, except for pairs on their exempt spans."""
-    return not any(isinstance(found, Span) for found in _examined(spaces, _asked(spaces, curves, exempt)))
+    return not any(isinstance(result, Span) for result in _examined(spaces, _asked(spaces, curves, exempt)))
 
 
 def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = ()) -> Proof:
     """Prove what can be proven of a motion; ``exempt`` are the spans on which pairs are ignored."""
     proof, proved = Proof(), list[_Proved]()
-    for found in _examined(spaces, _asked(spaces, curves, exempt), proof):
-        if isinstance(found, Span):
-            proof.undecided.append(found)
+    for result in _examined(spaces, _asked(spaces, curves, exempt), proof):
+        if isinstance(result, Span):
+            proof.undecided.append(result)
         else:
-            proved.append(found)
+            proved.append(result)
     proof.undecided = _joined(proof.undecided)
     _find_smallest_gap(spaces, proved, proof)
     return proof
@@ -238,29 +238,29 @@ def exempt_spans(spaces: Spaces, curves: Sequence[Curve], touching: Ints) -> lis
 
 def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> Floats:
     """Return the distances of some pairs [m], shape (configurations, pairs); large ones may be underestimated."""
-    found = np.zeros((len(configurations), len(pairs)))
+    table = np.zeros((len(configurations), len(pairs)))
     for first in range(0, len(configurations), spaces.most):
         some = configurations[first : first + spaces.most]
         asked = np.zeros((len(some), spaces.pair_count), dtype=bool)
         asked[:, pairs] = True
         tested = spaces.test(some, [np.zeros_like(values) for values in some], asked, 2 * APART)
         near = np.where(np.isfinite(tested.measured), tested.measured, tested.gaps)
-        found[first : first + len(some)] = near[:, np.searchsorted(tested.pairs, pairs)]
-    return found
+        table[first : first + len(some)] = near[:, np.searchsorted(tested.pairs, pairs)]
+    return table
 
 
 def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_start: bool) -> list[float]:
     """Return the first time at which each pair is apart, counted from the start or from the goal [s]."""
     begin, finish = curves[0].start, curves[-1].end
     times = np.linspace(begin, finish, _SEARCH + 1) if is_start else np.linspace(finish, begin, _SEARCH + 1)
-    found, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)
+    times_apart, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)
     for time in times.tolist():
         if not left.any():
             break
         (far,) = distances(spaces, [configuration_at(curves, time)], pairs)
         reached = left & (far >= APART)
-        found[reached], left[reached] = time, False
-    return found.tolist()
+        times_apart[reached], left[reached] = time, False
+    return times_apart.tolist()
 
 
 def configuration_at(curves: Sequence[Curve], time: float) -> Floats:
@@ -273,16 +273,16 @@ def configuration_at(curves: Sequence[Curve], time: float) -> Floats:
 def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> list[tuple[Curve, Bools]]:
     """Return the segments of a motion, split where exemptions end, with the pairs to test on each."""
     cuts = sorted({time for span in exempt for time in (span.start, span.end)})
-    found: list[tuple[Curve, Bools]] = []
+    asked: list[tuple[Curve, Bools]] = []
     for curve in curves:
         rest = curve
         for time in cuts:
             if rest.start < time < rest.end:
                 piece, rest = rest.split((time - rest.start) / (rest.end - rest.start))
-                found.append((piece._replace(end=time), _without(spaces, piece, exempt)))
+                asked.append((piece._replace(end=time), _without(spaces, piece, exempt)))
                 rest = rest._replace(start=time)
-        found.append((rest, _without(spaces, rest, exempt)))
-    return found
+        asked.append((rest, _without(spaces, rest, exempt)))
+    return asked
 
 
 def _without(spaces: Spaces, curve: Curve, exempt: Sequence[Span]) -> Bools:
@@ -339,25 +339,25 @@ def _note_nearest(proof: Proof, tested: PairTests, curves: Sequence[Curve], coun
 
 def _find_smallest_gap(spaces: Spaces, proved: list[_Proved], proof: Proof) -> None:
     """Cut the intervals with the smallest bounds, until bound and measured distance agree, or nearly so."""
-    proved = [one for one in proved if one.least < np.inf]
+    proved = [interval for interval in proved if interval.least < np.inf]
     for _ in range(_REFINEMENTS):
         wanted = proof.nearest[0] - max(_TOLERANCE, _PART * proof.nearest[0])
-        proved.sort(key=lambda one: one.least)
-        near = [one for one in proved[:_REFINED] if one.least < wanted]
+        proved.sort(key=lambda interval: interval.least)
+        near = [interval for interval in proved[:_REFINED] if interval.least < wanted]
         if not near:
             break
         if np.isinf(wanted):  # nothing has been measured yet
             near, wanted = near[:1], _FAR
-        parts = [one._replace(curve=part) for one in near for part in one.curve.parts(_CUTS)]
+        parts = [interval._replace(curve=part) for interval in near for part in interval.curve.parts(_CUTS)]
         proved = [*proved[len(near) :], *_raised(spaces, parts, wanted, proof)]
-    proof.smallest_gap = min([proof.nearest[0], *(one.least for one in proved)])
+    proof.smallest_gap = min([proof.nearest[0], *(interval.least for interval in proved)])
 
 
 def _raised(spaces: Spaces, intervals: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
     """Return intervals with better lower bounds of the distances that are not known to be above what is wanted [m]."""
-    curves, known = [one.curve for one in intervals], np.full((len(intervals), spaces.pair_count), np.inf)
-    for row, one in zip(known, intervals, strict=True):
-        row[one.pairs] = one.bounds
+    curves, known = [interval.curve for interval in intervals], np.full((len(intervals), spaces.pair_count), np.inf)
+    for row, interval in zip(known, intervals, strict=True):
+        row[interval.pairs] = interval.bounds
     tested = spaces.test(*_reach(curves), known < wanted, wanted)
     _note_nearest(proof, tested, curves, spaces.counted[tested.pairs])
     bounds = known[:, tested.pairs]
@@ -368,13 +368,13 @@ def _raised(spaces: Spaces, intervals: Sequence[_Proved], wanted: float, proof: 
 
 def _joined(spans: list[Span]) -> list[Span]:
     """Merge consecutive spans of one pair; return all in the order of time."""
-    found: list[Span] = []
+    joined: list[Span] = []
     for span in sorted(spans, key=lambda span: (span.pair, span.start)):
-        if found and found[-1].pair == span.pair and span.start <= found[-1].end + 1e-9:
-            found[-1] = found[-1]._replace(end=max(found[-1].end, span.end))
+        if joined and joined[-1].pair == span.pair and span.start <= joined[-1].end + 1e-9:
+            joined[-1] = joined[-1]._replace(end=max(joined[-1].end, span.end))
         else:
-            found.append(span)
-    return sorted(found)
+            joined.append(span)
+    return sorted(joined)
 
 
 def line_curve(start: Floats, step: Floats) -> Curve:

@@ -55,11 +55,11 @@ class SearchTree:
 
     def branch(self, number: int) -> list[Floats]:
         """Return the configurations from a node to its root."""
-        found: list[Floats] = []
+        configurations: list[Floats] = []
         while number >= 0:
-            found.append(self._nodes[number].copy())
+            configurations.append(self._nodes[number].copy())
             number = self._parents[number]
-        return found
+        return configurations
 
     def root(self, number: int) -> int:
         """Return the index of the root of a node."""
@@ -207,16 +207,16 @@ def connect(
     """
     growth = _TreeGrowth(edges, starts, goals)
     stopped = budget.end(0)
-    if stopped is None and (found := growth.straight(starts, goals)) is not None:
-        return found
+    if stopped is None and (path := growth.straight(starts, goals)) is not None:
+        return path
     iteration = 0
     while stopped is None:
         for side, source in enumerate(more):
             if source is not None and (not growth.trees[side].count or random.random() < source.probability):
                 growth.add_root(side, source.sample())
         has_both = all(tree.count for tree in growth.trees)
-        if has_both and (found := growth.grow(edges.space.sample(random), iteration + 1)) is not None:
-            return found
+        if has_both and (path := growth.grow(edges.space.sample(random), iteration + 1)) is not None:
+            return path
         iteration += 1
         stopped = budget.end(iteration)
     if stopped is End.iterations and not all(tree.count for tree in growth.trees):

@@ -51,8 +51,8 @@ def shorten(
         straight = float(np.linalg.norm(space.weights * step))
         # The remaining parts of both lines are tested again, since their steps differ from those of the whole lines.
         if high - low - straight > _WORTH * ends[-1] and all(
-            edges.shortcut(one, space.difference(other, one))
-            for one, other in ((start, end), (path[first], start), (end, path[second + 1]))
+            edges.shortcut(begin, space.difference(other, begin))
+            for begin, other in ((start, end), (path[first], start), (end, path[second + 1]))
         ):
             path[first + 1 : second + 1] = [start, end]
     return _without_detours(edges, np.array(path))
@@ -120,11 +120,11 @@ def lines(points: Floats, limits: PathLimits) -> list[MotionSegment]:
         if not moving.any():
             continue
         way = np.abs(step[moving])
-        one, rest = np.ones(1), np.zeros(1)
+        unit, rest = np.ones(1), np.zeros(1)
         speed = np.array([(limits.velocity[moving] / way).min()])
         acceleration = np.array([(limits.acceleration[moving] / way).min()])
-        duration = float(shortest_ramps(one, rest, rest, speed, acceleration)[0])
-        along = fit_from_rest(one, duration, speed, acceleration) if np.isfinite(duration) else None
+        duration = float(shortest_ramps(unit, rest, rest, speed, acceleration)[0])
+        along = fit_from_rest(unit, duration, speed, acceleration) if np.isfinite(duration) else None
         if along is None:
             raise ValueError("a joint moves whose velocity or acceleration limit is 0")
         motion += _pieces(along, lambda numbers, step=step: numbers * step, start)
@@ -134,13 +134,13 @@ def lines(points: Floats, limits: PathLimits) -> list[MotionSegment]:
 def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) -> list[MotionSegment]:
     times = np.concatenate([[0.0], ramps.changes(_SAME_TIME)])
     values, velocities = ramps.states(times)
-    found: list[MotionSegment] = []
+    segments: list[MotionSegment] = []
     for index, duration in enumerate(np.diff(times).tolist()):
         if duration > 0:
             rate = (velocities[index + 1] - velocities[index]) / duration
             state = origin + spread(values[index]), spread(velocities[index]), spread(rate)
-            found.append(MotionSegment(duration, *state, is_corner=index == 0))
-    return found
+            segments.append(MotionSegment(duration, *state, is_corner=index == 0))
+    return segments
 
 
 def faster(
@@ -196,13 +196,13 @@ def _shortcut(
 
 
 def _curves(pieces: list[MotionSegment]) -> list[Curve]:
-    found, time = list[Curve](), 0.0
+    curves, time = list[Curve](), 0.0
     for piece in pieces:
         middle = piece.values + piece.velocities * (piece.duration / 2)
         control = np.array([piece.values, middle, piece.after(piece.duration)[0]])
-        found.append(Curve(time, time + piece.duration, control))
+        curves.append(Curve(time, time + piece.duration, control))
         time += piece.duration
-    return found
+    return curves
 
 
 def _is_allowed(edges: Edges, piece: MotionSegment) -> bool:

@@ -76,9 +76,9 @@ class Space:
         """Return the shortest differences from ``others`` to configurations, shape (…, n)."""
         return configurations - others if self._is_plain else self.coordinates.difference(configurations, others)
 
-    def distance(self, one: Floats, other: Floats) -> float:
+    def distance(self, start: Floats, other: Floats) -> float:
         """Return the weighted distance of two configurations: the root of the sum of (weight * difference)^2."""
-        return float(np.linalg.norm(self.weights * self.difference(one, other)))
+        return float(np.linalg.norm(self.weights * self.difference(start, other)))
 
     def clamp(self, configuration: Floats) -> Floats:
         """Return the weighted distance of two configurations: the root of the sum of (weight * difference)^2."""

@@ -80,8 +80,10 @@ def _too_much(times: Floats, candidates: list[Floats], bound: Floats, name: str)
     for numbers in candidates:
         wrong = ~(np.abs(numbers) <= bound + EXACT * np.maximum(1.0, bound))
         for row, column in np.argwhere(wrong):
-            found, most = abs(numbers[row, column]), bound[column]
-            return f"the {name} of value {column} is {found:.9g} at {times[row]:.6g} s, and should be {most:g} at most"
+            largest, most = abs(numbers[row, column]), bound[column]
+            return (
+                f"the {name} of value {column} is {largest:.9g} at {times[row]:.6g} s, and should be {most:g} at most"
+            )
     return None
 
 

@@ -237,9 +237,9 @@ class CollisionChecker(Interface):
         if report is None:
             return self.collides(world, pairs)
         checked_kind(report, CollisionReport, "report").Reset(self._options)
-        found = self.find(world, pairs, report.minDistance)
-        self._fill(report, found)
-        return bool(found.collisions)
+        findings = self.find(world, pairs, report.minDistance)
+        self._fill(report, findings)
+        return bool(findings.collisions)
 
     def collides(self, world: CollisionWorld, pairs: Pairs) -> bool:
         """Return whether any pairs of geoms collide. The caller holds the lock."""
@@ -250,19 +250,19 @@ class CollisionChecker(Interface):
         counts = self._counts if self._env.collision_callbacks and not self._options & _IGNORE_CALLBACKS else None
         return find(world, pairs, self._wanted, distance, counts)
 
-    def report(self, found: Findings) -> CollisionReport:
+    def report(self, findings: Findings) -> CollisionReport:
         """Return a report of findings."""
         report = CollisionReport()
         report.Reset(self._options)
-        self._fill(report, found)
+        self._fill(report, findings)
         return report
 
-    def _fill(self, report: CollisionReport, found: Findings) -> None:
-        report.collisionInfos += map(self._info, found.collisions)
-        report.minDistance = found.distance
-        report.numWithinTol += found.within
-        if found.nearest is not None and not report.numCols:
-            report.collisionInfos = [self._info(found.nearest, collides=False)]
+    def _fill(self, report: CollisionReport, findings: Findings) -> None:
+        report.collisionInfos += map(self._info, findings.collisions)
+        report.minDistance = findings.distance
+        report.numWithinTol += findings.within
+        if findings.nearest is not None and not report.numCols:
+            report.collisionInfos = [self._info(findings.nearest, collides=False)]
 
     def _counts(self, collision: Collision) -> bool:
         """Ask the registered callbacks whether a collision counts."""
@@ -359,7 +359,7 @@ class CollisionChecker(Interface):
             report: Receives the result; the mesh appears in it as a body ``box``.
         """
         mesh = checked_mesh(trimesh, "CheckCollisionTriMesh: trimesh")
-        given: list[Any] = [one for one in arguments if one is not None]
+        given: list[Any] = [argument for argument in arguments if argument is not None]
         if given and hasattr(given[0], "GetLinks"):
             body = given.pop(0)
         report = given.pop(0) if given else report
@@ -434,10 +434,10 @@ class CollisionChecker(Interface):
             Whether a link of the body has such a group. If not, nothing changes.
         """
         state = body.simulation_state
-        found = has_group(state.scene, checked_kind(groupname, str, "SetBodyGeometryGroup: groupname", "a text"))
-        if found:
+        exists = has_group(state.scene, checked_kind(groupname, str, "SetBodyGeometryGroup: groupname", "a text"))
+        if exists:
             self.groups.choose(groupname, state)
-        return found
+        return exists
 
     def GetBodyGeometryGroup(self, body: KinBody) -> str:
         """Return the geometry group of ``body``; empty: the links' own geometries."""
@@ -540,7 +540,11 @@ def _thing(argument: object) -> BodyState | LinkOf:
 
 
 def _not_understood(arguments: Iterable[object]) -> RavemjError:
-    kinds = ", ".join("None" if one is None else type(one).__name__ for one in arguments)
+    kinds = ", ".join("None" if argument is None else type(argument).__name__ for argument in arguments)
     forms = "a body, a link, two of them, one and two lists of excluded ones, or a Ray"
     message = f"CheckCollision: takes {forms}; not ({kinds})"
-    return RavemjError(message, ErrorCode.Assert) if any(one is None for one in arguments) else ArgumentError(message)
+    return (
+        RavemjError(message, ErrorCode.Assert)
+        if any(argument is None for argument in arguments)
+        else ArgumentError(message)
+    )

@@ -57,8 +57,8 @@ def full_values(
 def full_velocities(state: BodyState, velocities: ArrayLike, indices: "ArrayLike | None") -> Floats:
     """Return a velocity for each DOF, with OpenRAVE's error in the handling of indices.
 
-    With k indices, only the first k DOFs are affected: those that no index names keep their velocities. All other DOFs
-    stop.
+    With k indices, each of the first k DOFs gets its given velocity, or keeps its own if no index names it. All other
+    DOFs stop, whether an index names them or not.
     """
     dof = state.dof
     if indices is None:

@@ -53,9 +53,9 @@ def grasps(  # noqa: PLR0913 - keyword arguments
         rolls: Number of rotations of the hand about each approach, or about the line of each pair. The default is 4 for
             ``fly`` and 8 for ``antipodal``.
         reach: Whether the arm has to reach a grasp without collisions; False: the hand alone counts.
-        proofs: Number of grasps, the best first, that are simulated: the fingers press with their largest force or
-            torque (10 N or N m if the model has none), the hand is lifted by 0.1 m and shaken along each axis with
-            5 m/s^2 for a second. ``Grasp.proof`` says whether the body moved in the hand by less than 5 mm and 5
+        proofs: Number of grasps that are simulated, those of ``distinct(proofs)``: the fingers press with their largest
+            force or torque (10 N or N m if the model has none), the hand is lifted by 0.1 m and shaken along each axis
+            with 5 m/s^2 for a second. ``Grasp.proof`` says whether the body moved in the hand by less than 5 mm and 5
             degrees.
 
     Returns:
@@ -76,9 +76,11 @@ def grasps(  # noqa: PLR0913 - keyword arguments
         raise ArgumentError(f"grasps: body: '{body.GetName()}' is the robot or in its hand; expected a body to grasp")
     with robot.GetEnv():
         state, target = robot.simulation_state, body.simulation_state
-        found = search(state, arm.description, target, choices, _reach(robot, arm) if reach else None)
-        best = [proved(state, arm.description, target, one, choices.friction) for one in found[:proofs]]
-    return Grasps([*best, *found[len(best) :], *found.rejected], choices.friction)
+        searched = search(state, arm.description, target, choices, _reach(robot, arm) if reach else None)
+        best = searched.distinct(proofs)
+        rest = [grasp for grasp in searched if all(grasp is not chosen for chosen in best)]
+        best = [proved(state, arm.description, target, grasp, choices.friction) for grasp in best]
+    return Grasps([*best, *rest, *searched.rejected], choices.friction)
 
 
 def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:
@@ -104,7 +106,7 @@ def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:
         colour = _LIMITING if number in grasp.limiting else _OTHER
         drawn.append(env.drawarrow(point + _ARROW * normal, point, _THIN, colour))
     if grasp.weakest is not None:
-        along, colour = _weakest(grasp.weakest)
+        along, colour = _larger_part(grasp.weakest)
         center, along = body.GetCenterOfMass(), _radius(body) * T[:3, :3] @ along
         drawn += [env.drawarrow(center, center + way, 2 * _THIN, colour) for way in (along, -along)]
     return [handle for handle in drawn if handle is not None]
@@ -115,8 +117,8 @@ def _radius(body: KinBody) -> float:
     return float(np.linalg.norm(body.ComputeAABB().extents()))
 
 
-def _weakest(wrench: Floats) -> tuple[Floats, tuple[float, float, float]]:
-    """Return the direction of the larger part of a wrench, and the colour of its arrow."""
+def _larger_part(wrench: Floats) -> tuple[Floats, tuple[float, float, float]]:
+    """Return the direction of a wrench's force or torque, whichever is larger, and the colour of its arrow."""
     force, torque = wrench[:3], wrench[3:]
     part, colour = (force, _FORCE) if np.linalg.norm(force) >= np.linalg.norm(torque) else (torque, _TORQUE)
     return part / np.linalg.norm(part), colour

@@ -409,9 +409,9 @@ class IkParameterizationData(GoalValues):
                 name = rest.pop(0)
                 read._custom[name] = np.array([float(rest.pop(0)) for _ in range(int(rest.pop(0)))])
         except (ValueError, IndexError):
-            found = " ".join(words)
+            text = " ".join(words)
             raise ArgumentError(
-                f"'{found}' should be a goal: the number of its type, as many numbers as the type has, data of users"
+                f"'{text}' should be a goal: the number of its type, as many numbers as the type has, data of users"
             ) from None
         words[:] = rest
         return read

@@ -121,7 +121,7 @@ class FilteredSearch(ArmSearch):
         self._reports = robot.GetEnv().GetCollisionChecker()
         super().__init__(state, manip.description, solver, goal.numbers, checks, self._reports, free)
         self._robot, self._manip, self._given, self._failures = robot, manip, goal.given, failures
-        self._filters = [] if options & _IGNORE_FILTERS else sorted(filters, key=lambda one: -one.priority)
+        self._filters = [] if options & _IGNORE_FILTERS else sorted(filters, key=lambda filter_: -filter_.priority)
         self.asks_users, self.explains = bool(self._filters), failures is not None
         self._started = 0 if failures is None else len(failures)
         self._action = 0
@@ -148,15 +148,15 @@ class FilteredSearch(ArmSearch):
         """Call the filters with a priority above 0 if ``before_collisions``, else the others."""
         if before_collisions:
             self._answer = IkReturn(IkReturnAction.Success)
-        return self._pass([one for one in self._filters if (one.priority > 0) == before_collisions], row)
+        return self._pass([filter_ for filter_ in self._filters if (filter_.priority > 0) == before_collisions], row)
 
     def _pass(self, filters: Iterable[Filter], row: Floats) -> bool:
         """Call filters for a solution, and collect the data that they attach."""
-        for one in filters:
-            said = self._asked(one, row)
+        for filter_ in filters:
+            said = self._asked(filter_, row)
             action = IkReturnAction.Reject if said is None else said.GetAction()
             if action:
-                self._reject(int(action) | _BY_FILTER, f"filter of {one.priority}", row)
+                self._reject(int(action) | _BY_FILTER, f"filter of {filter_.priority}", row)
                 self.ended = bool(action & _QUIT)
                 return False
             if said is not None:
@@ -165,14 +165,14 @@ class FilteredSearch(ArmSearch):
                     self._answer.SetSolution(said.GetSolution())
         return True
 
-    def _asked(self, one: Filter, row: Floats) -> IkReturn | None:
+    def _asked(self, filter_: Filter, row: Floats) -> IkReturn | None:
         """Return the answer of a filter.
 
         Raises:
             RavemjError: with the code ``Assert``, the filter raised an exception or returned an invalid answer.
         """
         try:
-            said: Any = one.function(row.copy(), self._manip, IkParameterization(self._goal_of_users))
+            said: Any = filter_.function(row.copy(), self._manip, IkParameterization(self._goal_of_users))
         except Exception as error:
             message = f"a filter of inverse kinematics raised {type(error).__name__}: {error}"
             raise RavemjError(message, ErrorCode.Assert) from error
@@ -331,7 +331,9 @@ class IkSolver(Interface):
         """
         if robot.GetEnv() is not self._env:
             raise ArgumentError(f"SetIkSolver: the solver '{self._xmlid}' was made for another environment")
-        description = next(one for one in robot.simulation_state.scene.manipulators if one.name == arm)
+        description = next(
+            manipulator for manipulator in robot.simulation_state.scene.manipulators if manipulator.name == arm
+        )
         self._arm_solver.solver_for(robot.simulation_state.scene, description)
         self._robot, self._arm_name = robot, arm
 

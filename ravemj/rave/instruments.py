@@ -256,7 +256,7 @@ DATA: dict[SensorType, type[SensorData]] = {
 
 def copied(data: SensorData) -> SensorData:
     """Return a copy of a measurement that shares no arrays with it."""
-    values = {one.name: getattr(data, one.name) for one in fields(data)}
+    values = {field_.name: getattr(data, field_.name) for field_ in fields(data)}
     return replace(data, **{name: value.copy() for name, value in values.items() if isinstance(value, np.ndarray)})
 
 
@@ -357,12 +357,14 @@ class Instrument:
         from ravemj.engine.sensing import scan  # noqa: PLC0415 - slow to import
 
         world = self._env.simulation.collisions()
-        found = scan(world, device, self.rays_pose(device, place))
+        measured = scan(world, device, self.rays_pose(device, place))
         if self._deviation:
-            found = found._replace(distances=np.where(found.is_hit, self._noisy(found.distances), found.distances))
-        self.scanned = found, world
-        ranges = found.distances[:, None] * found.directions
-        return LaserSensorData(stamp, found.origin[None], ranges, found.is_hit.astype(np.float64))
+            measured = measured._replace(
+                distances=np.where(measured.is_hit, self._noisy(measured.distances), measured.distances)
+            )
+        self.scanned = measured, world
+        ranges = measured.distances[:, None] * measured.directions
+        return LaserSensorData(stamp, measured.origin[None], ranges, measured.is_hit.astype(np.float64))
 
     def force(self, device: scene.ForceTorque, place: Place, stamp: int) -> Force6DSensorData:
         """Return the force and torque on a link."""

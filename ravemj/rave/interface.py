@@ -119,7 +119,7 @@ class ReadableInterface(ApiObject):
             id: The id.
             readable: The value; None removes the value of that id.
         """
-        kept = {key: one for key, one in (self._readables or {}).items() if key != id}
+        kept = {key: entry for key, entry in (self._readables or {}).items() if key != id}
         self._readables = kept if readable is None else kept | {id: readable}
 
 
@@ -406,7 +406,7 @@ class Module(Interface):
         return self._by_name
 
     def _help(self) -> str:
-        entries = {"help": "List the commands.", **{name: _purpose(one) for name, one in self._by_name.items()}}
+        entries = {"help": "List the commands.", **{name: _purpose(command) for name, command in self._by_name.items()}}
         return "\n".join(f"\n{name}\n{'~' * len(name)}\n\n{purpose}\n" for name, purpose in entries.items())
 
 

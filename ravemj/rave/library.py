@@ -137,7 +137,7 @@ def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
     Returns:
         The absolute path, or an empty text.
     """
-    found = find(filename, curdir, "")
-    if not found or (_data_access and not RaveInvertFileLookup(found)):
+    file = find(filename, curdir, "")
+    if not file or (_data_access and not RaveInvertFileLookup(file)):
         return ""
-    return os.path.abspath(found)
+    return os.path.abspath(file)

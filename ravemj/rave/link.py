@@ -283,7 +283,7 @@ class Link(Member):
                 link stays as it is.
         """
         added = geometries_of([geometryinfo])
-        if any(one.name == added[0].name for one in self._scene.geometries if one.name):
+        if any(geometry.name == added[0].name for geometry in self._scene.geometries if geometry.name):
             raise ArgumentError(f"AddGeometry: link '{self._scene.name}' has a geometry '{added[0].name}' already")
         self._set_own_geometries((*self._scene.geometries, *added))
         if addToGroups:
@@ -301,7 +301,7 @@ class Link(Member):
         """
 
         def without(geometries: tuple[scene.Geometry, ...]) -> tuple[scene.Geometry, ...]:
-            return tuple(one for one in geometries if one.name != geometryname)
+            return tuple(geometry for geometry in geometries if geometry.name != geometryname)
 
         kept = without(self._scene.geometries)
         removed = kept != self._scene.geometries

@@ -99,8 +99,8 @@ class Member(ApiObject):
 
     def GetStringParameters(self, name: str | None = None) -> dict[str, str] | str | None:
         """Return the text that ``SetStringParameters`` attached under a name, or None; without a name, all of them."""
-        found = dict(self._scene.parameters.texts)
-        return found if name is None else found.get(name)
+        texts = dict(self._scene.parameters.texts)
+        return texts if name is None else texts.get(name)
 
     def SetStringParameters(self, key: str, value: str) -> None:
         """Attach a text under a name.
@@ -134,5 +134,5 @@ def _chosen(arrays: dict[str, Any], name: str | None, index: int) -> Any:  # noq
     """Return all arrays, the array of a name, or one of its elements; None for an unknown name."""
     if name is None:
         return arrays
-    found = arrays.get(name)
-    return found if found is None or index < 0 else found[index].item()
+    array = arrays.get(name)
+    return array if array is None or index < 0 else array[index].item()

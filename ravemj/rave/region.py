@@ -93,8 +93,10 @@ class Region(ApiObject):
         if lean is not None:
             lean = checked_number(lean, "Region: lean", 0.0, " rad")
             if lean > np.pi or bounds[3:5].any():
-                found = f"lean is {lean:g} with roll and pitch {bounds[3:5].tolist()}"
-                raise ArgumentError(f"Region: {found}; it should be pi at most, and replaces bounds of roll and pitch")
+                mistake = f"lean is {lean:g} with roll and pitch {bounds[3:5].tolist()}"
+                raise ArgumentError(
+                    f"Region: {mistake}; it should be pi at most, and replaces bounds of roll and pitch"
+                )
         self._poses = PoseSet(frames[0], frames[1], bounds[:, 0], bounds[:, 1], lean)
 
     @property
@@ -259,9 +261,16 @@ def any_of(*sets: object) -> Sets:
 def _members(sets: Sequence[object], name: str) -> tuple[object, ...]:
     if not sets:
         raise ArgumentError(f"{name}: there is no set; give one at least")
-    for one in sets:
-        if not (isinstance(one, Sets) or is_region(one) or callable(one) or callable(getattr(one, "contains", None))):
-            raise ArgumentError(f"{name}: {one!r} is no region, function, or object with a function contains(values)")
+    for member in sets:
+        if not (
+            isinstance(member, Sets)
+            or is_region(member)
+            or callable(member)
+            or callable(getattr(member, "contains", None))
+        ):
+            raise ArgumentError(
+                f"{name}: {member!r} is no region, function, or object with a function contains(values)"
+            )
     return tuple(sets)
 
 
@@ -277,10 +286,10 @@ def regions_of(given: object, name: str) -> list[Region]:
         ArgumentError: the list is empty, or has an element that is not a region.
     """
     several: list[object] = [given] if is_region(given) else list(given) if _is_list(given) else []
-    regions = [region_of(one) for one in several if is_region(one)]
+    regions = [region_of(region) for region in several if is_region(region)]
     if not several or len(regions) < len(several):
-        found = "an empty list" if _is_list(given) and not several else f"{given!r}"
-        raise ArgumentError(f"{name}: is {found}, and should be regions: ravemj.Region(T0_w, Tw_e, Bw)")
+        mistake = "an empty list" if _is_list(given) and not several else f"{given!r}"
+        raise ArgumentError(f"{name}: is {mistake}, and should be regions: ravemj.Region(T0_w, Tw_e, Bw)")
     return regions
 
 

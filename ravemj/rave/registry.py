@@ -74,7 +74,7 @@ def RaveCreateIkSolver(env: Environment, name: str) -> IkSolver | None:
     """
     words = asked_for(env, name, "RaveCreateIkSolver")
     if len(words) > 1 and words[0].lower() == "ikfast":
-        kind = next((one for one in GOAL_TYPES if one.name in words[1].split(".")), None)
+        kind = next((goal_type for goal_type in GOAL_TYPES if goal_type.name in words[1].split(".")), None)
         steps = numbers_in(words[2:])
         if kind is not None and steps is not None:
             return IkSolver(env, name, kind, steps=steps or None)
@@ -229,7 +229,9 @@ def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's name
         name: The name; letter case does not matter.
     """
     known = RaveGetLoadedInterfaces()[InterfaceType(type)]
-    return checked_kind(name, str, "RaveHasInterface: name", "a text").lower() in {one.lower() for one in known}
+    return checked_kind(name, str, "RaveHasInterface: name", "a text").lower() in {
+        known_name.lower() for known_name in known
+    }
 
 
 def RaveCreateInterface(env: Environment, type: InterfaceType, name: str) -> Any:  # noqa: ANN401 - of any kind

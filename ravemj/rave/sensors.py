@@ -343,8 +343,8 @@ class Sensor(DescribedSensor):
                 geometry has impossible numbers, and stays off.
         """
         del blocking
-        if command not in {one.value for one in SensorCommand}:
-            known = ", ".join(one.name for one in SensorCommand)
+        if command not in {known_command.value for known_command in SensorCommand}:
+            known = ", ".join(known_command.name for known_command in SensorCommand)
             raise ArgumentError(f"Configure: there is no command {command!r}; there are {known}")
         switch = SensorCommand(int(command) & _SWITCH_BITS)
         with self._env.simulation.lock:
@@ -517,8 +517,8 @@ class Sensor(DescribedSensor):
         del arguments
         if self._instrument.scanned is None:
             raise RavemjError(f"collidingbodies: '{self.GetName()}' has not scanned yet")
-        found, world = self._instrument.scanned
-        return " ".join(map(str, world.labels(found.geoms)[:, 0].tolist()))
+        measured, world = self._instrument.scanned
+        return " ".join(map(str, world.labels(measured.geoms)[:, 0].tolist()))
 
     _commands = MappingProxyType({"collidingbodies": _colliding_bodies})
 

@@ -11,7 +11,7 @@ def named_in_file(name: str, dof: int) -> tuple[IkParameterizationType, list[flo
     None if no solver of OpenRAVE's plugin ikfastsolvers has such a name and so many joints.
     """
     first, *rest = name.split()
-    words = [one for one in GOAL_TYPES if any(one.name in word.split(".") for word in rest)]
+    words = [goal_type for goal_type in GOAL_TYPES if any(goal_type.name in word.split(".") for word in rest)]
     steps = numbers_in([word for word in rest if not words or word[0].isdigit()])
     kind = words[0] if words else _KINDS.get(min(dof, _POSE_JOINTS))
     return None if kind is None or steps is None or "ikfast" not in first.lower() else (kind, steps or None)

@@ -74,9 +74,9 @@ class ConfigurationData(ApiObject):
             message = f"values: has shape {given.shape}, and should have shape ({len(chosen)},)"
             raise ArgumentError(message, ErrorCode.Assert)
         order = checked_order(timederivative)
-        found = extraction.insert_joint_values(self._groups, changed, given, _name(body), chosen, order)
+        inserted = extraction.insert_joint_values(self._groups, changed, given, _name(body), chosen, order)
         data[:] = changed if isinstance(data, np.ndarray) else changed.tolist()
-        return found
+        return inserted
 
     def ExtractAffineValues(
         self, data: ArrayLike, body: "KinBody | None", affinedofs: int, timederivative: int = 0
@@ -329,8 +329,8 @@ class ConfigurationSpecification(ConfigurationData):
             name: The name of a group or the beginning of one, for instance ``joint_values arm``.
             exactmatch: Whether the names have to be equal.
         """
-        found = layout.find_compatible(self._groups, name if isinstance(name, str) else name.name, exactmatch)
-        return None if found is None else layout.copied([found])[0]
+        group = layout.find_compatible(self._groups, name if isinstance(name, str) else name.name, exactmatch)
+        return None if group is None else layout.copied([group])[0]
 
     def FindTimeDerivativeGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
         """Return a copy of the group with the time derivative of another, or None. See ``FindCompatibleGroup``.
@@ -351,8 +351,8 @@ class ConfigurationSpecification(ConfigurationData):
         return self._shifted(name, -1, exactmatch)
 
     def _shifted(self, name: "str | Group", steps: int, exactmatch: bool) -> Group | None:
-        found = layout.find_shifted(self._groups, name if isinstance(name, str) else name.name, steps, exactmatch)
-        return None if found is None else layout.copied([found])[0]
+        group = layout.find_shifted(self._groups, name if isinstance(name, str) else name.name, steps, exactmatch)
+        return None if group is None else layout.copied([group])[0]
 
     @also_named(group="name")
     def AddGroup(self, name: "str | Group", dof: int = 0, interpolation: str = "") -> int:

@@ -80,9 +80,9 @@ class Trajectory(Interface):
         from ravemj.manipulation.certification import certified  # noqa: PLC0415 - rarely wanted
 
         env = self.GetEnv()
-        found = certified(env.simulation, self.waypoints, env.GetCollisionChecker)
-        self._certificate = self.waypoints, found
-        return found
+        certificate = certified(env.simulation, self.waypoints, env.GetCollisionChecker)
+        self._certificate = self.waypoints, certificate
+        return certificate
 
     @also_named(group="spec")
     def Init(self, spec: Spec) -> None:

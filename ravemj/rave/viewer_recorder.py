@@ -146,14 +146,14 @@ class ViewerRecorder(Module):
 
 
 def _order_of(arguments: str) -> _Order:
-    before, found, after = arguments.partition("filename")
+    before, separator, after = arguments.partition("filename")
     words = before.split()
     try:
         width, height, fps = int(words[0]), int(words[1]), float(words[2])
         named = dict(zip(words[3::2], words[4::2], strict=True))
         timing = named.pop("timing", "simtime")
         named.pop("codec", None)
-        path = after.strip().splitlines()[0].strip() if found else ""
+        path = after.strip().splitlines()[0].strip() if separator else ""
         if named or timing not in _TIMINGS or not path or min(width, height, fps) <= 0:
             raise ValueError
     except (ValueError, IndexError):

@@ -195,9 +195,9 @@ class Stream:
             away = np.abs(away - rows.turn * np.rint(away / (2 * np.pi)))
             joint = int(away.argmax())
             if away[joint] > guard.tolerance:
-                found = f"joint '{rows.names[joint]}' is at {here[joint]:.4g}, and should be at {wanted[joint]:.4g}"
+                deviation = f"joint '{rows.names[joint]}' is at {here[joint]:.4g}, and should be at {wanted[joint]:.4g}"
                 allowed = f"the tolerance is {guard.tolerance:g} rad or m"
-                raise RavemjError(f"{found} at {self.time:.4g} s; {allowed}")
+                raise RavemjError(f"{deviation} at {self.time:.4g} s; {allowed}")
         if not age <= guard.stale:
             raise RavemjError(
                 f"the last measurement is {age:.3g} s old at {self.time:.4g} s; {guard.stale:g} s are allowed"

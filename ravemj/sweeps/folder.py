@@ -155,10 +155,10 @@ def prepare(folder: Path, manifest: Mapping[str, Any]) -> None:
     if before is not None:
         for key, value in manifest.items():
             if before.get(key) != value:
-                found = f"{key} is {value!r}, and {before.get(key)!r}"
+                difference = f"{key} is {value!r}, and {before.get(key)!r}"
                 if key in _DIGESTS:
-                    found = f"{_DIGESTS[key]} differs from that"
-                raise ArgumentError(f"sweep: {found} in {folder / MANIFEST}; choose another folder")
+                    difference = f"{_DIGESTS[key]} differs from that"
+                raise ArgumentError(f"sweep: {difference} in {folder / MANIFEST}; choose another folder")
     elif folder.is_dir() and any(name not in _OURS and not name.startswith(".ravemj-") for name in os.listdir(folder)):
         raise OutputError(f"cannot write {folder}: it holds something else than a sweep")
     try:

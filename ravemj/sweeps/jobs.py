@@ -194,14 +194,14 @@ def _plan(work: Work, items: Floats, random: np.random.Generator) -> Arrays:
         params.SetRandomGeneratorSeed(int(random.integers(1 << 31)))
         planner, traj = BiRrt(env, "birrt"), Trajectory(env, "")
         planner.InitPlan(robot, params)
-        found = bool(planner.PlanPath(traj))
-        path = traj.GetAllWaypoints2D(spec) if found else np.zeros((0, len(start)))
+        is_solved = bool(planner.PlanPath(traj))
+        path = traj.GetAllWaypoints2D(spec) if is_solved else np.zeros((0, len(start)))
         row = {
-            "found": found,
+            "found": is_solved,
             "waypoints": path,
             "count": len(path),
-            "length": np.linalg.norm(np.diff(path, axis=0), axis=1).sum() if found else np.nan,
-            "duration": traj.GetDuration() if found else np.nan,
+            "length": np.linalg.norm(np.diff(path, axis=0), axis=1).sum() if is_solved else np.nan,
+            "duration": traj.GetDuration() if is_solved else np.nan,
             "iterations": 0 if planner.search is None else planner.search.iterations,
         }
         rows.append({name: np.asarray(value)[None] for name, value in row.items()})

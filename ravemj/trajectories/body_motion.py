@@ -147,14 +147,14 @@ def grab_changes(waypoints: Waypoints, robot_name: str) -> list[GrabChange]:
     negative index of one to release, or 0 for no change.
     """
     times = waypoints.times()
-    found: list[GrabChange] = []
+    changes: list[GrabChange] = []
     for group in waypoints.groups:
         if group.kind != "grab" or group.body != robot_name:
             continue
         links = [int(word) for word in group.name.split()[2:] if word.isdecimal()]
         bodies = waypoints.data[:, group.columns][:, : len(links)].round().astype(int)
-        found += [
+        changes += [
             GrabChange(float(times[row]), links[column], int(bodies[row, column]))
             for row, column in zip(*np.nonzero(bodies), strict=True)
         ]
-    return sorted(found, key=lambda change: change.time)
+    return sorted(changes, key=lambda change: change.time)

@@ -27,11 +27,11 @@ def joint_values(
     Returns:
         One value for each index, or None if there is no group of the body, or no index.
     """
-    found = _of_body(groups, JOINTS[order], body)
-    if not found or not indices:
+    matching = _of_body(groups, JOINTS[order], body)
+    if not matching or not indices:
         return None
     values = np.zeros(len(indices))
-    for group in found:
+    for group in matching:
         first_columns: dict[int, int] = {}  # many look-ups; a list would be slow
         for column, index in enumerate(joint_indices(group), group.offset):
             first_columns.setdefault(index, column)
@@ -45,21 +45,21 @@ def insert_joint_values(
     groups: Sequence[Group], data: Floats, values: Floats, body: str | None, indices: Sequence[int], order: int
 ) -> bool:
     """Write joint values into data; return whether there is a group of the body, and an index."""
-    found = _of_body(groups, JOINTS[order], body)
-    for group in found if indices else ():
+    matching = _of_body(groups, JOINTS[order], body)
+    for group in matching if indices else ():
         for place, index in enumerate(joint_indices(group)):
             if index in indices:
                 data[group.offset + place] = values[indices.index(index)]
-    return bool(found and indices)
+    return bool(matching and indices)
 
 
 def affine_values(groups: Sequence[Group], data: Floats, body: str | None, parts: int, order: int) -> Floats | None:
     """Return pose components (``DOFAffine``) or their derivatives; missing ones are 0."""
-    found = _of_body(groups, AFFINE[order], body)
-    if not found or not parts:
+    matching = _of_body(groups, AFFINE[order], body)
+    if not matching or not parts:
         return None
     values = np.zeros(RaveGetAffineDOF(parts))
-    for group in found:
+    for group in matching:
         present = affine_parts(group)[0]
         for index in range(len(values)):
             part = RaveGetAffineDOFFromIndex(parts, index)
@@ -71,11 +71,11 @@ def affine_values(groups: Sequence[Group], data: Floats, body: str | None, parts
 
 def pose(groups: Sequence[Group], data: Floats, body: str | None, start: Pose) -> Pose | None:
     """Return a start pose with components replaced by those of the data; None if the data has none of the body."""
-    found = _of_body(groups, AFFINE[0], body)
-    for group in found:
+    matching = _of_body(groups, AFFINE[0], body)
+    for group in matching:
         parts, axis = affine_parts(group)
         start = pose_with_values(start, data[group.columns], parts, axis)
-    return start if found else None
+    return start if matching else None
 
 
 def ik_group(groups: Sequence[Group], robot: str, manipulator: str, order: int) -> Group | None:

@@ -66,9 +66,11 @@ class JointTrajectory:
             raise ArgumentError(f"joint_names: '{max(names, key=names.count)}' is there twice")
         late = np.flatnonzero(np.diff(seconds, prepend=-1.0) <= 0)
         if not len(seconds) or seconds[0] < 0 or late.size:
-            found = "none" if not len(seconds) else f"{seconds[late[0] if late.size else 0]:g} s"
+            first_wrong = "none" if not len(seconds) else f"{seconds[late[0] if late.size else 0]:g} s"
             place = f" at point {late[0]}" if late.size else ""
-            raise ArgumentError(f"times: found {found}{place}, expected times that start at 0 or later and increase")
+            raise ArgumentError(
+                f"times: found {first_wrong}{place}, expected times that start at 0 or later and increase"
+            )
         if accelerations is not None and velocities is None:
             raise ArgumentError("accelerations: need velocities, and there are none")
         object.__setattr__(self, "joint_names", names)

@@ -121,7 +121,7 @@ def load_structured(file: str) -> object:
         if not _is_yaml(file):
             return json.loads(text)
         loader = getattr(_yaml(), "CSafeLoader", _yaml().SafeLoader)
-        documents = [one for one in _yaml().load_all(text, Loader=loader) if one is not None]
+        documents = [document for document in _yaml().load_all(text, Loader=loader) if document is not None]
     except (RecursionError, ValueError, _yaml_error(file)) as error:
         mark = getattr(error, "problem_mark", None)
         line = getattr(error, "lineno", 0) if mark is None else mark.line + 1
@@ -184,8 +184,8 @@ def _from_message(content: object, source: Source) -> JointTrajectory:
     message = fields_of(content)
     names, points = items_of(message.get("joint_names")), items_of(message.get("points"))
     if not (names and points):
-        found = ", ".join(map(str, message)) or type(content).__name__
-        raise SourceError(f"found {found:.60}, expected joint_names and points", source, _EXPECTED)
+        fields = ", ".join(map(str, message)) or type(content).__name__
+        raise SourceError(f"found {fields:.60}, expected joint_names and points", source, _EXPECTED)
     if not all(isinstance(name, str) for name in names):
         raise SourceError("joint_names: expected texts", source, _EXPECTED)
     rows = [_MessagePoint(number, point, len(names), source) for number, point in enumerate(points)]
@@ -204,21 +204,21 @@ class _MessagePoint:
         if not self._fields:
             raise self._error("", content, "an object")
 
-    def _error(self, field: str, found: object, expected: str) -> SourceError:
-        hint = "ros2 topic echo --full-length prints all" if found == "..." else _EXPECTED
-        return SourceError(f"{self._place}{field}: found {found!r:.40}, expected {expected}", self._source, hint)
+    def _error(self, field: str, given: object, expected: str) -> SourceError:
+        hint = "ros2 topic echo --full-length prints all" if given == "..." else _EXPECTED
+        return SourceError(f"{self._place}{field}: found {given!r:.40}, expected {expected}", self._source, hint)
 
     def values(self, name: str) -> list[float]:
         given = self._fields.get(name, [])
-        found = items_of(given)
-        if len(found) != self._count and given not in ([], None):
+        numbers = items_of(given)
+        if len(numbers) != self._count and given not in ([], None):
             raise self._error(f".{name}", given, f"{self._count} numbers, one for each joint")
-        return [self._number(f".{name}", number) for number in found]
+        return [self._number(f".{name}", number) for number in numbers]
 
-    def _number(self, field: str, found: object) -> float:
-        if isinstance(found, bool) or not isinstance(found, int | float) or not abs(found) < LARGEST_NUMBER:
-            raise self._error(field, found, "a finite number")
-        return float(found)
+    def _number(self, field: str, number: object) -> float:
+        if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) < LARGEST_NUMBER:
+            raise self._error(field, number, "a finite number")
+        return float(number)
 
     def time(self) -> float:
         """Return ``time_from_start`` [s], with the field names of ROS 2 or ROS 1."""
@@ -255,7 +255,7 @@ def _to_table(trajectory: JointTrajectory) -> str:
 def _from_table(file: str) -> JointTrajectory:
     table = read_csv(file, _TIME)
     names, units = list[str](), dict[str, str]()
-    found: dict[str, dict[str, Floats]] = {field: {} for field in _ORDERS}
+    columns_by_field: dict[str, dict[str, Floats]] = {field: {} for field in _ORDERS}
     for (number, title), column in zip((table.names or {}).items(), table.motion.values.T, strict=True):
         match = _COLUMN.fullmatch(title)
         if match is None:
@@ -264,11 +264,13 @@ def _from_table(file: str) -> JointTrajectory:
         name, word, unit = (group for group in match.groups() if group is not None)
         field = next(field for field, (column_word, _) in _ORDERS.items() if column_word == word)
         names += [name] if name not in names else []
-        units[name], found[field][name] = unit, column
-    for field, columns in found.items():
+        units[name], columns_by_field[field][name] = unit, column
+    for field, columns in columns_by_field.items():
         lacking = [name for name in names if name not in columns]
         if lacking and (columns or field == "positions"):
             raise SourceError(f"'{lacking[0]}' has no column of its {_ORDERS[field][0]}", table.source)
-    rows = [np.column_stack([columns[name] for name in names]) if columns else None for columns in found.values()]
+    rows = [
+        np.column_stack([columns[name] for name in names]) if columns else None for columns in columns_by_field.values()
+    ]
     assert rows[0] is not None, "no position would be lacking"
     return JointTrajectory(names, table.motion.times, rows[0], rows[1], rows[2], [units[name] for name in names])

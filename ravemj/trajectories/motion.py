@@ -137,13 +137,13 @@ def positive(number: float, name: str) -> float:
 def finite_array(numbers: ArrayLike, name: str, shape: str, ndim: int) -> Floats:
     """Return a checked, read-only copy of numbers."""
     try:
-        found = np.asarray(numbers)
+        given = np.asarray(numbers)
     except ValueError as error:
         raise ArgumentError(f"expected {name} of shape {shape}, found rows of different lengths") from error
-    if found.dtype.kind not in "iuf" or found.ndim != ndim:
-        raise ArgumentError(f"expected {name} as numbers of shape {shape}, found {found.dtype} of shape {found.shape}")
+    if given.dtype.kind not in "iuf" or given.ndim != ndim:
+        raise ArgumentError(f"expected {name} as numbers of shape {shape}, found {given.dtype} of shape {given.shape}")
     with np.errstate(over="ignore"):
-        checked = np.array(found, dtype=np.float64, order="C")
+        checked = np.array(given, dtype=np.float64, order="C")
     if not np.isfinite(checked).all():
         raise ArgumentError(f"expected finite {name}, found {checked[~np.isfinite(checked)][0]}")
     checked.flags.writeable = False

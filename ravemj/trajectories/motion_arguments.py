@@ -170,7 +170,7 @@ def followed_file(simulation: Simulation, read: MotionFile) -> BodyMotion:
 
 
 def _named_robot(simulation: Simulation, names: Sequence[str]) -> BodyState:
-    """Return the first robot with the most joints among some names."""
+    """Return the robot to which the most of some joint names belong; of several, the first."""
     return max(_robots(simulation), key=lambda robot: len(set(names).intersection(robot.scene.dof_names)))
 
 
@@ -178,5 +178,5 @@ def _refuse_other_robots(simulation: Simulation, table: MotionTable, body: BodyS
     for number, name in (table.names or {}).items():
         owners = [other for other in simulation.bodies if name in other.scene.dof_names]
         if owners and body not in owners:
-            found = f"column {number} is named '{name}', which is a joint of '{owners[0].scene.name}'"
-            raise SourceError(f"{found}, not of '{body.scene.name}'", table.source, "a table moves one robot")
+            mistake = f"column {number} is named '{name}', which is a joint of '{owners[0].scene.name}'"
+            raise SourceError(f"{mistake}, not of '{body.scene.name}'", table.source, "a table moves one robot")

@@ -58,15 +58,15 @@ class MotionTable(NamedTuple):
         """
         if self.names is None:
             if self.motion.dof != len(joint_names):
-                found = f"expected values of shape (N, {len(joint_names)}), found {self.motion.values.shape}"
-                raise SourceError(found, self.source)
+                mistake = f"expected values of shape (N, {len(joint_names)}), found {self.motion.values.shape}"
+                raise SourceError(mistake, self.source)
             return self.motion
         dofs = {name: dof for dof, name in enumerate(joint_names)}
         values = np.tile(current, (len(self.motion.times), 1))
         for (number, name), column in zip(self.names.items(), self.motion.values.T, strict=True):
             if name not in dofs:
-                found = f"column {number} is named {reprlib.repr(name)}, which is not a joint"
-                raise SourceError(found, self.source, did_you_mean(name, joint_names))
+                mistake = f"column {number} is named {reprlib.repr(name)}, which is not a joint"
+                raise SourceError(mistake, self.source, did_you_mean(name, joint_names))
             values[:, dofs[name]] = column
         return Motion(self.motion.times, values)
 
@@ -134,8 +134,8 @@ def _read_npz(file: str) -> MotionTable:
     if names is None:
         return MotionTable(Source(file), None, motion)
     if names.dtype.kind != "U" or names.shape != (motion.dof,) or len(set(names.tolist())) < motion.dof:
-        found = f"expected '{_JOINTS}' as {motion.dof} different names, found {names.dtype} of shape {names.shape}"
-        raise SourceError(found, Source(file))
+        mistake = f"expected '{_JOINTS}' as {motion.dof} different names, found {names.dtype} of shape {names.shape}"
+        raise SourceError(mistake, Source(file))
     return MotionTable(Source(file), {number: str(name) for number, name in enumerate(names, 1)}, motion)
 
 

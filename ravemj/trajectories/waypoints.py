@@ -256,14 +256,14 @@ class Waypoints:
 
     def _derivatives(self, group: Group, interpolation: str) -> list[Group]:
         """Return the groups with the derivatives of another group, as far as the interpolations are consistent."""
-        found: list[Group] = []
+        derivatives: list[Group] = []
         while interpolation != INTERPOLATIONS[0]:
-            derivative = find_shifted(self.groups, group.name, len(found) + 1, exact=True)
+            derivative = find_shifted(self.groups, group.name, len(derivatives) + 1, exact=True)
             interpolation = derived_interpolation(interpolation, 1)
             if derivative is None or derivative.dof != group.dof or derivative.interpolation != interpolation:
                 break
-            found.append(derivative)
-        return found
+            derivatives.append(derivative)
+        return derivatives
 
 
 def _goal_between(kind: int, ends: Ends, part: float) -> Floats:

@@ -39,6 +39,28 @@ def test_out_of_reach_are_grasps_of_the_hand_alone(folder):
     assert re.search(r"^out of reach: .* so these are grasps of the hand alone$", done.stdout, re.MULTILINE)
 
 
+BALL = """<Robot name="post"><KinBody>
+  <Body name="base"/>
+  <Body name="bar"><offsetfrom>base</offsetfrom><Translation>0 0 0.4</Translation></Body>
+  <Body name="left"><offsetfrom>bar</offsetfrom>
+    <Geom type="box"><Translation>0.006 0 0</Translation><Extents>0.005 0.01 0.03</Extents></Geom></Body>
+  <Body name="right"><offsetfrom>bar</offsetfrom>
+    <Geom type="box"><Translation>-0.006 0 0</Translation><Extents>0.005 0.01 0.03</Extents></Geom></Body>
+  <Joint name="ball" type="spherical"><Body>base</Body><Body>bar</Body></Joint>
+  <Joint name="l" type="slider"><Body>bar</Body><Body>left</Body><axis>1 0 0</axis><limits>0 0.04</limits></Joint>
+  <Joint name="r" type="slider"><Body>bar</Body><Body>right</Body><axis>-1 0 0</axis><limits>0 0.04</limits></Joint>
+</KinBody>
+<Manipulator name="hand"><base>base</base><effector>bar</effector><direction>0 0 1</direction>
+  <joints>l r</joints><closingdirection>-1 -1</closingdirection></Manipulator></Robot>"""
+
+
+def test_where_no_pose_can_be_solved_are_grasps_of_the_hand_alone(folder):
+    (folder / "post.xml").write_text(BALL)
+    done = ravemj_command(folder, "grasp", "post.xml", "box", "--method", "antipodal")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert re.search(r"^joint .ball. .*; so these are grasps of the hand alone$", done.stdout, re.MULTILINE)
+
+
 def test_a_wall_is_too_wide_for_the_jaws(folder):
     done = ravemj_command(
         folder, "grasp", "panda", "wall.xml", "--at", "0.7,0,0.5", "--method", "antipodal", "-o", "x.html"

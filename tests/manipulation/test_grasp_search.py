@@ -151,3 +151,17 @@ def test_robots_that_cannot_grasp_are_refused():
     robot.GetEnv().Add(empty)
     with pytest.raises(ravemj.ArgumentError, match="no shapes"):
         ravemj.grasps(robot, empty)
+
+
+def test_distinct_grasps_are_no_twins_and_the_best_ones():
+    robot, box = kitchen()
+    found = ravemj.grasps(robot, box, reach=False, proofs=3)
+    chosen = found.distinct(4)
+    assert chosen[0] is found[0]
+    assert [grasp.proof is not None for grasp in chosen] == [True] * 3 + [False]
+    for number, grasp in enumerate(chosen):
+        for better in chosen[:number]:
+            apart = np.linalg.norm(grasp.contacts[:, None, :3] - better.contacts[None, :, :3], axis=2)
+            is_near = max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 0.015
+            assert not (is_near and grasp.approach @ better.approach > np.cos(np.radians(20)))
+    assert len(found.distinct(len(found))) < len(found)

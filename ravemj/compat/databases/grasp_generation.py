@@ -186,18 +186,18 @@ def tried(model: GraspUse, row: Floats, settings: Settings) -> Arrays:
             _complete(model, row, (contacts, values, _pose(pose), mindist))
     except PlanningError as error:
         reason = str(error.parameter)
-    found = {"rows": row, "contacts": contacts, "values": values, "T_world_robot": _pose(pose)}
-    found |= {"count": np.array(len(contacts)), "reason": np.array(reason)}
-    return {name: np.asarray(value)[None] for name, value in found.items()}
+    row_of_table = {"rows": row, "contacts": contacts, "values": values, "T_world_robot": _pose(pose)}
+    row_of_table |= {"count": np.array(len(contacts)), "reason": np.array(reason)}
+    return {name: np.asarray(value)[None] for name, value in row_of_table.items()}
 
 
 def _pose(T_world_robot: Floats | None) -> Floats:
     return np.eye(4) if T_world_robot is None else T_world_robot
 
 
-def _complete(model: GraspUse, row: Floats, found: tuple[Floats, Floats, Floats, float]) -> None:
+def _complete(model: GraspUse, row: Floats, answer: tuple[Floats, Floats, Floats, float]) -> None:
     """Write the results of a grasp into its row."""
-    contacts, values, T_world_robot, mindist = found
+    contacts, values, T_world_robot, mindist = answer
     robot, manip, target, columns = model.robot, model.manip, model.target, model.graspindices
     T_target_world = np.linalg.inv(target.GetTransform())
     with robot:
@@ -352,13 +352,13 @@ def collected(columns: Mapping[str, Sequence[int]], parts: Path, chosen: _GraspF
         reasons = np.concatenate([chosen.reasons[path] for path in done.files])
     rows = arrays["rows"][reasons == ""]
     order = np.argsort(rows[:, columns["performance"][0]], kind="stable")
-    return Generation(rows[order], Counter(str(one) for one in reasons if one), len(reasons), done.total)
+    return Generation(rows[order], Counter(str(reason) for reason in reasons if reason), len(reasons), done.total)
 
 
 def unfinished(folder: str | Path) -> Path | None:
     """Return the newest folder of an unfinished generation, or None."""
-    found = [path.parent for path in Path(folder).glob(f"*/{MANIFEST}")]
-    return max(found, key=lambda path: (path / MANIFEST).stat().st_mtime, default=None)
+    folders = [path.parent for path in Path(folder).glob(f"*/{MANIFEST}")]
+    return max(folders, key=lambda path: (path / MANIFEST).stat().st_mtime, default=None)
 
 
 def forget(parts: Path) -> None:

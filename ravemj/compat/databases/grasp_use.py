@@ -149,7 +149,7 @@ class GraspUse(ApproachRays):
             moving = DOFAffine.X | DOFAffine.Y | DOFAffine.Z if translate else DOFAffine.NoTransform
             self.robot.SetActiveDOFs(self.manip.GetGripperIndices(), moving)
             plane = self._part(grasp, "vintersectplane")
-            found = self._ready_grasper().Grasp(
+            answer = self._ready_grasper().Grasp(
                 direction=self._part(grasp, "igraspdir"),
                 roll=float(self._part(grasp, "igrasproll")[0]),
                 position=self._part(grasp, "igrasppos"),
@@ -165,7 +165,7 @@ class GraspUse(ApproachRays):
                 translationstepmult=translationstepmult or self.translationstepmult,
                 finestep=finestep or self.finestep,
             )
-        return _closed(found)
+        return _closed(answer)
 
     def runGraspFromTrans(self, grasp: ArrayLike, finestep: float | None = None) -> Run:
         """Close the hand at the stored pose of a grasp, wherever the robot is. The robot is back afterwards.
@@ -187,7 +187,7 @@ class GraspUse(ApproachRays):
             self.setPreshape(grasp)
             self._place_hand(self.getGlobalGraspTransform(grasp))
             self.robot.SetActiveDOFs(self.manip.GetGripperIndices())
-            found = self._ready_grasper().Grasp(
+            answer = self._ready_grasper().Grasp(
                 transformrobot=False,
                 target=self.target,
                 chuckingdirection=self._part(grasp, "ichuckingdirection"),
@@ -197,7 +197,7 @@ class GraspUse(ApproachRays):
                 translationstepmult=self.translationstepmult,
                 finestep=finestep or self.finestep,
             )
-        return _closed(found)
+        return _closed(answer)
 
     def _place_hand(self, T_world_tool: Floats) -> None:
         """Move the whole robot so that its tool is at a pose."""
@@ -271,11 +271,11 @@ class GraspUse(ApproachRays):
         self._wait()
         with self.robot:
             self.robot.SetActiveDOFs(indices)
-            found = self.basemanip.MoveActiveJoints(
+            answer = self.basemanip.MoveActiveJoints(
                 goal=preshape, execute=execute, outputtraj=outputtraj, outputtrajobj=outputtrajobj
             )
         self._wait()
-        return found
+        return answer
 
     def _wait(self) -> None:
         controller = self.robot.GetController()
@@ -283,8 +283,8 @@ class GraspUse(ApproachRays):
             time.sleep(0.01)
 
 
-def _closed(found: GraspResult) -> Run:
-    contacts, final, mindist, volume = found
+def _closed(answer: GraspResult) -> Run:
+    contacts, final, mindist, volume = answer
     assert final is not None, "outputfinal is on"
     return contacts, final, mindist, volume
 

@@ -64,13 +64,13 @@ class ValidGrasps(GraspUse):
         Returns:
             Rows, and their indices.
         """
-        found: list[ValidGrasp] = []
+        accepted: list[ValidGrasp] = []
         rows = range(startindex, len(self.grasps))
         for valid in self._valid(rows, checkcollision, checkik, checkgrasper, backupdist):
-            found.append(valid)
-            if len(found) >= returnnum:
+            accepted.append(valid)
+            if len(accepted) >= returnnum:
                 break
-        return [valid.grasp for valid in found], [valid.number for valid in found]
+        return [valid.grasp for valid in accepted], [valid.number for valid in accepted]
 
     def validGraspIterator(
         self,

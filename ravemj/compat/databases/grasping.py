@@ -192,11 +192,11 @@ class GraspingModel(ValidGrasps):
                 f"{path} is a table of {made}, and '{here.manip}' of '{here.robot}' has {joints}: "
                 "choose its manipulator, or generate grasps for this one"
             )
-        for what, found, expected in (
+        for what, saved, expected in (
             (f"robot '{here.robot}'", owner.robot_hash, here.robot_hash),
             (f"target '{here.target}'", owner.target_hash, here.target_hash),
         ):
-            if found and found != expected:
+            if saved and saved != expected:
                 hint = "grasps may miss; computeValidGrasps tests them, generate makes new ones"
                 _LOG.warning("%s was made for other links or shapes than those of %s: %s", path, what, hint)
         if stored.tried < stored.candidates:
@@ -213,11 +213,11 @@ class GraspingModel(ValidGrasps):
         parts = generation.unfinished(folder)
         if parts is None:
             return False
-        found = generation.collected(self.graspindices, parts)
-        self._warn_partial(str(parts), found.tried, found.candidates)
-        self._tried, self._candidates = found.tried, found.candidates
-        if len(found.rows):
-            self.grasps = found.rows
+        generated = generation.collected(self.graspindices, parts)
+        self._warn_partial(str(parts), generated.tried, generated.candidates)
+        self._tried, self._candidates = generated.tried, generated.candidates
+        if len(generated.rows):
+            self.grasps = generated.rows
         return self.has()
 
     def _warn_partial(self, path: str, tried: int, total: int) -> None:
@@ -377,9 +377,9 @@ class GraspingModel(ValidGrasps):
         settings = generation.Settings(*names, self._more, *rating, *steps, float(noise), int(tries), threshold)
         job = generation.GenerationJob(self._unfinished_folder(), self.numthreads, self.disableallbodies)
         check = None if checkgraspfn is None else _checking(self, checkgraspfn)
-        found, folder = generation.generate(self, rows, settings, job, check)
-        self.grasps = found.rows if len(found.rows) else np.zeros((0, self.totaldof))
-        self.rejected, self._tried, self._candidates = found.rejected, found.tried, found.candidates
+        generated, folder = generation.generate(self, rows, settings, job, check)
+        self.grasps = generated.rows if len(generated.rows) else np.zeros((0, self.totaldof))
+        self.rejected, self._tried, self._candidates = generated.rejected, generated.tried, generated.candidates
         if not len(self.grasps):
             counts = "; ".join(f"{count}: {reason}" for reason, count in self.rejected.most_common(5))
             _LOG.warning("none of %d candidates is a grasp of '%s' (%s)", len(rows), names[2], counts)
@@ -407,17 +407,17 @@ class GraspingModel(ValidGrasps):
         with self.robot, self.target:
             self.robot.SetActiveManipulator(self.manip)
             self.target.Enable(False)
-            found, _ = TaskManipulation(self.robot).ReleaseFingers(execute=False, outputfinal=True)
-        assert found is not None
-        return found
+            final, _ = TaskManipulation(self.robot).ReleaseFingers(execute=False, outputfinal=True)
+        assert final is not None
+        return final
 
 
 def _rows(values: ArrayLike, width: int, name: str) -> Floats:
     """Return an argument of ``generate`` as rows of a width."""
     array = np.asarray(values, dtype=float)
     if array.size % width or (array.ndim > 1 and array.shape[-1] != width) or not np.isfinite(array).all():
-        found = f"have shape {array.shape}" if np.isfinite(array).all() else "are not finite"
-        raise ArgumentError(f"generate: {name} {found}; expected finite numbers of shape (n, {width})")
+        mistake = f"have shape {array.shape}" if np.isfinite(array).all() else "are not finite"
+        raise ArgumentError(f"generate: {name} {mistake}; expected finite numbers of shape (n, {width})")
     return array.reshape(-1, width)
 
 

@@ -131,9 +131,9 @@ class InverseKinematicsModel(SolvedJoints):
         solver = IkSolver(self.env, self._name(kind), kind, joints)
         if not self.manip.SetIkSolver(solver):
             raise InverseKinematicsError(f"no solver of {kind.name} fits the arm '{self.manip.GetName()}'")
-        found = [arm[joint] for joint in solver.derived().free]
+        free_dofs = [arm[joint] for joint in solver.derived().free]
         wanted = usual if free is None else free
-        self.iksolver, self.freeindices = solver, wanted if set(wanted) == set(found) else found
+        self.iksolver, self.freeindices = solver, wanted if set(wanted) == set(free_dofs) else free_dofs
         self.solveindices = self._divide(self.freeindices)
 
     def generate(

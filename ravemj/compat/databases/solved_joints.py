@@ -111,13 +111,13 @@ class SolvedJoints(DatabaseGenerator):
         Raises:
             LookupError: a joint name is unknown.
         """
-        found: list[int] = []
+        indices: list[int] = []
         for name in freejoints:
             joint = self.robot.GetJoint(name) if isinstance(name, str) else None
             if isinstance(name, str) and joint is None:
                 raise LookupError(f"'{self.robot.GetName()}' has no joint '{name}'")
-            found.append(int(name) if joint is None else joint.GetDOFIndex())
-        return found
+            indices.append(int(name) if joint is None else joint.GetDOFIndex())
+        return indices
 
     def GetDefaultIndices(self, avoidPrismaticAsFree: bool = False) -> tuple[list[int], list[int]]:
         """Return the solved DOFs and the free DOFs by default.

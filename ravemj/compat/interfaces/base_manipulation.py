@@ -108,8 +108,8 @@ class BaseManipulation(Helper):
         """
         del releasegil, usedynamicsconstraints
         dof = self.robot.GetActiveDOF()
-        regions = [one for one in several(goals, "goals") if is_region(one)]
-        rows = None if goals is None else [one for one in goals if not is_region(one)]
+        regions = [member for member in several(goals, "goals") if is_region(member)]
+        rows = None if goals is None else [member for member in goals if not is_region(member)]
         wanted, starts = _rows("goal", goal, rows, dof), _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
         effort = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength, certify=certify)
@@ -271,7 +271,7 @@ class BaseManipulation(Helper):
         if rotation is not None:
             goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
         others = [*given(ikparam=ikparam).values(), *several(ikparams, "ikparams")]
-        goals += [checked_kind(one, IkParameterization, "ikparam") for one in others]
+        goals += [checked_kind(goal, IkParameterization, "ikparam") for goal in others]
         options = given(
             maxiter=maxiter,
             maxtries=maxtries,
@@ -397,8 +397,8 @@ class BaseManipulation(Helper):
         Raises:
             PlanningError: no free configuration was found.
         """
-        found = self._base.jitter_active(chosen(JitterMotion, given(maxiter=maxiter, jitter=jitter)))
-        return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+        motion = self._base.jitter_active(chosen(JitterMotion, given(maxiter=maxiter, jitter=jitter)))
+        return self._pair(motion, execute, outputtraj, outputfinal, outputtrajobj)
 
     def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:
         """Execute a trajectory.
@@ -453,8 +453,8 @@ def _sets(regions: object, constraints: Sequence[object], held: KinBody | None) 
     return MotionSets(() if regions is None else regions_of(regions, "regions"), constraints, held)
 
 
-def _rows(name: str, one: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
-    rows = [checked_numbers(row, name) for row in [*several(many, name), *given(one=one).values()]]
+def _rows(name: str, single: ArrayLike | None, many: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
+    rows = [checked_numbers(row, name) for row in [*several(many, name), *given(one=single).values()]]
     for row in rows:
         if row.shape != (dof,) or not dof:
             raise AssertionError(f"{name}: has shape {row.shape}, and should have {dof} values")

@@ -116,10 +116,10 @@ class Grasper(Helper):
             stablecontacts: Return only contacts that the closing fingers press against the target. OpenRAVE tests the
                 opposite direction, and returns none.
             forceclosure: Whether to compute ``mindist`` and ``volume``.
-            transformrobot: Whether the hand is placed and flies; otherwise only the fingers move.
+            transformrobot: Whether the hand is placed and moves to the target; otherwise only the fingers move.
             onlycontacttarget: Whether contact with another body is a failure.
             tightgrasp: Not used, as in OpenRAVE.
-            graspingnoise: Largest random displacement of a surface point of the target [m], in thought.
+            graspingnoise: Largest random error of a surface point of the target [m]: the target itself does not move.
             execute: Whether the controller moves the joints to those of the grasp; None: it does.
             translationstepmult: Factor of the steps for sliders and the flight [m/rad]; None: 0.1.
             outputfinal: Whether to return the last configuration.
@@ -207,7 +207,7 @@ class Grasper(Helper):
             rolls: Rotations of the tool [rad].
             manipulatordirections: Directions of the tool, shape (n, 3); None: the manipulator's.
             target: The body to grasp.
-            transformrobot: Whether the hand is placed and flies.
+            transformrobot: Whether the hand is placed and moves to the target.
             onlycontacttarget: Whether contact with another body is a failure.
             tightgrasp: Not used, as in OpenRAVE.
             graspingnoise: Largest displacement [m], and the number of grasps with noise (10) that have to end close to
@@ -249,8 +249,8 @@ class Grasper(Helper):
             parameters=parameters, friction=self.friction, forceclosure=forceclosurethreshold is not None
         )
         sweep = Sweep(startindex or 0, maxgrasps or 0, forceclosurethreshold, tries)
-        following, found = self._grasper.sweep(candidates_of(self._grasper, parts), request, sweep)
-        return following, [_result(one) for one in found]
+        following, grasps = self._grasper.sweep(candidates_of(self._grasper, parts), request, sweep)
+        return following, [_result(grasp) for grasp in grasps]
 
     def ConvexHull(
         self,
@@ -275,14 +275,14 @@ class Grasper(Helper):
             PlanningError: the points are flat.
         """
         array = checked_numbers(points, "ConvexHull: points")
-        found = hull(array) if array.ndim == 2 and len(array) else None
-        if found is None:
+        convex_hull = hull(array) if array.ndim == 2 and len(array) else None
+        if convex_hull is None:
             raise PlanningError("ConvexHull: the points are flat; they should span all dimensions")
-        faces = [list(face) for face in found.faces]
+        faces = [list(face) for face in convex_hull.faces]
         return (
-            found.planes if returnplanes else None,
+            convex_hull.planes if returnplanes else None,
             faces if returnfaces else None,
-            found.triangles if returntriangles else None,
+            convex_hull.triangles if returntriangles else None,
         )
 
     def _avoided(self) -> tuple[int, ...]:
@@ -310,8 +310,8 @@ def _table(rows: ArrayLike, width: int, name: str) -> Floats:
     return table
 
 
-def _result(found: Found) -> tuple[Any, ...]:
-    parameters, answer = found.parameters, found.answer
+def _result(grasp: Found) -> tuple[Any, ...]:
+    parameters, answer = grasp.parameters, grasp.answer
     return (
         parameters.position,
         parameters.direction,
@@ -320,7 +320,7 @@ def _result(found: Found) -> tuple[Any, ...]:
         parameters.manipulatordirection,
         answer.mindist or 0.0,
         answer.volume or 0.0,
-        found.preshape,
+        grasp.preshape,
         answer.end.T_world_base,
         answer.end.values,
         answer.contacts,

@@ -85,14 +85,14 @@ class Helper(ApiObject):
 
     def _pair(
         self,
-        found: tuple[Floats, Trajectory],
+        motion: tuple[Floats, Trajectory],
         execute: bool | None,
         outputtraj: bool | None,
         outputfinal: bool | None,
         outputtrajobj: bool | None,
     ) -> tuple[Floats | None, Trajectory | str | None]:
         """Execute a motion unless ``execute`` is False; return its final values and itself, as requested."""
-        final, traj = found
+        final, traj = motion
         return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj) or None
 
 

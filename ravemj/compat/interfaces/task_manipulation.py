@@ -94,8 +94,8 @@ class TaskManipulation(Helper):
         del releasegil
         directions, offsets = self._of_gripper("movingdir", movingdir), self._of_gripper("offset", offset)
         steps = given(coarsestep=coarsestep, finestep=finestep, translationstepmult=translationstepmult)
-        found = self._task.close_fingers(directions, offsets, finger_steps(steps))
-        return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+        motion = self._task.close_fingers(directions, offsets, finger_steps(steps))
+        return self._pair(motion, execute, outputtraj, outputfinal, outputtrajobj)
 
     CloseFingers = ChuckFingers
 
@@ -131,8 +131,8 @@ class TaskManipulation(Helper):
         del releasegil
         directions = self._of_gripper("movingdir", movingdir)
         steps = given(coarsestep=coarsestep, finestep=finestep, translationstepmult=translationstepmult)
-        found = self._task.release_fingers(directions, target, finger_steps(steps))
-        return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+        motion = self._task.release_fingers(directions, target, finger_steps(steps))
+        return self._pair(motion, execute, outputtraj, outputfinal, outputtrajobj)
 
     ReleaseFingers = UnchuckFingers
 
@@ -158,8 +158,8 @@ class TaskManipulation(Helper):
         del translationstepmult
         count = len(self.robot.GetActiveDOFIndices())
         directions = np.zeros(count) if movingdir is None else np.atleast_1d(np.asarray(movingdir, dtype=float))
-        found = self._task.release_active(directions, **given(step=finestep))
-        return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+        motion = self._task.release_active(directions, **given(step=finestep))
+        return self._pair(motion, execute, outputtraj, outputfinal, outputtrajobj)
 
     def _of_gripper(self, name: str, numbers: ArrayLike | None) -> Floats | None:
         """Return a value for each gripper joint, or None."""
@@ -242,7 +242,7 @@ class TaskManipulation(Helper):
         options = given(seedgrasps=seedgrasps, seeddests=seeddests, seedik=seedik, maxiter=maxiter)
         options |= given(randomgrasps=randomgrasps, randomdests=randomdests, steplength=steplength)
         options |= {"approachoffset": approachoffset}
-        places = [checked_transform(one, "destposes") for one in (() if destposes is None else destposes)]
+        places = [checked_transform(pose, "destposes") for pose in (() if destposes is None else destposes)]
         plan = self._task.plan_grasp(GraspQuery(body, GraspTable(rows, columns), places, chosen(GraspMotion, options)))
         return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj) or None
 
@@ -279,10 +279,10 @@ class TaskManipulation(Helper):
         T_task_world = np.eye(4) if frame is None else checked_transform(frame, "targetframematrix")
         counted = checked_vector(freedoms, 6, "freedoms")
         dof = self.robot.GetActiveDOF()
-        rows = [checked_vector(one, dof, "configs") for one in configs]
+        rows = [checked_vector(config, dof, "configs") for config in configs]
         constraint = ToolConstraint(T_task_world, np.eye(4), counted, 1e-3 if errorthresh is None else errorthresh)
-        steps, found = self._task.evaluate_constraints(constraint, rows)
-        return np.array(steps, dtype=int), np.array(found).reshape(-1, dof)
+        steps, projected = self._task.evaluate_constraints(constraint, rows)
+        return np.array(steps, dtype=int), np.array(projected).reshape(-1, dof)
 
     SwitchModels = refusing(
         "TaskManipulation.SwitchModels",
@@ -297,5 +297,5 @@ class TaskManipulation(Helper):
 
 def _first_columns(columns: Mapping[str, int | Sequence[int]]) -> dict[str, int]:
     """Return the first column of each property that has columns."""
-    found = {name: np.ravel(part) for name, part in columns.items()}
-    return {name: int(part[0]) for name, part in found.items() if part.size}
+    columns_by_name = {name: np.ravel(part) for name, part in columns.items()}
+    return {name: int(part[0]) for name, part in columns_by_name.items() if part.size}

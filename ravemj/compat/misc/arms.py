@@ -52,16 +52,16 @@ class MultiManipIKSolver:
         if len(Tgrasps) != len(self.manips):
             raise ArgumentError(f"findMultiIKSolution: {len(Tgrasps)} goals for {len(self.manips)} arms; give one each")
         alone = [self._alone(arm, goal, filteroptions) for arm, goal in zip(self.manips, Tgrasps, strict=True)]
-        best, found = np.inf, None
+        best, nearest = np.inf, None
         with self.robot:
             now = [arm.GetArmDOFValues() for arm in self.manips]
             for rows in itertools.product(*alone):
                 away = sum(float(np.sum((row - start) ** 2)) for row, start in zip(rows, now, strict=True))
                 if away < best and self._together(rows, filteroptions):
-                    best, found = away, list(rows)
+                    best, nearest = away, list(rows)
                     if not dooptimize:
                         break
-        return found
+        return nearest
 
     def _alone(self, arm: Manipulator, goal: ArrayLike | IkParameterization, options: int) -> Floats:
         """Return the solutions of one arm, ignoring the other arms."""

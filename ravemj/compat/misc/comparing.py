@@ -48,13 +48,13 @@ def CompareBodies(  # noqa: PLR0913, PLR0917 - OpenRAVE's arguments
     if computeadjacent:
         _alike(body0.GetAdjacentLinks(), body1.GetAdjacentLinks(), "adjacent links")
     if comparegrabbed:
-        first, second = (sorted(one.GetName() for one in body.GetGrabbed()) for body in (body0, body1))
+        first, second = (sorted(grabbed.GetName() for grabbed in body.GetGrabbed()) for body in (body0, body1))
         _alike(first, second, "held bodies")
     if isinstance(body0, Robot) and isinstance(body1, Robot):
         if comparemanipulators:
             _manipulators(body0, body1, epsilon)
         if comparesensors:
-            first, second = ([one.GetName() for one in robot.GetAttachedSensors()] for robot in (body0, body1))
+            first, second = ([sensor.GetName() for sensor in robot.GetAttachedSensors()] for robot in (body0, body1))
             _alike(first, second, "attached sensors")
 
 
@@ -70,10 +70,14 @@ def _links(body0: KinBody, body1: KinBody, geometries: bool, physics: bool, epsi
             _near(link0.GetLocalInertia(), link1.GetLocalInertia(), epsilon, f"{name}: inertias")
         if geometries:
             first, second = link0.GetGeometries(), link1.GetGeometries()
-            _alike([one.GetType() for one in first], [one.GetType() for one in second], f"{name}: shapes")
-            for one, other in zip(first, second, strict=True):
-                _near(one.GetTransform(), other.GetTransform(), epsilon, f"{name}: poses of shapes")
-                box0, box1 = one.ComputeAABB(np.eye(4)), other.ComputeAABB(np.eye(4))
+            _alike(
+                [geometry.GetType() for geometry in first],
+                [geometry.GetType() for geometry in second],
+                f"{name}: shapes",
+            )
+            for geometry, other in zip(first, second, strict=True):
+                _near(geometry.GetTransform(), other.GetTransform(), epsilon, f"{name}: poses of shapes")
+                box0, box1 = geometry.ComputeAABB(np.eye(4)), other.ComputeAABB(np.eye(4))
                 _near(box0.extents(), box1.extents(), epsilon, f"{name}: sizes of shapes")
 
 
@@ -130,9 +134,9 @@ def _alike(first: object, second: object, what: str) -> None:
 
 
 def _near(first: ArrayLike, second: ArrayLike, epsilon: float, what: str) -> None:
-    one, other = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
-    same = one.shape == other.shape and np.allclose(one, other, rtol=0, atol=epsilon, equal_nan=True)
-    assert same, f"{what} differ: {one.tolist()} and {other.tolist()}"
+    numbers, other = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
+    same = numbers.shape == other.shape and np.allclose(numbers, other, rtol=0, atol=epsilon, equal_nan=True)
+    assert same, f"{what} differ: {numbers.tolist()} and {other.tolist()}"
 
 
 def sequence_cross_product(*sequences: Iterable[object]) -> Iterator[tuple[object, ...]]:

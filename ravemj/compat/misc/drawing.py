@@ -53,7 +53,7 @@ def DrawAxes(
         >>> handle = misc.DrawAxes(env, robot.GetActiveManipulator(), dist=0.2)
     """
     if isinstance(target, list) and not _is_pose(target):  # pyright: ignore[reportUnknownArgumentType]
-        return [DrawAxes(env, one, dist, linewidth, colormode, coloradd) for one in target]  # pyright: ignore[reportUnknownVariableType]
+        return [DrawAxes(env, pose, dist, linewidth, colormode, coloradd) for pose in target]  # pyright: ignore[reportUnknownVariableType]
     T = _transform(env, target)
     colours = _AXIS_COLOURS[colormode] + (0 if coloradd is None else checked_numbers(coloradd, "coloradd"))
     origin = T[:3, 3]

@@ -50,7 +50,7 @@ def GetDHParameters(body: KinBody) -> list[DHParameter]:
         [(0.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
     """
     checked_kind(body, KinBody, "GetDHParameters: body")
-    found: list[DHParameter] = []
+    parameters: list[DHParameter] = []
     index_of_link: dict[int, int] = {}
     with body, body.GetEnv().simulation.lock:
         body.SetDOFValues(np.zeros(body.GetDOF()), checklimits=CheckLimitsAction.Nothing)
@@ -58,16 +58,16 @@ def GetDHParameters(body: KinBody) -> list[DHParameter]:
         for joint in body.GetDependencyOrderedJoints():
             parent, child = joint.GetHierarchyParentLink(), joint.GetHierarchyChildLink()
             before = _before(body, parent.GetIndex() if parent else 0, index_of_link)
-            start = np.eye(4) if before < 0 else found[before].transform
-            found.append(_record(joint, before, start, joint.GetAnchor(), joint.GetAxis()))
-            index_of_link[child.GetIndex()] = len(found) - 1
-    return found
+            start = np.eye(4) if before < 0 else parameters[before].transform
+            parameters.append(_record(joint, before, start, joint.GetAnchor(), joint.GetAxis()))
+            index_of_link[child.GetIndex()] = len(parameters) - 1
+    return parameters
 
 
 def _before(body: KinBody, link: int, index_of_link: dict[int, int]) -> int:
     """Return the record index of the nearest joint with a record that moves a link; -1 for none."""
     chain = body.GetChain(0, link, returnjoints=False)
-    moved = [index_of_link[one.GetIndex()] for one in chain if one.GetIndex() in index_of_link]
+    moved = [index_of_link[joint_.GetIndex()] for joint_ in chain if joint_.GetIndex() in index_of_link]
     return moved[-1] if moved else -1
 
 

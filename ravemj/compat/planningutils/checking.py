@@ -55,7 +55,7 @@ def VerifyTrajectory(
     spec = ConfigurationSpecification.of(values.groups)
     samples = _samples(trajectory, spec, samplingstep)
     if values.bodies is None:
-        wrong = flaw(samples, values.limits(), lambda one: True)
+        wrong = flaw(samples, values.limits(), lambda values_: True)
     else:
         with values.bodies.kept():
             wrong = flaw(samples, values.limits(), values.conditions.allowed())
@@ -193,16 +193,18 @@ def JitterCurrentConfiguration(
     allowed, bodies = values.conditions.allowed(), values.bodies
     random = np.random.default_rng(int(values.numbers["_nrandomgeneratorseed"]))
 
-    def roomy(one: Floats) -> bool:
-        return allowed(one) and allowed(one + perturbation) and allowed(one - perturbation)
+    def roomy(configuration: Floats) -> bool:
+        return (
+            allowed(configuration) and allowed(configuration + perturbation) and allowed(configuration - perturbation)
+        )
 
     with bodies.kept():
         start = bodies.values()
-        found = nearby(values.space(), start, roomy, maxiterations, jitter, random)
-    if found is not None and found is not start:
+        moved = nearby(values.space(), start, roomy, maxiterations, jitter, random)
+    if moved is not None and moved is not start:
         with bodies.lock:
-            bodies.move(found)
-    return found is not None
+            bodies.move(moved)
+    return moved is not None
 
 
 def JitterActiveDOF(

@@ -61,7 +61,7 @@ class ManipulatorIKGoalSampler(ApiObject):
         del releasegil
         while not self._ready and self._goals:
             index, goal = self._goals.pop(0)
-            self._ready = [(index, one) for one in self._solutions(goal)[: self._most]]
+            self._ready = [(index, row) for row in self._solutions(goal)[: self._most]]
         if not self._ready:
             return None
         index, solution = self._ready.pop(0)
@@ -70,14 +70,14 @@ class ManipulatorIKGoalSampler(ApiObject):
 
     def _solutions(self, goal: IkParameterization) -> list[IkReturn]:
         """Return the solutions of a goal; if there are none, those of the first displaced goal with some."""
-        found: Any = self._manip.FindIKSolutions(goal, *self._arguments, ikreturn=True)
+        solutions: Any = self._manip.FindIKSolutions(goal, *self._arguments, ikreturn=True)
         for _ in range(self._tries):
-            if len(found):
+            if len(solutions):
                 break
             aside = np.eye(4)
             aside[:3, 3] = self._random.uniform(-self._jitter, self._jitter, 3)
-            found = self._manip.FindIKSolutions(goal.Transform(aside), *self._arguments, ikreturn=True)
-        return found
+            solutions = self._manip.FindIKSolutions(goal.Transform(aside), *self._arguments, ikreturn=True)
+        return solutions
 
     def SampleAll(self, maxsamples: int = 0, maxchecksamples: int = 0, releasegil: bool = False) -> list[IkReturn]:
         """Return the remaining solutions as ``IkReturn``.
@@ -88,10 +88,10 @@ class ManipulatorIKGoalSampler(ApiObject):
             releasegil: Not used.
         """
         del maxchecksamples, releasegil
-        found: list[IkReturn] = []
-        while (not maxsamples or len(found) < maxsamples) and (one := self.Sample(ikreturn=True)) is not None:
-            found.append(one)
-        return found
+        samples: list[IkReturn] = []
+        while (not maxsamples or len(samples) < maxsamples) and (sample := self.Sample(ikreturn=True)) is not None:
+            samples.append(sample)
+        return samples
 
     def GetIkParameterizationIndex(self, index: int) -> int:
         """Return the index of the goal of a solution.

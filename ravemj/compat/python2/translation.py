@@ -116,17 +116,17 @@ def _name_targets(tree: "Node") -> dict[str, str]:
 
     symbols: Any = python_symbols
     inner = {symbols.tfplist, symbols.vfplist, symbols.tfpdef, symbols.vfpdef}
-    found: list[Any] = []
+    nodes: list[Any] = []
     node: Any
     for node in tree.pre_order():
         if node.type in {symbols.tfpdef, symbols.vfpdef} and node.parent.type not in inner:
-            found.append(node)
+            nodes.append(node)
         elif node.type == symbols.except_clause and len(node.children) == _EXCEPT_NAMED:
             _, _, comma, target = node.children
             comma.value, comma.prefix, target.prefix = "as", " ", " "
-            found += [] if target.type == token.NAME else [target]
-    targets = {f"__target_{number}__": str(node).strip() for number, node in enumerate(found)}
-    for name, node in zip(targets, found, strict=True):
+            nodes += [] if target.type == token.NAME else [target]
+    targets = {f"__target_{number}__": str(node).strip() for number, node in enumerate(nodes)}
+    for name, node in zip(targets, nodes, strict=True):
         node.replace(Leaf(token.NAME, name, prefix=node.prefix or " "))
     return targets
 

@@ -96,7 +96,7 @@ class Batch:
                 first = step.coordinate
                 if step.kind == "spherical":  # its coordinates turn about the child's axes
                     axes = np.array(
-                        [_combined(frame[:3], one) for one in self._chain.T_step_links[step.child][:3, :3].T]
+                        [_combined(frame[:3], axis) for axis in self._chain.T_step_links[step.child][:3, :3].T]
                     )
                 elif step.kind == "root":
                     continue
@@ -135,7 +135,7 @@ class Batch:
             _fill_twice(fill, out, values, rates, accelerations)
             return
         for part in self._chunks(len(values), MOTIONS):
-            now, speed, change = (np.ascontiguousarray(one[part].T) for one in (values, rates, accelerations))
+            now, speed, change = (np.ascontiguousarray(rows[part].T) for rows in (values, rates, accelerations))
             state = self._state(now)
             coupling = state.coupling
             velocities = coupling.forward(speed)
@@ -151,7 +151,7 @@ class Batch:
     def _inverse_dynamics_by_mujoco(
         self, values: Floats, rates: Floats, accelerations: Floats, gravity: Floats, out: Floats
     ) -> bool:
-        """Compute the same one configuration after the other.
+        """Compute inverse dynamics with ``mj_rne``, one configuration at a time.
 
         Returns:
             False without a result if joints are coupled or have motors, or links are displaced.
@@ -174,7 +174,7 @@ class Batch:
         out[:] = 0.0
         for part in self._chunks(len(values), MOTIONS):
             forces = np.empty((part.stop - part.start, model.nv))
-            given = (one[part].take(dofs, 1) for one in (values, rates, accelerations))
+            given = (rows[part].take(dofs, 1) for rows in (values, rates, accelerations))
             for row, now, speed, change in zip(forces, *given, strict=True):
                 qpos[places], qvel[moved], qacc[pushed] = now, speed, change
                 place(model, data)
@@ -205,5 +205,5 @@ def _fill_twice(fill: Callable[[Floats, Sequence[Floats]], None], out: Floats, *
         rows: The configuration, arrays of shape (1, n).
     """
     both = np.empty((2, *out.shape[1:]))
-    fill(both, [np.repeat(one, 2, axis=0) for one in rows])
+    fill(both, [np.repeat(row, 2, axis=0) for row in rows])
     out[:] = both[:1]

@@ -69,10 +69,10 @@ class KinematicState:
 
     def of_links(self, of_coordinates: Floats) -> Floats:
         """Return for each link the value of the last coordinate that moves it; 0 for the roots."""
-        found = np.zeros((len(self.tree.last), *of_coordinates.shape[1:]))
+        by_link = np.zeros((len(self.tree.last), *of_coordinates.shape[1:]))
         moved = [link for link, last in enumerate(self.tree.last) if last != NONE]
-        found[moved] = of_coordinates[[self.tree.last[link] for link in moved]]
-        return found
+        by_link[moved] = of_coordinates[[self.tree.last[link] for link in moved]]
+        return by_link
 
     def forces(self, link_forces: Floats) -> Floats:
         """Return the generalised forces of forces on the links, shape (links, 6, N) to (coordinates, N)."""
@@ -111,9 +111,9 @@ class KinematicState:
         return (self.rotations * vectors[:, :, None]).sum(axis=1)
 
 
-def cross(one: Floats, other: Floats) -> Floats:
+def cross(first: Floats, other: Floats) -> Floats:
     """Return the cross products along the second axis."""
-    ax, ay, az = one[:, 0], one[:, 1], one[:, 2]
+    ax, ay, az = first[:, 0], first[:, 1], first[:, 2]
     bx, by, bz = other[:, 0], other[:, 1], other[:, 2]
     return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=1)
 

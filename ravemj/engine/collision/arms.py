@@ -62,6 +62,6 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
     """Return one motion, shape (4, 4), for the links beyond an arm and their grabbed bodies, for ``world.moved``."""
     end = set(links_beyond(body.scene, arm))
-    held = [one for grab in body.grabs if grab.link in end for one in held_with(grab.body)]
-    links = [(one, link) for one in held for link in range(len(one.scene.links))]
+    held = [held_body for grab in body.grabs if grab.link in end for held_body in held_with(grab.body)]
+    links = [(held_body, link) for held_body in held for link in range(len(held_body.scene.links))]
     return dict.fromkeys([*((body, link) for link in end), *links], motion)

@@ -128,7 +128,7 @@ class Clearances:
         rows[self._moving] = np.arange(len(self._moving))
         self._rows = np.stack([rows[self._first], rows[self._second]])
         kinds = list(dict.fromkeys([Chain(()), *chains.values()]))
-        depths = np.array([[one.without(other) for other in kinds] for one in kinds])
+        depths = np.array([[kind.without(other) for other in kinds] for kind in kinds])
         numbers = np.zeros(self._model.ngeom, dtype=int)
         numbers[list(chains)] = [kinds.index(chain) for chain in chains.values()]
         first, second = numbers[self._first], numbers[self._second]
@@ -276,7 +276,7 @@ class _Supports:
 
     def __init__(self, model: mujoco.MjModel) -> None:
         kinds, size = model.geom_type, model.geom_size
-        sphere, capsule, cylinder, mesh = (kinds == one for one in (_SPHERE, _CAPSULE, _CYLINDER, _MESH))
+        sphere, capsule, cylinder, mesh = (kinds == kind for kind in (_SPHERE, _CAPSULE, _CYLINDER, _MESH))
         self._round = np.where(sphere | capsule, size[:, 0], 0.0)
         self._disc = np.where(cylinder, size[:, 0], 0.0)
         self._flat = np.where(mesh[:, None], model.geom_aabb[:, 3:], size)
@@ -303,12 +303,12 @@ class _Supports:
 
 def joints_above(model: mujoco.MjModel, body_id: int) -> list[int]:
     """Return the joints between a body and the world, the nearest first."""
-    found: list[int] = []
+    joints: list[int] = []
     while body_id:
         first, number = int(model.body_jntadr[body_id]), int(model.body_jntnum[body_id])
-        found += range(first + number - 1, first - 1, -1)
+        joints += range(first + number - 1, first - 1, -1)
         body_id = int(model.body_parentid[body_id])
-    return found
+    return joints
 
 
 def has_supports(model: mujoco.MjModel, geoms: Ints) -> bool:

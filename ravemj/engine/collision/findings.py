@@ -100,23 +100,23 @@ def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, c
 
 def _collisions(world: CollisionWorld, pairs: Pairs, wanted: Wanted, counts: Counts | None) -> list[Collision]:
     listed = wanted.listed
-    found: dict[object, tuple[Collision, list[Pair]]] = {}
+    collisions: dict[object, tuple[Collision, list[Pair]]] = {}
     for pair in world.hits(pairs):
         first, second = (GeometryOf.of(world, geom) for geom in pair)
         key = (first, second) if listed == "geometries" else (first[:2], second[:2])
-        if key not in found:
-            if found and listed == "first pair":
+        if key not in collisions:
+            if collisions and listed == "first pair":
                 break
             collision = Collision(first, second, [])
             if counts is not None and not counts(collision):
                 continue
-            found[key] = collision, []
+            collisions[key] = collision, []
         if wanted.contacts:
-            found[key][1].append(pair)
+            collisions[key][1].append(pair)
         elif listed == "first pair":
             break
-    touching = [(collision, pair) for collision, some in found.values() for pair in some]
+    touching = [(collision, pair) for collision, some in collisions.values() for pair in some]
     contacts = patches(world, [pair for _, pair in touching]) if touching else []
     for (collision, _), points in zip(touching, contacts, strict=True):
         collision.contacts.extend(points)
-    return [collision for collision, _ in found.values()]
+    return [collision for collision, _ in collisions.values()]

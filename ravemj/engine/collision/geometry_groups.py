@@ -62,9 +62,9 @@ class GeometryGroups:
         return world
 
     def _compiled(self, described: Mapping[BodyState, KinBody]) -> WorldModel:
-        found = Diagnostics()
-        model = WorldModel(self._simulation.bodies, self._simulation.view, found, described)
-        send_warnings(finding for finding in found if finding.code != "renamed")
+        findings = Diagnostics()
+        model = WorldModel(self._simulation.bodies, self._simulation.view, findings, described)
+        send_warnings(finding for finding in findings if finding.code != "renamed")
         return model
 
 

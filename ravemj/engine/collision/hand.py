@@ -124,9 +124,9 @@ class HandTests:
         """
         self._move(T_world_base, values)
         for pair in self._pairs:
-            found = self._name(pair, links, against)
-            if found is not None and self._touches(pair):
-                return found
+            name = self._name(pair, links, against)
+            if name is not None and self._touches(pair):
+                return name
         return None
 
     def contacts(
@@ -135,16 +135,16 @@ class HandTests:
         """Return the contacts of some links, with normals out of the other body, and the link at each of them."""
         self._move(T_world_base, values)
         both = [(a, b) if self._meant.link[a] >= 0 else (b, a) for a, b in self._pairs]
-        found = [pair for pair in sorted(set(both)) if self._name(pair, links, against) and self._touches(pair)]
-        points = patches(self._world, found)
-        contacts = [(contact, pair[0]) for pair, some in zip(found, points, strict=True) for contact in some]
+        touching = [pair for pair in sorted(set(both)) if self._name(pair, links, against) and self._touches(pair)]
+        points = patches(self._world, touching)
+        contacts = [(contact, pair[0]) for pair, some in zip(touching, points, strict=True) for contact in some]
         return [contact for contact, _ in contacts], [self._meant.link[geom] for _, geom in contacts]
 
     def _name(self, pair: Pair, links: frozenset[int], against: Against) -> str | None:
         """Return the name of the other body or link of a pair of geoms; None if the pair is not tested."""
         meant = self._meant
-        for one, other in (pair, (pair[1], pair[0])):
-            if meant.link[one] not in links:
+        for geom, other in (pair, (pair[1], pair[0])):
+            if meant.link[geom] not in links:
                 continue
             if against == "itself":
                 if pair in meant.within:

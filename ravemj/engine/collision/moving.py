@@ -34,14 +34,16 @@ class HeldRoots:
             carrier = int(world.model.part(body).body_ids[grab.link])
             inverse = np.empty(3), np.empty(4)
             mujoco.mju_negPose(*inverse, data.xpos[carrier], data.xquat[carrier])
-            ids = [index for one in held_with(grab.body) for index in world.model.part(one).body_ids.tolist()]
+            ids = [
+                index for held_body in held_with(grab.body) for index in world.model.part(held_body).body_ids.tolist()
+            ]
             for root in [index for index in ids if self._parents[index] == 0]:
                 place = np.empty(3), np.empty(4)
                 mujoco.mju_mulPose(*place, *inverse, data.xpos[root], data.xquat[root])
                 self._roots.append(_Root(root, carrier, model.body_pos[root], model.body_quat[root], *place))
             fixed = [index for index in ids if self._weld_ids[index] == 0]
             self._welds += zip(fixed, model.body_rootid[fixed].tolist(), strict=True)
-        self.are_late = any(one.body_id < one.carrier for one in self._roots)
+        self.are_late = any(held_root.body_id < held_root.carrier for held_root in self._roots)
 
     @block
     def on_carriers(self) -> Generator[None]:
@@ -60,8 +62,8 @@ class HeldRoots:
             self._weld_ids[index] = root
 
     def _detach(self) -> None:
-        for one in self._roots:
-            self._parents[one.body_id] = self._dof_counts[one.body_id] = 0
+        for root in self._roots:
+            self._parents[root.body_id] = self._dof_counts[root.body_id] = 0
         for index, _ in self._welds:
             self._weld_ids[index] = 0
 
@@ -139,14 +141,14 @@ def batch_distances(body: BodyState, values: Floats, among: Among) -> Floats:
 
     It is infinite if there are no pairs. The caller holds the lock, and the configuration is restored afterwards.
     """
-    found = np.full(len(values), np.inf)
+    distances = np.full(len(values), np.inf)
     with kept_in_place(body):
         for number, row in enumerate(values):
             body.set_values(row)
             world = body.simulation.collisions()
             for kind in among.kinds:
-                found[number] = world.nearest(kind(world, body, None), float(found[number]))[0]
-    return found
+                distances[number] = world.nearest(kind(world, body, None), float(distances[number]))[0]
+    return distances
 
 
 @block
@@ -168,8 +170,8 @@ def _restore(
     body: BodyState, before: SavedConfiguration, held: Sequence[tuple[BodyState, SavedConfiguration]], stamp: int
 ) -> None:
     body.restore(before)
-    for one, configuration in held:
-        one.restore(configuration)
+    for held_body, configuration in held:
+        held_body.restore(configuration)
     body.stamp = stamp
 
 
@@ -191,8 +193,10 @@ class _Chosen(NamedTuple):
     @classmethod
     def _chosen(cls, world: CollisionWorld, body: BodyState, moved: MovedBy, kinds: Sequence[_Kind]) -> "_Chosen":
         sets = [kind(world, body, moved) for kind in kinds]
-        resting = tuple(_apart_from(world, kind(world, body, None), one) for kind, one in zip(kinds, sets, strict=True))
-        pairs = np.concatenate([_as_array(one) for one in sets])
+        resting = tuple(
+            _apart_from(world, kind(world, body, None), chosen) for kind, chosen in zip(kinds, sets, strict=True)
+        )
+        pairs = np.concatenate([_as_array(chosen) for chosen in sets])
         with HeldRoots(world, body).on_carriers():  # last, since it does not put the poses back
             tested = world.detection.finds(pairs[:, 0], pairs[:, 1])
             meant, rest = pairs[tested], pairs[~tested]
@@ -297,7 +301,7 @@ class _MovingTest:
         configurations. Those with contacts are tested again, unless MuJoCo's result is already exact.
         """
         if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
-            return np.array([self(one) for one in values], dtype=bool)
+            return np.array([self(configuration) for configuration in values], dtype=bool)
         parts = (values[first : first + MOST_AT_ONCE] for first in range(0, len(values), MOST_AT_ONCE))
         contacts = [self._world.have_contacts(self._masks, self._place.qpos_of_many(part)) for part in parts]
         touching = np.concatenate(contacts)

@@ -171,12 +171,12 @@ class Pairs:
         self.first, self.second = first, second
         self._detection, self._model = detection, detection.model
         one_by_one = once or len(first) * _BODIES_PER_PAIR <= detection.body_count
-        found = np.zeros(len(first), dtype=bool) if one_by_one else detection.finds(first, second)
-        self._rest = np.flatnonzero(~found)
-        numbers = np.flatnonzero(found).tolist()
-        both = zip(first[found].tolist(), second[found].tolist(), strict=True)
+        is_detected = np.zeros(len(first), dtype=bool) if one_by_one else detection.finds(first, second)
+        self._rest = np.flatnonzero(~is_detected)
+        numbers = np.flatnonzero(is_detected).tolist()
+        both = zip(first[is_detected].tolist(), second[is_detected].tolist(), strict=True)
         self._numbers = {_ordered(*pair): number for pair, number in zip(both, numbers, strict=True)}
-        self._look = detection.overlaps(detection.masks(first[found], second[found]))
+        self._look = detection.overlaps(detection.masks(first[is_detected], second[is_detected]))
         self._spheres = _Spheres(first[self._rest], second[self._rest], detection)
         self._rest_is_welded = bool(detection.are_welded(first[self._rest], second[self._rest]).all())
         self._rest_stamp, self._rest_is_exact = -1, False
@@ -205,11 +205,11 @@ class Pairs:
     def _detect(self) -> None:
         """Find which of the pairs that MuJoCo looks at have hulls that touch."""
         geoms = self._detection.detect(self._look)
-        found = b"" if geoms is None or geoms is _NO_GEOMS else geoms.tobytes()
-        if geoms is not None and found != self._found:
+        chosen = b"" if geoms is None or geoms is _NO_GEOMS else geoms.tobytes()
+        if geoms is not None and chosen != self._found:
             numbers, touching = self._numbers, {_ordered(*pair) for pair in geoms.tolist()}
             self._touching = sorted(numbers[pair] for pair in touching if pair in numbers)
-            self._found = found
+            self._found = chosen
         self._are_too_many = geoms is None
         self._stamp = self._model.stamp  # last, as an interrupt may have come before
 

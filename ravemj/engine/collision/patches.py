@@ -30,36 +30,36 @@ def patches(world: CollisionWorld, pairs: Sequence[Pair]) -> list[list[Contact]]
     Pairs for which MuJoCo finds none have the point of ``ShapeTests.contact``. The caller holds the lock.
     """
     convex = [pair for pair in pairs if not any(map(world.shapes.is_concave, pair))]
-    found: dict[Pair, list[Contact]] = {}
+    contacts: dict[Pair, list[Contact]] = {}
     if convex and not world.detection.is_overruled:
         bodies = {int(world.model.model.geom_bodyid[geom]) for pair in convex for geom in pair}
         with _all_separate(world, sorted(bodies)) as masks:
             world.detection.detect_near(world.detection.overlaps(masks))
-        found = present(world, convex)
-    return [_of_pair(world, pair, found.get(ordered_pair(*pair), [])) for pair in pairs]
+        contacts = present(world, convex)
+    return [_of_pair(world, pair, contacts.get(ordered_pair(*pair), [])) for pair in pairs]
 
 
-def _of_pair(world: CollisionWorld, pair: Pair, found: list[Contact]) -> list[Contact]:
+def _of_pair(world: CollisionWorld, pair: Pair, contacts: list[Contact]) -> list[Contact]:
     if any(map(world.shapes.is_concave, pair)):
         return spread(world.shapes.contacts_of_triangles(*pair))
-    return found or [world.shapes.contact(*pair)]
+    return contacts or [world.shapes.contact(*pair)]
 
 
 def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Contact]]:
     """Return the contacts that MuJoCo has found last, of some pairs; the keys have the smaller geom first."""
     wanted = {ordered_pair(*pair): pair for pair in pairs}
-    found: dict[Pair, list[Contact]] = {}
+    by_pair: dict[Pair, list[Contact]] = {}
     data = world.model.data
     if not data.ncon:
-        return found
+        return by_pair
     contacts = data.contact
     rows = zip(contacts.geom.tolist(), contacts.pos.copy(), contacts.frame[:, :3].copy(), contacts.dist, strict=True)
     for (first, second), position, normal, distance in rows:
         key = ordered_pair(first, second)
         if key in wanted:  # MuJoCo's normal points from its first geom to its second
             away = normal if wanted[key][0] == second else -normal
-            found.setdefault(key, []).append(Contact(position, away, max(-float(distance), 0.0)))
-    return {key: spread(some) for key, some in found.items()}
+            by_pair.setdefault(key, []).append(Contact(position, away, max(-float(distance), 0.0)))
+    return {key: spread(some) for key, some in by_pair.items()}
 
 
 def spread(contacts: list[Contact]) -> list[Contact]:

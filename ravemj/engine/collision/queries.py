@@ -108,13 +108,13 @@ def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
 def _within(
     world: CollisionWorld, body: BodyState, asked: frozenset[Pair] | None = None
 ) -> Iterable[tuple[Ints, Ints]]:
-    tested = [link for link, one in enumerate(body.scene.links) if not one.self_collision_ignored]
+    tested = [link for link, tested_link in enumerate(body.scene.links) if not tested_link.self_collision_ignored]
     geoms = {link: world.geoms_of_link(body, link) for link in tested}
     held = [(grab, _held(world, grab.body)) for grab in body.grabs]
-    found = [(a, b, (geoms[a], geoms[b])) for a, b in tested_pairs(world, body) if a in geoms and b in geoms]
-    found += [(a, grab.link, (geoms[a], other)) for grab, other in held for a in tested if a not in grab.ignored]
-    found += [(a.link, b.link, (one, other)) for (a, one), (b, other) in combinations(held, 2) if a.link != b.link]
-    for first, second, sets in found:
+    parts = [(a, b, (geoms[a], geoms[b])) for a, b in tested_pairs(world, body) if a in geoms and b in geoms]
+    parts += [(a, grab.link, (geoms[a], other)) for grab, other in held for a in tested if a not in grab.ignored]
+    parts += [(a.link, b.link, (geom, other)) for (a, geom), (b, other) in combinations(held, 2) if a.link != b.link]
+    for first, second, sets in parts:
         if asked is None or ordered_pair(first, second) in asked:
             yield cross(*sets)
     if asked is None:
@@ -158,7 +158,7 @@ def touching_pairs(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:
     """Return the indices of a body's links that touch or overlap another body, enabled or not."""
-    pairs = world.make_pairs(*cross(*(world.geoms_of_body(one, enabled_only=False) for one in (holder, body))))
+    pairs = world.make_pairs(*cross(*(world.geoms_of_body(either, enabled_only=False) for either in (holder, body))))
     return frozenset(world.owner(first)[1] for first, _ in world.hits(pairs))
 
 
@@ -194,12 +194,12 @@ def _geoms(world: CollisionWorld, thing: BodyState | LinkOf, links: Links = None
 
 def _held(world: CollisionWorld, body: BodyState) -> Ints:
     """Return the geoms of a body and its grabbed bodies."""
-    return np.concatenate([world.geoms_of_body(one) for one in held_with(body)])
+    return np.concatenate([world.geoms_of_body(held_body) for held_body in held_with(body)])
 
 
 def held_with(body: BodyState) -> list[BodyState]:
     """Return a body and its grabbed bodies, recursively."""
-    return [body, *(one for grab in body.grabs for one in held_with(grab.body))]
+    return [body, *(held_body for grab in body.grabs for held_body in held_with(grab.body))]
 
 
 def _without(world: CollisionWorld, geoms: Ints, bodies: frozenset[BodyState], links: frozenset[LinkOf]) -> Ints:
@@ -217,7 +217,7 @@ def touching_region(body: BodyState) -> Bounds | None:
     None if there are no other shapes.
     """
     attached = body.simulation.attached(body)
-    others = _boxes(one for one in body.simulation.bodies if one not in attached)
+    others = _boxes(other_body for other_body in body.simulation.bodies if other_body not in attached)
     if not others:
         return None
     origin, poses = body.link_transform(0)[:3, 3], body.link_transforms()
@@ -229,8 +229,8 @@ def touching_region(body: BodyState) -> Bounds | None:
 
 
 def _boxes(bodies: Iterable[BodyState]) -> list[Bounds]:
-    found = [body.bounds.at(body.link_transforms(), [True] * len(body.scene.links)) for body in bodies]
-    return [box for box in found if box is not None]
+    boxes = [body.bounds.at(body.link_transforms(), [True] * len(body.scene.links)) for body in bodies]
+    return [box for box in boxes if box is not None]
 
 
 def _distance(box: Bounds, point: Floats) -> float:

@@ -79,12 +79,12 @@ class RayCaster:
         """
         self._aim_at(geoms)
         count = len(directions)
-        found, distances = np.empty(count, dtype=np.int32), np.empty(count)
+        hit_geoms, distances = np.empty(count, dtype=np.int32), np.empty(count)
         rays, flat = np.ascontiguousarray(directions).reshape(-1), None if normals is None else normals.reshape(-1)
         mujoco.mj_multiRay(
-            self._model, self._data, start, rays, _GROUPS, True, -1, found, distances, flat, count, reach
+            self._model, self._data, start, rays, _GROUPS, True, -1, hit_geoms, distances, flat, count, reach
         )
-        return distances, found
+        return distances, hit_geoms
 
     def first_hits(
         self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
@@ -100,12 +100,12 @@ class RayCaster:
             Whether each ray hits, shape (n,); and position and outward normal of each hit, shape (n, 6), zeros without
             a hit.
         """
-        found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
+        hits, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
         if len(rays) == 1:
             hit = self.first_hit(rays[0, :3], rays[0, 3:], geoms)
             if hit is not None and not (front_facing_only and hit.normal @ rays[0, 3:] >= 0):
-                found[0], points[0, :3], points[0, 3:] = True, hit.position, hit.normal
-            return found, points
+                hits[0], points[0, :3], points[0, 3:] = True, hit.position, hit.normal
+            return hits, points
         long = np.flatnonzero(np.linalg.norm(rays[:, 3:], axis=1) > _SHORTEST)
         for some in _of_one_start(rays, long) if len(long) else ():
             start, directions, normals = rays[some[0], :3], rays[some, 3:], np.zeros((len(some), 3))
@@ -114,10 +114,10 @@ class RayCaster:
             if front_facing_only:
                 is_hit &= (normals * directions).sum(axis=1) < 0
             chosen = some[is_hit]
-            found[chosen] = True
+            hits[chosen] = True
             points[chosen, :3] = start + distances[is_hit, None] * directions[is_hit]
             points[chosen, 3:] = normals[is_hit]
-        return found, points
+        return hits, points
 
 
 def _of_one_start(rays: Floats, chosen: Ints) -> list[Ints]:

@@ -86,8 +86,8 @@ class ShapeTests:
         ours, theirs = (first, second) if triangles.is_concave(first) else (second, first)
         pairs = list(triangles.overlaps(ours, theirs, TOUCHING))
         points = [(distance, segment if ours == first else np.roll(segment, 3)) for distance, segment in pairs]
-        found = [self._contact(first, second, max(-distance, 0.0), segment) for distance, segment in points]
-        return found or [self.contact(first, second)]
+        contacts = [self._contact(first, second, max(-distance, 0.0), segment) for distance, segment in points]
+        return contacts or [self.contact(first, second)]
 
     def _contact(self, first: int, second: int, depth: float, segment: Floats) -> Contact:
         """Return the contact of which the deepest points of both geoms are given, in one row [m], shape (6,)."""

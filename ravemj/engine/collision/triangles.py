@@ -92,10 +92,10 @@ class TriangleTests:
 
     def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
         """Yield signed distance [m] and ``segment`` of each triangle that touches a solid or one of another mesh."""
-        found, place = fcl.CollisionResult(), _OTHER_TRIANGLE
+        result, place = fcl.CollisionResult(), _OTHER_TRIANGLE
         if self._is_mesh(other):
-            fcl.collide(self._placed(mesh), self._placed(other), _ALL, found)
-            candidates = self._pairs(mesh, other, found.contacts)
+            fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)
+            candidates = self._pairs(mesh, other, result.contacts)
         else:
             candidates, place = self._triangles_of(mesh).near(*self._place_solid(mesh, other), touching), _SOLID
         for candidate in candidates:
@@ -110,7 +110,7 @@ class TriangleTests:
         rotation, position = self._pose_in(mesh, other)
         ours = self._triangles_of(mesh).corners[pairs[:, 0]]
         theirs = self._triangles_of(other).corners[pairs[:, 1]] @ rotation.T + position
-        return ((-np.inf, one, two) for one, two in zip(ours, theirs, strict=True))
+        return ((-np.inf, first, two) for first, two in zip(ours, theirs, strict=True))
 
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
         """Put a solid into the scratch model, and return its bounding box along the axes of the mesh.
@@ -137,16 +137,16 @@ class TriangleTests:
 
         Triangles are measured against the geom ``place`` of the scratch model, until one is as near as ``enough`` [m].
         """
-        best, found = limit, np.zeros(6)
+        best, nearest = limit, np.zeros(6)
         for bound, triangle, other in candidates:
             if bound > best:
                 break
             self._write(_TRIANGLE, triangle)
             if other is not None:
                 self._write(_OTHER_TRIANGLE, other)
-            distance = mujoco.mj_geomDistance(self._scratch, self._scratch_data, _TRIANGLE, place, best, found)
+            distance = mujoco.mj_geomDistance(self._scratch, self._scratch_data, _TRIANGLE, place, best, nearest)
             if distance < best:
-                best, segment[:] = distance, found
+                best, segment[:] = distance, nearest
                 if best <= enough:
                     break
         if best < limit:

@@ -83,11 +83,11 @@ class CollisionWorld:
 
     def geoms_of_group(self, body: BodyState) -> Ints:
         """Return the collision geoms of a body and all bodies connected to it by grabs."""
-        return self.kept(body, lambda: np.concatenate([self.geoms_of_body(one) for one in self.group(body)]))
+        return self.kept(body, lambda: np.concatenate([self.geoms_of_body(member) for member in self.group(body)]))
 
     def geoms_of_others(self, body: BodyState) -> Ints:
         """Return the collision geoms of the bodies not connected to a body by grabs."""
-        numbers = [self._number[one] for one in self.group(body) if one in self._number]
+        numbers = [self._number[member] for member in self.group(body) if member in self._number]
         return np.flatnonzero(self._collides & ~np.isin(self._owner, numbers))
 
     def owner(self, geom: int) -> tuple[BodyState, int]:
@@ -146,7 +146,7 @@ class CollisionWorld:
         if self._model.ngeom**2 >= 2 * MOST_PAIRS:
             return masks, False
         pairs = np.triu_indices(self._model.ngeom, 1)
-        everything, some = (int(self.detection.finds(*pairs, one).sum()) for one in (self.detection.all, masks))
+        everything, some = (int(self.detection.finds(*pairs, tested).sum()) for tested in (self.detection.all, masks))
         if everything < _WORTH_MASKS * some:
             masks, some = self.detection.all, everything
         return masks, some == len(first) and not self._has_concave
@@ -199,15 +199,15 @@ class CollisionWorld:
 
     def nearest(self, pairs: Pairs, limit: float) -> tuple[float, tuple[int, int] | None]:
         """Return the smallest signed distance of the pairs [m] and the pair; the limit and None if none is nearer."""
-        gaps, found = pairs.gaps(), None
+        gaps, nearest = pairs.gaps(), None
         for number in np.argsort(gaps, kind="stable"):
             if gaps[number] >= limit:
                 break
             pair = pairs.geoms(number)
             distance = self.shapes.distance(*pair, limit)
             if distance < limit:
-                limit, found = distance, pair
-        return limit, found
+                limit, nearest = distance, pair
+        return limit, nearest
 
     def count_within(self, pairs: Pairs, tolerance: float) -> int:
         """Return the number of pairs closer than a tolerance [m]."""

@@ -70,7 +70,8 @@ class Motors:
         All three have the same shape (coordinates, ...).
         """
         armature, coulomb, viscous = (
-            one.reshape(-1, *(1,) * (speeds.ndim - 1)) for one in (self._armature, self._coulomb, self._viscous)
+            coefficient.reshape(-1, *(1,) * (speeds.ndim - 1))
+            for coefficient in (self._armature, self._coulomb, self._viscous)
         )
         direction = np.where(np.abs(speeds) > AT_REST, np.sign(speeds), 0.0)
         return armature * accelerations + coulomb * direction + viscous * speeds

@@ -68,11 +68,12 @@ class CouplingMap:
         dofs = np.flatnonzero(kinematics.qpos_indices != NO_QPOS)
         coordinates = np.array([tree.of_qpos[qpos] for qpos in kinematics.qpos_indices[dofs].tolist()], dtype=int)
         self._one_to_one = kinematics.dof, tree.count, dofs, coordinates
-        self._spherical = [(one, tree.of_qpos[one.qpos.start]) for one in kinematics.spherical]
+        self._spherical = [(spherical, tree.of_qpos[spherical.qpos.start]) for spherical in kinematics.spherical]
         self._mimic = [
-            (one.joint, self._coordinate(tree, one.joint), _Partials(one.expression)) for one in kinematics.mimic.joints
+            (mimic.joint, self._coordinate(tree, mimic.joint), _Partials(mimic.expression))
+            for mimic in kinematics.mimic.joints
         ]
-        is_affine = all(one.expression.affine is not None for one in kinematics.mimic.joints)
+        is_affine = all(mimic.expression.affine is not None for mimic in kinematics.mimic.joints)
         self.constant: Coupling | None = None  # the coupling, if it is constant
         if is_affine and not self._spherical:
             self.constant = self._at(np.zeros(kinematics.dof), second=False)
@@ -121,8 +122,8 @@ class _Partials:
 
     @cached_property
     def _second(self) -> "dict[tuple[str, str], Expression]":
-        pairs = [(one, other) for one in self.names for other in self.names]
-        return {(one, other): self._first[one].derivative(other) for one, other in pairs}
+        pairs = [(first, other) for first in self.names for other in self.names]
+        return {(first, other): self._first[first].derivative(other) for first, other in pairs}
 
     def chain(
         self,
@@ -141,10 +142,10 @@ class _Partials:
                 gradient[dof] = gradient.get(dof, 0.0) + slope * value
             for pair, value in ({} if hessians is None else hessians[_index(name)]).items():
                 hessian[pair] = hessian.get(pair, 0.0) + slope * value
-        for one, other in self._second if hessians is not None else ():
-            if one in moving and other in moving:
-                curve = _value(self._second[one, other], named, values)
-                for i, first in gradients[_index(one)].items():
+        for first_name, other in self._second if hessians is not None else ():
+            if first_name in moving and other in moving:
+                curve = _value(self._second[first_name, other], named, values)
+                for i, first in gradients[_index(first_name)].items():
                     for j, then in gradients[_index(other)].items():
                         hessian[i, j] = hessian.get((i, j), 0.0) + curve * first * then
         return gradient, hessian
@@ -229,5 +230,5 @@ def _crossing(vector: Floats) -> Floats:
     return np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]])
 
 
-def _product(one: Floats, other: Floats) -> Floats:
-    return np.einsum("ij...,jk...->ik...", one, other)
+def _product(first: Floats, other: Floats) -> Floats:
+    return np.einsum("ij...,jk...->ik...", first, other)

@@ -117,9 +117,11 @@ class JointVelocities:
 
     def _spherical_velocity(self, joint: Joint, turning: Floats) -> Floats:
         """Return the rate of a rotation vector, for an angular velocity in the parent's axes."""
-        found = next((one for one in self._kinematics.spherical if one.joint.child == joint.child), None)
-        if found is None:
+        spherical = next(
+            (candidate for candidate in self._kinematics.spherical if candidate.joint.child == joint.child), None
+        )
+        if spherical is None:
             return turning
-        vector = np.array(found.to_values(self._kinematics.data.qpos[found.qpos].tolist()))
+        vector = np.array(spherical.to_values(self._kinematics.data.qpos[spherical.qpos].tolist()))
         rate, _ = rotation_rate(vector)
         return np.linalg.inv(rate.T) @ turning  # the left Jacobian is the right one's transpose

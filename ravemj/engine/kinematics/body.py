@@ -167,11 +167,13 @@ class BodyKinematics:
         """Find the mimic joints, and those among them that are affine in a DOF."""
         # A body without DOFs has no mimic joints: OpenRAVE never sets a value there.
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
-        self._mimic_qpos = {one.joint: places[0] for one in self.mimic.joints if (places := self.joint_qpos[one.joint])}
+        self._mimic_qpos = {
+            mimic.joint: places[0] for mimic in self.mimic.joints if (places := self.joint_qpos[mimic.joint])
+        }
         self._multiples = [
-            (self.first_dofs[one.multiple.leader], one.multiple, self._mimic_qpos[one.joint])
-            for one in self.mimic.joints
-            if one.joint in self._mimic_qpos and one.multiple and one.multiple.leader < len(self.first_dofs)
+            (self.first_dofs[mimic.multiple.leader], mimic.multiple, self._mimic_qpos[mimic.joint])
+            for mimic in self.mimic.joints
+            if mimic.joint in self._mimic_qpos and mimic.multiple and mimic.multiple.leader < len(self.first_dofs)
         ]
         self._are_multiples = len(self._multiples) == len(self.mimic.joints)
 
@@ -235,11 +237,11 @@ class BodyKinematics:
             return
         known = self.first_values(values)
         self.mimic.evaluate(known, clamp=clamp)
-        for one in self.mimic.joints:
-            if one.joint in self._mimic_qpos:
-                self.qpos[self._mimic_qpos[one.joint]] = known[one.joint]
+        for mimic in self.mimic.joints:
+            if mimic.joint in self._mimic_qpos:
+                self.qpos[self._mimic_qpos[mimic.joint]] = known[mimic.joint]
             else:
-                self._passive_values[one.joint - len(self.first_dofs)][0] = known[one.joint]
+                self._passive_values[mimic.joint - len(self.first_dofs)][0] = known[mimic.joint]
 
     def first_values(self, values: Floats) -> list[float]:
         """Return the first value of each joint, active, then passive ones, for given DOF values."""

@@ -60,7 +60,7 @@ def _scene(compiled: CompiledModel, given: Attributes, context: Context) -> Scen
     reader, model = TreeReader(compiled), compiled.model
     content, touching = own_scene(reader, context.diagnostics)
     own = own_bodies(reader, touching, context.diagnostics)
-    roots = {root for _, found in own for root in found}
+    roots = {root for _, own_roots in own for root in own_roots}
     trees = [tree for tree in reader.read() if tree.root not in roots]
     if not (trees or own or (content is not None and content.sensors)):
         raise SourceError("there is no body in it", compiled.document.tags[0].source)
@@ -84,5 +84,5 @@ def _scene(compiled: CompiledModel, given: Attributes, context: Context) -> Scen
     if content is None:
         return Scene(tuple(bodies), view, gravity)
     own_gravity = _GRAVITY if content.gravity is None else content.gravity
-    is_same = all(abs(one - other) < 1e-9 for one, other in zip(gravity, own_gravity, strict=True))
+    is_same = all(abs(component - other) < 1e-9 for component, other in zip(gravity, own_gravity, strict=True))
     return replace(content, bodies=tuple(bodies), gravity=content.gravity if is_same else gravity)

@@ -55,7 +55,7 @@ def compile_document(document: MjcfDocument) -> CompiledModel:
             model = spec.compile()
         except (ValueError, RuntimeError, mujoco.FatalError) as error:
             raise _refusal(str(error), document) from None
-    return CompiledModel(document, spec, model, tuple(str(one.message) for one in complaints))
+    return CompiledModel(document, spec, model, tuple(str(complaint.message) for complaint in complaints))
 
 
 def _strip(spec: mujoco.MjSpec, document: MjcfDocument) -> None:
@@ -88,11 +88,11 @@ def _place(message: str, document: MjcfDocument) -> Source:
     if name is not None and name[1]:
         named = [tag for tag in document.tags if tag.attributes.get("name") == name[1]]
         exact = [tag.source for tag in named if tag.source.line == number]
-        found = exact or [tag.source for tag in named]
-        if found:
-            return found[0]
+        places = exact or [tag.source for tag in named]
+        if places:
+            return places[0]
     if element is not None:
-        exact = [one.source for one in document.tags if one.source.line == number and one.name == element[1]]
+        exact = [tag.source for tag in document.tags if tag.source.line == number and tag.name == element[1]]
         here = exact or here
     return here[0] if here else Source(document.path, number)
 

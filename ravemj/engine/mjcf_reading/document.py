@@ -47,7 +47,9 @@ def tags_of(text: str, path: str, included_from: Source | None = None) -> Iterat
             continue
         line += text.count("\n", position, match.start())
         position = match.start()
-        attributes = {name: html.unescape(one or other) for name, one, other in _ATTRIBUTE.findall(match[3])}
+        attributes = {
+            name: html.unescape(double_quoted or other) for name, double_quoted, other in _ATTRIBUTE.findall(match[3])
+        }
         yield StartTag(match[2], attributes, Source(path, line, included_from))
 
 
@@ -173,7 +175,7 @@ class MjcfDocument:
                 continue
             self.files.setdefault(base_name(name), tag)
             beside = [os.path.dirname(self.path), os.path.dirname(tag.source.file)]
-            places = [os.path.join(one, folders.get(key, "")) for one in beside for key in _FOLDERS[tag.name]]
+            places = [os.path.join(folder, folders.get(key, "")) for folder in beside for key in _FOLDERS[tag.name]]
             path = self._existing(name, *places, *beside)
             if path is None:
                 if self.access.is_dropped:  # MuJoCo may find it elsewhere

@@ -39,7 +39,7 @@ def add_followers(model: mujoco.MjModel, trees: Sequence[BodyTree], diagnostics:
         tree = next((tree for tree in trees if follower.joint in tree.joints), None)
         if tree is None:  # a body restored from text, which has its equations
             continue
-        kinds = {int(model.jnt_type[one]) for one in (follower.joint, *follower.leaders)}
+        kinds = {int(model.jnt_type[joint]) for joint in (follower.joint, *follower.leaders)}
         if not tree.joints.keys() >= {*follower.leaders} or not kinds <= _ONE_AXIS or _leads_back(follower, leaders):
             lost += 1
             continue
@@ -99,8 +99,8 @@ def _joints_of(model: mujoco.MjModel, tendon: int) -> dict[int, float] | None:
     wraps = range(first, first + int(model.tendon_num[tendon]))
     if any(model.wrap_type[wrap] != mujoco.mjtWrap.mjWRAP_JOINT for wrap in wraps):
         return None
-    found = {int(model.wrap_objid[wrap]): float(model.wrap_prm[wrap]) for wrap in wraps}
-    return {joint: value for joint, value in found.items() if value}
+    by_joint = {int(model.wrap_objid[wrap]): float(model.wrap_prm[wrap]) for wrap in wraps}
+    return {joint: value for joint, value in by_joint.items() if value}
 
 
 def _follow(model: mujoco.MjModel, tree: BodyTree, follower: _Follower) -> None:

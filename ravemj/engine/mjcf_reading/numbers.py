@@ -16,10 +16,10 @@ _ROUNDING = 1e-12
 
 def as_written(written: ArrayLike, compiled: ArrayLike) -> list[float]:
     """Return written values if they equal the compiled ones up to rounding, else the compiled ones."""
-    given, found = np.asarray(written, np.float64), np.asarray(compiled, np.float64)
-    scale = max(1.0, float(np.abs(found).max(initial=0.0)))
-    is_same = given.shape == found.shape and bool((np.abs(given - found) <= _ROUNDING * scale).all())
-    return [float(part) + 0.0 for part in (given if is_same else found)]
+    given, exact = np.asarray(written, np.float64), np.asarray(compiled, np.float64)
+    scale = max(1.0, float(np.abs(exact).max(initial=0.0)))
+    is_same = given.shape == exact.shape and bool((np.abs(given - exact) <= _ROUNDING * scale).all())
+    return [float(part) + 0.0 for part in (given if is_same else exact)]
 
 
 def vector(numbers: Iterable[float]) -> Vec3:

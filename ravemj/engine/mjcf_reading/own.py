@@ -35,7 +35,7 @@ def own_bodies(
     reader: TreeReader, touching: Sequence[Pair], diagnostics: Diagnostics
 ) -> list[tuple[KinBody, set[int]]]:
     """Return the bodies in texts, each with MuJoCo's indices of its root bodies."""
-    found: list[tuple[KinBody, set[int]]] = []
+    bodies: list[tuple[KinBody, set[int]]] = []
     for text in reader.compiled.spec.texts:
         if not text.name.startswith(PREFIX):
             continue
@@ -48,8 +48,8 @@ def own_bodies(
             message = f"the text '{text.name}' is left out, and the body is read without it: {error}"
             diagnostics.warn("damaged-text", message, source, "convert the model anew")
             continue
-        found.append((own.read(), own.roots))
-    return found
+        bodies.append((own.read(), own.roots))
+    return bodies
 
 
 def own_scene(reader: TreeReader, diagnostics: Diagnostics) -> tuple[Scene | None, tuple[Pair, ...]]:
@@ -66,10 +66,10 @@ def own_scene(reader: TreeReader, diagnostics: Diagnostics) -> tuple[Scene | Non
 
 
 def _near(first: ArrayLike, second: ArrayLike, tolerance: float = _NEAR) -> bool:
-    one, other = np.asarray(first, np.float64), np.asarray(second, np.float64)
-    if one.shape != other.shape:
+    numbers, other = np.asarray(first, np.float64), np.asarray(second, np.float64)
+    if numbers.shape != other.shape:
         return False
-    return bool((np.abs(one - other) <= tolerance * max(1.0, float(np.abs(one).max(initial=0.0)))).all())
+    return bool((np.abs(numbers - other) <= tolerance * max(1.0, float(np.abs(numbers).max(initial=0.0)))).all())
 
 
 def _same_pose(first: Pose, second: Pose) -> bool:
@@ -119,8 +119,8 @@ class _OwnBody:
                 raise ValueError(f"'{self._names.links[link]}' hangs on another body")
             expected = () if joint is None else self._names.joints[joint]
             first, count = int(model.body_jntadr[number]), int(model.body_jntnum[number])
-            moving = [one for one in range(first, first + count) if model.jnt_type[one] != FREE]
-            if [model.joint(one).name for one in moving] != list(expected):
+            moving = [joint_id for joint_id in range(first, first + count) if model.jnt_type[joint_id] != FREE]
+            if [model.joint(joint_id).name for joint_id in moving] != list(expected):
                 raise ValueError(f"'{self._names.links[link]}' has other joints")
         below = {number for number in range(1, model.nbody) if int(model.body_rootid[number]) in self.roots}
         if below != set(self._bodies):
@@ -140,10 +140,12 @@ class _OwnBody:
         )
         body = _with_expressions(self._with_tools(body))
         moved = any(
-            not _same_pose(one.T_parent_child, other.T_parent_child)
-            or not _near([*one.anchor, *one.axes[0].direction], [*other.anchor, *other.axes[0].direction])
-            for one, other in zip(self._body.all_joints, joints, strict=True)
-        ) or any(one.T_world_link is not other.T_world_link for one, other in zip(self._body.links, links, strict=True))
+            not _same_pose(joint.T_parent_child, other.T_parent_child)
+            or not _near([*joint.anchor, *joint.axes[0].direction], [*other.anchor, *other.axes[0].direction])
+            for joint, other in zip(self._body.all_joints, joints, strict=True)
+        ) or any(
+            link.T_world_link is not other.T_world_link for link, other in zip(self._body.links, links, strict=True)
+        )
         if moved:
             poses = poses_at(body, [[axis.value for axis in joint.axes] for joint in joints])
             placed = (replace(link, T_world_link=there) for link, there in zip(body.links, poses, strict=True))
@@ -164,14 +166,16 @@ class _OwnBody:
             link = replace(link, T_world_link=self._pose(index))
         return link
 
-    def _inertial(self, link: Link, found: Inertial) -> Inertial:
+    def _inertial(self, link: Link, compiled: Inertial) -> Inertial:
         own = link.inertial
         if own is UNKNOWN:
-            return found
+            return compiled
         legal = legal_inertial(own)
         scale = max(float(np.abs(legal.inertia).max()), 1e-12)
-        is_same = _near(legal.com, found.com) and abs(legal.mass - found.mass) <= _NEAR * max(legal.mass, 1e-12)
-        return own if is_same and _near(np.array(legal.inertia) / scale, np.array(found.inertia) / scale) else found
+        is_same = _near(legal.com, compiled.com) and abs(legal.mass - compiled.mass) <= _NEAR * max(legal.mass, 1e-12)
+        return (
+            own if is_same and _near(np.array(legal.inertia) / scale, np.array(compiled.inertia) / scale) else compiled
+        )
 
     def _geometries(self, index: int, link: Link) -> tuple[Geometry, ...]:
         """Return the shapes of a link: those of the text if they match the geoms, else the geoms."""
@@ -184,7 +188,7 @@ class _OwnBody:
             for geometry in link.geometries:
                 writer.write(geometry, out)
             geoms = zip(out.geoms, range(first, first + count), strict=False)
-            is_same = len(out.geoms) == count and all(self._is_geom(one, geom) for one, geom in geoms)
+            is_same = len(out.geoms) == count and all(self._is_geom(solid, geom) for solid, geom in geoms)
         if is_same:
             return link.geometries
         built = LinkBuilder(link.name, link.source)
@@ -251,10 +255,10 @@ class _OwnBody:
         """Return the adjacent pairs, updated for added and removed excludes."""
         links = {number: link for link, number in enumerate(self._bodies)}
         expected = {ordered_pair(*(self._reader.number_of(name) for name in pair)) for pair in self._names.excludes}
-        pairs = {ordered_pair(*divmod(int(one), 1 << 16)) for one in self._model.exclude_signature}
+        pairs = {ordered_pair(*divmod(int(signature), 1 << 16)) for signature in self._model.exclude_signature}
         inside = {pair for pair in pairs if pair[0] in links and pair[1] in links}
-        added = sorted(ordered_pair(*(links[one] for one in pair)) for pair in inside - expected - self._touching)
-        lost = {ordered_pair(*(links[one] for one in pair)) for pair in expected - inside}
+        added = sorted(ordered_pair(*(links[link] for link in pair)) for pair in inside - expected - self._touching)
+        lost = {ordered_pair(*(links[link] for link in pair)) for pair in expected - inside}
         return (*(pair for pair in self._body.adjacent if ordered_pair(*pair) not in lost), *added)
 
     def _with_tools(self, body: KinBody) -> KinBody:

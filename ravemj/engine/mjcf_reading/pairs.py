@@ -15,18 +15,18 @@ def add_adjacent(model: mujoco.MjModel, tree: BodyTree, colliding: set[int]) -> 
     by a joint are adjacent anyway.
     """
     geoms = {body: _geoms(model, body, colliding) for body in tree.links}
-    solid = [body for body, found in geoms.items() if found]
-    signatures = {int(one) for one in model.exclude_signature}
+    solid = [body for body, own_geoms in geoms.items() if own_geoms]
+    signatures = {int(signature) for signature in model.exclude_signature}
     named = _named_pairs(model)
     joined = {ordered_pair(*joint.links) for joint in tree.builder.joints}
-    masks = {body: _masks(model, found) for body, found in geoms.items()}
-    for one, other in combinations(solid, 2):
-        pair = ordered_pair(tree.links[one], tree.links[other])
-        if pair in joined or ordered_pair(one, other) in named:
+    masks = {body: _masks(model, own_geoms) for body, own_geoms in geoms.items()}
+    for first_body, other in combinations(solid, 2):
+        pair = ordered_pair(tree.links[first_body], tree.links[other])
+        if pair in joined or ordered_pair(first_body, other) in named:
             continue
-        low, high = ordered_pair(one, other)
+        low, high = ordered_pair(first_body, other)
         excluded = (low << 16) + high in signatures or (high << 16) + low in signatures
-        if excluded or _are_filtered(model, one, other) or not _meet(masks[one], masks[other]):
+        if excluded or _are_filtered(model, first_body, other) or not _meet(masks[first_body], masks[other]):
             tree.builder.adjacent.append(pair)
 
 
@@ -40,7 +40,7 @@ def _named_pairs(model: mujoco.MjModel) -> set[tuple[int, int]]:
     bodies = zip(
         model.geom_bodyid[model.pair_geom1].tolist(), model.geom_bodyid[model.pair_geom2].tolist(), strict=True
     )
-    return {ordered_pair(one, other) for one, other in bodies}
+    return {ordered_pair(body, other) for body, other in bodies}
 
 
 def _masks(model: mujoco.MjModel, geoms: list[int]) -> set[tuple[int, int]]:
@@ -51,9 +51,9 @@ def _meet(first: set[tuple[int, int]], second: set[tuple[int, int]]) -> bool:
     return any(type1 & affinity2 or type2 & affinity1 for type1, affinity1 in first for type2, affinity2 in second)
 
 
-def _are_filtered(model: mujoco.MjModel, one: int, other: int) -> bool:
+def _are_filtered(model: mujoco.MjModel, body: int, other: int) -> bool:
     """Return whether two bodies are fixed to each other, or one is a child of the other's weld group."""
-    first, second = int(model.body_weldid[one]), int(model.body_weldid[other])
+    first, second = int(model.body_weldid[body]), int(model.body_weldid[other])
     if first == second:
         return True
     above = [int(model.body_weldid[model.body_parentid[weld]]) for weld in (first, second)]

@@ -164,11 +164,11 @@ class GeomReader:
     def _shape(self, index: int) -> tuple[Shape | None, Pose, MeshFile | None]:
         """Return the shape of a geom, its pose in the link, and its file; None as shape of unsupported types."""
         model, written = self._model, self._written[index]
-        found = model.geom_pos[index], model.geom_quat[index]
+        compiled = model.geom_pos[index], model.geom_quat[index]
         kind, size = int(model.geom_type[index]), vector(model.geom_size[index])
         if kind in {_Type.mjGEOM_MESH, _Type.mjGEOM_SDF}:
-            return self._mesh(index, Pose(vector(found[0]), quaternion(found[1])))
-        T_link_geom = pose((written.pos, written.quat), found)
+            return self._mesh(index, Pose(vector(compiled[0]), quaternion(compiled[1])))
+        T_link_geom = pose((written.pos, written.quat), compiled)
         if kind == _Type.mjGEOM_PLANE:
             T_link_geom @= Pose((0.0, 0.0, -_THICKNESS))
         if kind == _Type.mjGEOM_HFIELD:

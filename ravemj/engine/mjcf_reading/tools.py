@@ -45,13 +45,13 @@ def add_manipulators(reader: TreeReader, trees: Sequence[BodyTree], context: Con
 
 def _robot_tree(tree: BodyTree) -> RobotTree:
     """Convert links and joints to those of a URDF, for guessing arms."""
-    links, found = tree.builder.links, list[UrdfJoint]()
+    links, joints = tree.builder.links, list[UrdfJoint]()
     for joint in tree.builder.joints:
         parent, child = (links[index].name for index in joint.links)
         kind = "revolute" if joint.enabled else "fixed"
         element = Element("joint", "joint", {}, joint.source)
-        found.append(UrdfJoint(element, joint.name, kind, parent, child, joint.T_first_second))
-    robot = RobotTree({link.name: link.source for link in links}, found, {})
+        joints.append(UrdfJoint(element, joint.name, kind, parent, child, joint.T_first_second))
+    robot = RobotTree({link.name: link.source for link in links}, joints, {})
     robot.followers |= {joint.name for joint in tree.builder.joints if joint.equations is not None}
     return robot
 

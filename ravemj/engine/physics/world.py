@@ -183,14 +183,14 @@ class Physics:
 
     def _touches(self) -> list[tuple[tuple[int, int], Floats, Floats]]:
         """Return for each contact its two bodies, its point [m], and the force on the second body [N]."""
-        found: list[tuple[tuple[int, int], Floats, Floats]] = []
+        touches: list[tuple[tuple[int, int], Floats, Floats]] = []
         wrench = np.zeros(6)
         for index, contact in enumerate(self._data.contact):
             if contact.efc_address >= 0:
                 mujoco.mj_contactForce(self._model, self._data, index, wrench)
                 first, second = self._model.geom_bodyid[contact.geom].tolist()
-                found.append(((first, second), contact.pos.copy(), contact.frame.reshape(3, 3).T @ wrench[:3]))
-        return found
+                touches.append(((first, second), contact.pos.copy(), contact.frame.reshape(3, 3).T @ wrench[:3]))
+        return touches
 
     def _body_id(self, state: BodyState, link: int) -> int | None:
         """Return MuJoCo's index of a link, after computing the forces on it; None before the first step."""

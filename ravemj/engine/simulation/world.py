@@ -127,12 +127,12 @@ class Simulation:
 
     def attached(self, body: BodyState) -> list[BodyState]:
         """Return a body and all bodies connected to it by grabs, in either direction."""
-        found = [body]
-        for one in found:  # which is extended in the loop
-            near = [grab.body for grab in one.grabs]
-            near += sorted(filter(self.holds, one.holders), key=lambda holder: holder.index)
-            found += [other for other in dict.fromkeys(near) if other not in found]
-        return found
+        bodies = [body]
+        for attached_body in bodies:  # which is extended in the loop
+            near = [grab.body for grab in attached_body.grabs]
+            near += sorted(filter(self.holds, attached_body.holders), key=lambda holder: holder.index)
+            bodies += [other for other in dict.fromkeys(near) if other not in bodies]
+        return bodies
 
     def rename(self, body: BodyState, name: str) -> None:
         """Give a body another name.
@@ -261,9 +261,9 @@ class Simulation:
 
 
 @block
-def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
+def both_locks(simulation: Simulation, other: Simulation) -> Generator[None]:
     """Acquire the locks of two environments, always in the same order to prevent deadlocks."""
-    first, second = sorted((one, other), key=id)
+    first, second = sorted((simulation, other), key=id)
     with first.lock, second.lock:
         yield
 

@@ -67,9 +67,9 @@ class Bindings:
     def node_of(self, owner: Element, instance: Element, model: Element) -> Node | None:
         """Return the node that shows an instance of a model, given the instance in the scene that it belongs to."""
         numbers = {number for element in (instance, model) for number in self._of_instance.get(element, ())}
-        found = [self.models[number] for number in sorted(numbers)]
-        own = [binding for binding in found if binding.owner is owner]
-        return (own or found)[0].node if found else None
+        bound = [self.models[number] for number in sorted(numbers)]
+        own = [binding for binding in bound if binding.owner is owner]
+        return (own or bound)[0].node if bound else None
 
     def of_axis(self, owner: Element, instance: Element, axis: Element, holder: Element) -> AxisBinding | None:
         """Return the first binding of an axis.
@@ -80,9 +80,9 @@ class Bindings:
             axis: The axis.
             holder: The ``<joint>`` or ``<instance_joint>`` that stands in the model.
         """
-        found = [binding for binding in self._of_axis.get(axis, ()) if _is_through(binding, instance, holder)]
-        own = [binding for binding in found if binding.owner is owner]
-        return next(iter(own or found), None)
+        bound = [binding for binding in self._of_axis.get(axis, ()) if _is_through(binding, instance, holder)]
+        own = [binding for binding in bound if binding.owner is owner]
+        return next(iter(own or bound), None)
 
 
 def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> bool:
@@ -102,29 +102,29 @@ def read_bindings(library: Library, instance: Element, scene: Element, root: Nod
     axes: list[AxisBinding] = []
     for element in children(instance, "bind_kinematics_model"):
         name = "".join(words(child(element, "param"))) or (element.get("param") or "")
-        found = library.parameter(name, instance, scene) if name else None
+        parameter = library.parameter(name, instance, scene) if name else None
         node = find_node(library, root, element.get("node") or "", element)
-        if found is None:
+        if parameter is None:
             library.warn("broken-reference", f"there is no model behind the parameter '{name}'", element)
         elif node is not None:
-            models.append(ModelBinding(_owner(library, name, instance, scene), found.element, node))
+            models.append(ModelBinding(_owner(library, name, instance, scene), parameter.element, node))
     for element in children(instance, "bind_joint_axis"):
         name = "".join(words(child(element, "axis", "param")))
-        found = library.parameter(name, instance, scene) if name else None
-        if found is None or local_name(found.element) not in {"revolute", "prismatic"}:
+        parameter = library.parameter(name, instance, scene) if name else None
+        if parameter is None or local_name(parameter.element) not in {"revolute", "prismatic"}:
             library.warn("broken-reference", f"there is no axis behind the parameter '{name}'", element)
             continue
         owner = _owner(library, name, instance, scene)
         value = library.number(child(element, "value"), instance, scene)
         node = find_node(library, root, element.get("target") or "", element)
-        axes.append(AxisBinding(owner, found.through, found.element, node, value))
+        axes.append(AxisBinding(owner, parameter.through, parameter.element, node, value))
     return Bindings(models, axes)
 
 
 def _owner(library: Library, name: str, *scopes: Element) -> Element | None:
     """Return the instance in the kinematics scene whose parameter has a name."""
-    found = next((item for scope in scopes if (item := library.resolve(name, scope)) is not None), None)
-    around = None if found is None else found.element
+    item_ = next((item for scope in scopes if (item := library.resolve(name, scope)) is not None), None)
+    around = None if item_ is None else item_.element
     while around is not None and local_name(around) not in _OWNERS:
         around = around.getparent()
     return around

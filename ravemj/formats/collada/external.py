@@ -111,8 +111,8 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
 def _uri(path: str, target: str, scheme: str | None) -> str:
     """Return a URI by which a document finds a file."""
     name = name_in_data_folders(path) if scheme else ""
-    found = find(name) if name else None
-    if found is not None and os.path.samefile(found, path):  # an earlier folder may have another file of that name
+    file = find(name) if name else None
+    if file is not None and os.path.samefile(file, path):  # an earlier folder may have another file of that name
         start = f"{scheme}:/"
     else:
         start, name = "", os.path.relpath(path, os.path.dirname(target) or ".")
@@ -157,8 +157,8 @@ class _Finder:
             self._suffix,
             self._name(system, "id"),
             tuple(self._name(top.element, "id") for top in tops),
-            tuple((self._name(one.instance, "sid"), self._path(one.node, tops)) for one in models),
-            tuple(self._axis(one, one.node, tops) for one in axes if one.node is not None),
+            tuple((self._name(model.instance, "sid"), self._path(model.node, tops)) for model in models),
+            tuple(self._axis(axis, axis.node, tops) for axis in axes if axis.node is not None),
             dict(self._links(models)),
             tuple(self._physics(tops)),
         )
@@ -172,7 +172,7 @@ class _Finder:
     def _path(self, node: Node, tops: list[Node]) -> str:
         """Return the names of the nodes from an outermost one, which is called by its place, to a node."""
         around = [*node.around()][:-2]  # without the outermost one and the scene
-        named = [(one.element.get("sid"), one.element.get("id")) for one in reversed(around)]
+        named = [(step.element.get("sid"), step.element.get("id")) for step in reversed(around)]
         names = [sid or f"{identity}{self._suffix}" for sid, identity in named if sid or identity]
         return "/".join((f"{_TOP}{tops.index(_top(node))}", *names))
 

@@ -100,8 +100,8 @@ class _FormulaReader:
         return self.library.metres(self.model) if AXES[joint.kind][0] == "P" else 1.0
 
     def _joint(self, path: str) -> JointBuilder | None:
-        found = self.library.resolve(path, self.model) if path else None
-        index = None if found is None else self.indices.get(found.element)
+        joint = self.library.resolve(path, self.model) if path else None
+        index = None if joint is None else self.indices.get(joint.element)
         return None if index is None else self.joints[index]
 
     def _function(self, symbol: Element) -> Element | None:

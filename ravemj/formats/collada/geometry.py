@@ -45,20 +45,20 @@ class GeometryReader:
 
         ``T_link_node`` gives the pose of a node in the link as OpenRAVE computes it, shape (4, 4).
         """
-        found: list[Geometry] = []
+        shapes: list[Geometry] = []
         for inner in node.nodes:
             if inner not in others:
-                found += self.read(inner, T_link_node, others)
-        return found + self.read_instances(node.element, T_link_node(node))
+                shapes += self.read(inner, T_link_node, others)
+        return shapes + self.read_instances(node.element, T_link_node(node))
 
     def read_instances(self, element: Element, T_link_element: Floats) -> list[Geometry]:
         """Return the shapes of the instances in an element, given its pose in the link, shape (4, 4)."""
-        found: list[Geometry] = []
+        shapes: list[Geometry] = []
         for instance in children(element, "instance_geometry"):
             geometry = self._library.follow(instance)
             if geometry is not None:
-                found += self._shapes(instance, geometry, T_link_element)
-        return found
+                shapes += self._shapes(instance, geometry, T_link_element)
+        return shapes
 
     def _shapes(self, instance: Element, geometry: Element, T_link_node: Floats) -> Iterator[Geometry]:
         info = next((technique for _, technique in extras(geometry, "geometry_info")), None)
@@ -127,11 +127,11 @@ class GeometryReader:
             self._meshes[geometry] = [(item.get("material", ""), mesh) for item, mesh in groups if len(mesh.triangles)]
         return self._meshes[geometry]
 
-    def _check_count(self, element: Element, found: int) -> None:
+    def _check_count(self, element: Element, readable: int) -> None:
         """Report triangles that are left out; a polygon of another kind is one triangle or more."""
         count = attribute_number(element, "count", 0)
-        if found < count and (found == 0 or local_name(element) == "triangles"):
-            message = f"only {found} of {count:.0f} can be read: indices lead nowhere, or numbers are missing"
+        if readable < count and (readable == 0 or local_name(element) == "triangles"):
+            message = f"only {readable} of {count:.0f} can be read: indices lead nowhere, or numbers are missing"
             self._library.warn("broken-mesh", message, element)
 
     def _colours(self, instance: Element, symbol: str) -> tuple[Rgb, Rgb, float]:
@@ -173,9 +173,9 @@ def _shape(element: Element, metres: float) -> Shape | None:
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():
-        found = numbers(child(element, name))
-        count = 1 if form is float else len(found) // 2 * 2 if form is CrossSection else 3
-        values = (found[:count] * metres).tolist()
+        lengths = numbers(child(element, name))
+        count = 1 if form is float else len(lengths) // 2 * 2 if form is CrossSection else 3
+        values = (lengths[:count] * metres).tolist()
         if len(values) == count and all(map(math.isfinite, values)):
             corners = tuple(zip(values[::2], values[1::2], strict=True)) if form is CrossSection else tuple(values)
             sizes[name] = values[0] if form is float else corners
@@ -184,5 +184,5 @@ def _shape(element: Element, metres: float) -> Shape | None:
     return kind.of_sizes(sizes)
 
 
-_PRIMITIVES = {tag: one.shape for one in SHAPE_TYPES for tag in one.collada if one.shape is not TriMesh}
+_PRIMITIVES = {tag: kind.shape for kind in SHAPE_TYPES for tag in kind.collada if kind.shape is not TriMesh}
 _KNOWN = {*_PRIMITIVES, "translate", "rotate", "matrix", "scale", "lookat", "visible", "trimesh"}

@@ -10,7 +10,7 @@ from ravemj.formats.meshes.parts import weld
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.scene import SHAPE_TYPES, Cylinder, Geometry, Mesh, Rgb, TriMesh
 
-_TAGS = {one.shape: one.collada[-1] for one in SHAPE_TYPES if one.collada}  # the last of two is that along z
+_TAGS = {kind.shape: kind.collada[-1] for kind in SHAPE_TYPES if kind.collada}  # the last of two is that along z
 _MESH_DECIMALS = 10  # a coordinate [m] that is all rounding becomes 0
 _LEAST_OPACITY = 1e-12
 """Least written opacity: readers take an opacity of 0 for a mistake."""

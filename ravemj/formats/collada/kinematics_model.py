@@ -130,10 +130,10 @@ class ModelReader:
     def settle(self, others: "list[ModelReader]") -> None:
         """Give the joints to the body, with what they follow, once all models of the body are read."""
         self._close_loops([end for reader in others for end in reader.ends])
-        for found in sorted(self._found, key=lambda found: found.place):  # OpenRAVE's order, where it wrote one
-            self.joints |= dict.fromkeys(found.keys, len(self._body.joints))
-            self.values.append(found.values)
-            self._body.joints.append(found.built)
+        for joint in sorted(self._found, key=lambda joint: joint.place):  # OpenRAVE's order, where it wrote one
+            self.joints |= dict.fromkeys(joint.keys, len(self._body.joints))
+            self.values.append(joint.values)
+            self._body.joints.append(joint.built)
         read_formulas(self._library, self.model, self.joints, self._body)
 
     def _close_loops(self, ends: "list[_LoopEnd]") -> None:
@@ -144,8 +144,8 @@ class ModelReader:
                 message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
                 self._library.warn("ignored-tag", message, start)
             elif local_name(start) == "attachment_start":
-                found = (end for end in ends if end[0] is not start and end[0].get("joint") == path)
-                end, child_link = next(found, (None, 0))
+                others = (end for end in ends if end[0] is not start and end[0].get("joint") == path)
+                end, child_link = next(others, (None, 0))
                 if end is None:
                     raise self._library.error("the other end of the loop is missing", start)
                 T_parent_frame = read_pose(self._library, start)
@@ -191,9 +191,10 @@ class ModelReader:
         link.geometries += self._scene.geometry.read(node, pose_in_link, self._scene.bindings.moved)
 
     def _world(self, node: Node) -> Floats:
-        """Return the pose of a node as OpenRAVE composes it: in the first link, from below that link's node on.
+        """Return the pose of a node in the world as OpenRAVE composes it.
 
-        That node's own transform counts for its own shapes only, once more than it should.
+        It is the pose of the root link times the transforms of the nodes below that link's node. For shapes of that
+        node itself, its transform counts twice.
         """
         path = [*node.around()]
         if self._root not in path:
@@ -235,15 +236,15 @@ class ModelReader:
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
         """Return the element that an attachment refers to, and its ``<joint>``."""
         path = attachment.get("joint") or ""
-        found = self._library.resolve(path, self.model)
-        joint = None if found is None else found.element
+        resolved = self._library.resolve(path, self.model)
+        joint = None if resolved is None else resolved.element
         if joint is not None and local_name(joint) == "instance_joint":
             joint = self._library.follow(joint)
-        if found is None or joint is None or local_name(joint) != "joint":
+        if resolved is None or joint is None or local_name(joint) != "joint":
             raise self._library.error(f"there is no joint '{path}'", attachment)
         if next(children(joint, "revolute", "prismatic"), None) is None:
             raise self._library.error("the joint has no axis", joint)
-        return found.element, joint
+        return resolved.element, joint
 
     def _built_joint(
         self, joint: Element, axes: list[AxisReader], links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose

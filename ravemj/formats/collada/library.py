@@ -125,18 +125,18 @@ class Library:
         """
         kinds = kinds or (local_name(element).removeprefix("instance_"),)
         url = (element.get(attribute) or "").strip()
-        found = self._find(element, url, kinds) if url else None
-        if found is None:
+        target = self._find(element, url, kinds) if url else None
+        if target is None:
             self.warn("broken-reference", f"there is no {' or '.join(kinds)} '{url}'", element)
-        return found
+        return target
 
     def _find(self, element: Element, url: str, kinds: tuple[str, ...]) -> Element | None:
         file, _, name = url.partition("#")
         document = self._document(self.document_of(element), file, element) if file else self.document_of(element)
         if document is None:
             return None
-        found = (document.find(kind, name or None) for kind in kinds)
-        return next((item for item in found if item is not None), None)
+        items = (document.find(kind, name or None) for kind in kinds)
+        return next((item for item in items if item is not None), None)
 
     def _document(self, here: ColladaDocument, uri: str, element: Element) -> ColladaDocument | None:
         """Return the document that a URI names in another one; a file that is missing or broken is reported."""
@@ -194,17 +194,17 @@ class Library:
 
     def _unit(self, element: Element) -> float:
         """Return the length of the unit that the nearest ``<asset>`` around an element gives [m]."""
-        found = self._units.get(element)
-        if found is None:
+        metres = self._units.get(element)
+        if metres is None:
             asset = child(element, "asset", "unit")
             unit = child(element, "extra", "asset", "unit") if asset is None else asset
             parent = element.getparent()
             outer = 1.0 if parent is None else self._unit(parent)
-            found = self._units[element] = outer if unit is None else attribute_number(unit, "meter", outer)
+            metres = self._units[element] = outer if unit is None else attribute_number(unit, "meter", outer)
             if unit is not None and unit.get("meter") and attribute_number(unit, "meter", 0.0) <= 0.0:
-                message = f"'{unit.get('meter')}' is no length, which is a number above 0; {found:g} m counts"
+                message = f"'{unit.get('meter')}' is no length, which is a number above 0; {metres:g} m counts"
                 self.warn("bad-number", message, unit)
-        return found
+        return metres
 
     def resolve(self, path: str, scope: Element) -> ResolvedReference | None:
         """Resolve a path of names.
@@ -214,11 +214,11 @@ class Library:
         """
         first, *rest = path.strip().split("/")
         for start in self._starts(first, scope):
-            found: ResolvedReference | None = start
+            place: ResolvedReference | None = start
             for name in rest:
-                found = None if found is None else self._below(found, name)
-            if found is not None:
-                return found
+                place = None if place is None else self._below(place, name)
+            if place is not None:
+                return place
         return None
 
     def _starts(self, name: str, scope: Element) -> Iterator[ResolvedReference]:
@@ -228,13 +228,13 @@ class Library:
         for element in self.document_of(scope).identified(name):
             yield ResolvedReference(element)
         for around in (scope, *scope.iterancestors()):
-            found = self._scope(around).get(name)
-            if found is not None:
-                yield found
+            place = self._scope(around).get(name)
+            if place is not None:
+                yield place
 
-    def _below(self, found: ResolvedReference, name: str) -> ResolvedReference | None:
-        inner = self._scope(found.element).get(name)
-        return None if inner is None else ResolvedReference(inner.element, (*found.through, *inner.through))
+    def _below(self, place: ResolvedReference, name: str) -> ResolvedReference | None:
+        inner = self._scope(place.element).get(name)
+        return None if inner is None else ResolvedReference(inner.element, (*place.through, *inner.through))
 
     def _scope(self, element: Element) -> dict[str, ResolvedReference]:
         """Return the elements below one by their sids; of equal ones the nearest, and of these the first, counts."""
@@ -272,13 +272,13 @@ class Library:
 
         Its name, which may be a path of names, is looked for in the scopes, in their order.
         """
-        found = next((item for scope in scopes if (item := self.resolve(name, scope)) is not None), None)
+        place = next((item for scope in scopes if (item := self.resolve(name, scope)) is not None), None)
         for _ in range(_LONGEST_CHAIN):
-            path = None if found is None else _reference(found.element)
-            if found is None or path is None:
-                return found
-            inner = self.resolve(path, found.element)
-            found = None if inner is None else ResolvedReference(inner.element, (*found.through, *inner.through))
+            path = None if place is None else _reference(place.element)
+            if place is None or path is None:
+                return place
+            inner = self.resolve(path, place.element)
+            place = None if inner is None else ResolvedReference(inner.element, (*place.through, *inner.through))
         return None
 
     def value(self, element: Element | None, *scopes: Element) -> Element | None:
@@ -289,8 +289,8 @@ class Library:
         if param is None:
             return element
         name = (param.get("ref") or "".join(words(param))).strip()
-        found = self.parameter(name, element, *scopes) if name else None
-        return None if found is None else found.element
+        place = self.parameter(name, element, *scopes) if name else None
+        return None if place is None else place.element
 
     def number(self, element: Element | None, *scopes: Element) -> float | None:
         """Return a number that stands in an element, in its ``<float>``, or in the parameter that it names."""

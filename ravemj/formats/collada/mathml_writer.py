@@ -26,9 +26,9 @@ def read_as_0(node: Node) -> set[str]:
     if not isinstance(node, Call):
         return set()
     name = node.function
-    found = set[str]().union(*map(read_as_0, node.arguments))
+    inner = set[str]().union(*map(read_as_0, node.arguments))
     is_power = name == "pow" and not isinstance(node.arguments[1], Number)
-    return found | {name} if is_power or name in _READ_AS_0 or name.startswith("polyroots") else found
+    return inner | {name} if is_power or name in _READ_AS_0 or name.startswith("polyroots") else inner
 
 
 class TooDeepError(Exception):

@@ -85,11 +85,11 @@ class PhysicsScenes:
         parent = self._node(instance, "parent")
         for body in children(instance, "instance_rigid_body"):
             node = self._node(body, "target")
-            found = self._library.resolve(body.get("body") or "", model)
-            if found is None or local_name(found.element) != "rigid_body":
+            resolved = self._library.resolve(body.get("body") or "", model)
+            if resolved is None or local_name(resolved.element) != "rigid_body":
                 self._library.warn("broken-reference", f"there is no rigid body '{body.get('body')}'", body)
             elif node is not None:
-                self._bodies.setdefault(node, RigidBody(found.element, parent))
+                self._bodies.setdefault(node, RigidBody(resolved.element, parent))
 
     def _node(self, element: Element, attribute: str) -> Node | None:
         url = element.get(attribute) or ""

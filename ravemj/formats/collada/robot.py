@@ -79,9 +79,9 @@ class ExtraReader:
     def _found(self, path: str, scope: Element, parts: Mapping[Element, int]) -> int | None:
         """Return the index of the part at a path, relative to a scope or else to a model."""
         for around in (scope, *self.models):
-            found = self.library.resolve(path, around) if path else None
-            if found is not None and found.element in parts:
-                return parts[found.element]
+            resolved = self.library.resolve(path, around) if path else None
+            if resolved is not None and resolved.element in parts:
+                return parts[resolved.element]
         return None
 
     def _read_manipulator(self, extra: Element, technique: Element, system: Element) -> None:
@@ -107,8 +107,8 @@ class ExtraReader:
 
     def _closing(self, element: Element, count: int) -> list[float]:
         """Return the signs of closing of a gripper's joint, one for each axis."""
-        found = children(element, "chucking_direction", "closing_direction")
-        signs = [self.library.number(direction) or 0.0 for direction in found]
+        directions = children(element, "chucking_direction", "closing_direction")
+        signs = [self.library.number(direction) or 0.0 for direction in directions]
         return (signs + [0.0] * count)[:count]
 
     def _read_sensor(self, extra: Element, technique: Element, system: Element) -> None:

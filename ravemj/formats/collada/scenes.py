@@ -70,8 +70,8 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
             shared = SceneContext(library, bindings, physics, geometry)
             shown |= bindings.moved
             for kind in ("instance_articulated_system", "instance_kinematics_model"):
-                found = (_body(shared, item, wanted) for item in children(element, kind))
-                bodies += [body for body in found if body is not None]
+                read = (_body(shared, item, wanted) for item in children(element, kind))
+                bodies += [body for body in read if body is not None]
             sensors += read_loose(library, element)
     if wanted:
         if not bodies:
@@ -177,11 +177,11 @@ def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
     """Return the ``<axis_info>`` elements of a part of a system, by what they say something about."""
     infos: dict[Element, Element] = {}
     for info in children(child(part, "technique_common"), "axis_info"):
-        found = scene.library.resolve(info.get("axis") or "", part)
-        if found is None:
+        axis = scene.library.resolve(info.get("axis") or "", part)
+        if axis is None:
             scene.library.warn("broken-reference", f"there is no axis '{info.get('axis')}'", info)
         else:
-            infos[found.element] = info
+            infos[axis.element] = info
     return infos
 
 

@@ -58,8 +58,8 @@ class SupplementReader:
             for element in children(technique, "grabbed"):
                 link = self._link(element.get("link") or "", technique)
                 if link is not None:
-                    found = (self._link(path, technique) for path in (element.get("ignored") or "").split())
-                    ignored = tuple(one for one in found if one is not None)
+                    links = (self._link(path, technique) for path in (element.get("ignored") or "").split())
+                    ignored = tuple(ignored_link for ignored_link in links if ignored_link is not None)
                     pose = read_pose(self.library, element)
                     self.body.grabs.append(GrabBuilder(element.get("body") or "", link, pose, ignored))
 
@@ -94,8 +94,8 @@ class SupplementReader:
     ) -> list[int] | None:
         """Return the indices of the listed parts; None if these are not all parts of the body."""
         index_of = {id(part): index for index, part in enumerate(built)}
-        found = (self._found(element.get("path") or "", technique, parts) for element in listed)
-        order = [index_of.get(id(part), -1) for part in found]
+        ordered = (self._found(element.get("path") or "", technique, parts) for element in listed)
+        order = [index_of.get(id(part), -1) for part in ordered]
         return order if sorted(order) == list(range(len(built))) else None
 
     def _read_parameter(self, element: Element) -> None:
@@ -113,8 +113,8 @@ class SupplementReader:
         return self._found(path, technique, self.links)
 
     def _found(self, path: str, scope: Element, parts: Mapping[Element, _Part]) -> _Part | None:
-        found = self.library.resolve(path, scope)
-        return None if found is None else parts.get(found.element)
+        resolved = self.library.resolve(path, scope)
+        return None if resolved is None else parts.get(resolved.element)
 
 
 def _name_joints(body: BodyBuilder, names: Sequence[str], listed: Sequence[Element]) -> None:
@@ -143,8 +143,12 @@ def _order_links(body: BodyBuilder, order: Sequence[int], names: Sequence[str]) 
     pairs = [(place_of[first], place_of[second]) for first, second in body.adjacent]
     body.adjacent = [(min(pair), max(pair)) for pair in pairs]
     body.sensors = [
-        one._replace(sensor=replace(one.sensor, link=None if one.sensor.link is None else place_of[one.sensor.link]))
-        for one in body.sensors
+        attached._replace(
+            sensor=replace(
+                attached.sensor, link=None if attached.sensor.link is None else place_of[attached.sensor.link]
+            )
+        )
+        for attached in body.sensors
     ]
     body.forget_names()
     body.links = [body.links[index] for index in order]

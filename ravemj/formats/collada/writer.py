@@ -36,11 +36,11 @@ def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, Externa
     geometry = GeometryWriter(diagnostics)
     sections = Sections(geometry)
     for number, body in enumerate(scene.bodies):
-        found = None if external is None else external.get(body.name)
-        if found is None:
+        reference = None if external is None else external.get(body.name)
+        if reference is None:
             BodyWriter(sections, diagnostics, body, number).write()
         else:
-            write_reference(sections, body, number, found)
+            write_reference(sections, body, number, reference)
     write_loose(sections.kinematics_scene, sections.sensors, scene.sensors)
     out = XmlText()
     with out.inside("COLLADA", xmlns=NAMESPACE, version="1.5.0"):

@@ -106,9 +106,9 @@ def _by_content(
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
     for entry in (alone, at_home):
-        found = _loaded(f"{folder}/{entry}")
-        if found:
-            parts, digests = found
+        loaded = _loaded(f"{folder}/{entry}")
+        if loaded:
+            parts, digests = loaded
             if all(permits(path) and digest_of(path) == digest for path, digest in digests.items()):
                 return parts, ReferencedFiles(digests)
     parts, references = read(content)

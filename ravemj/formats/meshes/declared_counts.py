@@ -52,10 +52,10 @@ def _check_ply(data: bytes, source: Source) -> None:
 
 
 def _check_off(data: bytes, source: Source) -> None:
-    found = _OFF_COUNTS.search(data)
-    if found:
-        vertices, faces = int(found[1]), int(found[2])
-        rest = data[found.end() :].rstrip()
+    match = _OFF_COUNTS.search(data)
+    if match:
+        vertices, faces = int(match[1]), int(match[2])
+        rest = data[match.end() :].rstrip()
         lines = rest.count(b"\n") + rest.count(b"\r")
         _check_held(vertices, lines, "vertices", source)
         _check_held(faces, lines - vertices, "faces", source)

@@ -139,7 +139,7 @@ def strips(sizes: Ints, index: Ints) -> Ints:
 
 def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
     """Return a mask of the polygons that have a reflex corner and are small enough for ear clipping."""
-    found = np.zeros(len(sizes), np.bool_)
+    concave = np.zeros(len(sizes), np.bool_)
     for size in np.unique(sizes[(sizes > 3) & (sizes <= _MAX_CLIPPED)]).tolist():
         same = np.flatnonzero(sizes == size)
         corners = points[starts[same, np.newaxis] + np.arange(size)]
@@ -147,8 +147,8 @@ def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
         normals = np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1)
         edges = np.roll(corners, -1, axis=1) - corners
         turns = np.einsum("ijk,ik->ij", np.cross(edges, np.roll(edges, -1, axis=1)), normals)
-        found[same] = turns.min(axis=1) < -_STRAIGHT * (normals**2).sum(axis=1)
-    return found
+        concave[same] = turns.min(axis=1) < -_STRAIGHT * (normals**2).sum(axis=1)
+    return concave
 
 
 def _flattened(polygon: Floats) -> Floats:

@@ -51,10 +51,10 @@ class _References(Mapping[str, bytes]):
         self._file = file
 
     def __getitem__(self, name: str) -> bytes:
-        found = self._file.refer(name, is_raw=True) if name in self._buffers else None
-        if found is None:
+        buffer = self._file.refer(name, is_raw=True) if name in self._buffers else None
+        if buffer is None:
             raise KeyError(name)
-        return found.data
+        return buffer.data
 
     @cached_property
     def _buffers(self) -> set[str]:

@@ -26,25 +26,25 @@ class _Class(NamedTuple):
 
 def add_classes(document: MjcfSections) -> None:
     """Move attributes that several joints or geoms of a document share into classes."""
-    found: list[tuple[int, _Class]] = []
+    numbered: list[tuple[int, _Class]] = []
     first = document.lines.index("  <worldbody>")
     for number in range(first, document.lines.index("  </worldbody>")):
         element = _ELEMENT.match(document.lines[number])
         if element:
             given = _ATTRIBUTE.findall(element[3])
-            shared = tuple(one for one in given if one[0] in _SHARED[element[2]])
-            found.append((number, _Class(element[2], dict(given).get("class", ""), shared)))
-    counts = Counter(one for _, one in found)
+            shared = tuple(attribute for attribute in given if attribute[0] in _SHARED[element[2]])
+            numbered.append((number, _Class(element[2], dict(given).get("class", ""), shared)))
+    counts = Counter(shared_class for _, shared_class in numbered)
     names: dict[_Class, str] = {}
-    for one, count in counts.items():
-        if count > 1 and sum(len(name) + len(value) + 4 for name, value in one.attributes) >= _LEAST:
-            base = one.parent or one.tag
-            names[one] = f"{base}{1 + sum((other.parent or other.tag) == base for other in names)}"
-    for number, one in found:
-        if one in names:
-            document.lines[number] = _with_class(document.lines[number], one, names[one])
-    for one, name in reversed(names.items()):
-        _declare(document, one, name)
+    for shared_class, count in counts.items():
+        if count > 1 and sum(len(name) + len(value) + 4 for name, value in shared_class.attributes) >= _LEAST:
+            base = shared_class.parent or shared_class.tag
+            names[shared_class] = f"{base}{1 + sum((other.parent or other.tag) == base for other in names)}"
+    for number, shared_class in numbered:
+        if shared_class in names:
+            document.lines[number] = _with_class(document.lines[number], shared_class, names[shared_class])
+    for shared_class, name in reversed(names.items()):
+        _declare(document, shared_class, name)
 
 
 def _with_class(line: str, shared: _Class, name: str) -> str:

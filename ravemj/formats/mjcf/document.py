@@ -243,8 +243,8 @@ class _MjcfWriter:
         if not joint.places_child or joint.static or not (active or follows) or joint.axes[0].direction == ZERO:
             return ()
         first = self._given.give("joint", body, name)
-        one = len(joint.axes) == 1 or joint.kind == "spherical"
-        return (first,) if one else (first, self._given.give("joint", body, f"{name}_1"))
+        is_single = len(joint.axes) == 1 or joint.kind == "spherical"
+        return (first,) if is_single else (first, self._given.give("joint", body, f"{name}_1"))
 
     def _is_free(self, body: KinBody) -> bool:
         """Return whether the roots of a body can fall."""

@@ -58,9 +58,9 @@ class WeldGroups:
 
     def tested_pairs(self, first: Mapping[int, list[int]], second: Mapping[int, list[int]]) -> Iterator[Pair]:
         """Yield the pairs of a link of each collection that MuJoCo tests; links are sorted by group."""
-        for one, other in product(first, second):
-            if self.are_tested(one, other):
-                for link, partner in product(first[one], second[other]):
+        for group, other in product(first, second):
+            if self.are_tested(group, other):
+                for link, partner in product(first[group], second[other]):
                     yield ordered_pair(link, partner)
 
 
@@ -79,20 +79,20 @@ def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
     joints = body.all_joints
     count = len(body.links)
     solid = set(welds.solid)
-    named = [(one, other) for one, other in body.adjacent if one in solid and other in solid]
-    pairs = {(one, other) for one, other in named if welds.are_tested(welds.group[one], welds.group[other])}
+    named = [(link, other) for link, other in body.adjacent if link in solid and other in solid]
+    pairs = {(link, other) for link, other in named if welds.are_tested(welds.group[link], welds.group[other])}
     if not body.joined_links_adjacent:
         return sorted(pairs)
     rigid = connected_components(count, ((joint.parent, joint.child) for joint in joints if joint.static))
     parts = _cells(rigid, welds)
     joined = {ordered_pair(rigid[joint.parent], rigid[joint.child]) for joint in joints}
-    for one, other in joined | {(part, part) for part in parts}:
-        pairs.update(welds.tested_pairs(parts.get(one, {}), parts.get(other, {})))
+    for first_part, other in joined | {(part, part) for part in parts}:
+        pairs.update(welds.tested_pairs(parts.get(first_part, {}), parts.get(other, {})))
     trees = _cells(connected_components(count, ((joint.parent, joint.child) for joint in joints)), welds).values()
     moving = [tree for tree in trees if tree.keys() != {_WORLD}]
     fixed = {_WORLD: [link for tree in trees if tree.keys() == {_WORLD} for link in tree[_WORLD]]}
-    for one, other in (*combinations(moving, 2), *product(moving, [fixed])):
-        pairs.update(welds.tested_pairs(one, other))
+    for first_part, other in (*combinations(moving, 2), *product(moving, [fixed])):
+        pairs.update(welds.tested_pairs(first_part, other))
     return sorted(pairs)
 
 

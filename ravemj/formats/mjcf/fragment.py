@@ -49,19 +49,19 @@ def _check(element: Element, section: str, document: MjcfSections) -> None:
     taken = document.names()
     pending = [element]
     while pending:
-        one = pending.pop()
-        if one.spelled in _REFUSED:
-            hint = _REFUSED[one.spelled]
-            raise SourceError(f"<{one.spelled}> cannot be added to a translated model", one.source, hint)
-        key = kind_of(one.spelled, section), one.attributes.get("name", "")
+        inner = pending.pop()
+        if inner.spelled in _REFUSED:
+            hint = _REFUSED[inner.spelled]
+            raise SourceError(f"<{inner.spelled}> cannot be added to a translated model", inner.source, hint)
+        key = kind_of(inner.spelled, section), inner.attributes.get("name", "")
         if key in taken:
             there = taken[key]
             where = "" if there is None else f", which is that of {there}"
-            message = f"the {one.spelled} '{key[1]}' has a name that the model has already{where}"
-            raise SourceError(message, one.source, "choose another name")
-        if one.attributes.get("name"):
-            taken[key] = one.source
-        pending += one.children
+            message = f"the {inner.spelled} '{key[1]}' has a name that the model has already{where}"
+            raise SourceError(message, inner.source, "choose another name")
+        if inner.attributes.get("name"):
+            taken[key] = inner.source
+        pending += inner.children
 
 
 def _write(element: Element, out: XmlLines) -> None:

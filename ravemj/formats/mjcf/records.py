@@ -152,11 +152,11 @@ class _RecordWriter:
             stored: dict[str, object] = {}
             if type(value).__name__ in _KINDS:
                 stored["class"] = type(value).__name__
-            for one in fields(value):
-                part: object = getattr(value, one.name)
-                is_said = part is UNKNOWN or one.name in _LEFT_OUT
-                if not is_said and (one.default is MISSING or part != one.default):
-                    stored[one.name] = self.encode(part)
+            for field in fields(value):
+                part: object = getattr(value, field.name)
+                is_said = part is UNKNOWN or field.name in _LEFT_OUT
+                if not is_said and (field.default is MISSING or part != field.default):
+                    stored[field.name] = self.encode(part)
             return stored
         if isinstance(value, tuple):
             return [self.encode(part) for part in cast("tuple[object, ...]", value)]

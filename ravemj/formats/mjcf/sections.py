@@ -49,15 +49,15 @@ class MjcfSections:
 
     def names(self) -> dict[tuple[str, str], Source | None]:
         """Return the source of each name, by namespace and name."""
-        found: dict[tuple[str, str], Source | None] = {}
+        names: dict[tuple[str, str], Source | None] = {}
         section = ""
         for line, source in zip(self.lines, self.sources, strict=True):
             opened = _SECTION.match(line)
             section = opened[1] if opened else section
             named = _NAMED.match(line)
             if named:
-                found[kind_of(named[1], section), named[2]] = source
-        return found
+                names[kind_of(named[1], section), named[2]] = source
+        return names
 
 
 def kind_of(tag: str, section: str) -> str:

@@ -167,8 +167,7 @@ class Context:
     def find(self, name: str, source: Source, *folders: str) -> str | None:
         """Look a file up in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
 
-        Where it is in none of them, as in repositories that were cloned and no more, the folders above the file that
-        names it are asked.
+        If none of them has it, as in a cloned repository, the folders above the file that names it are searched.
 
         Args:
             name: The file.
@@ -179,23 +178,23 @@ class Context:
             Its path, or None, with a finding, where it is in none of them or must not be read.
         """
         question = (name, source.file, folders)
-        found = self._found.get(question)
-        if found is not None:
-            return found
+        path = self._found.get(question)
+        if path is not None:
+            return path
         places = self.access.candidates(name, *folders, os.path.dirname(source.file))
         if not places and self.access.is_dropped:
             self.access.refuse(name, source)
             return None
-        found = next(filter(os.path.isfile, places), None)
-        if found is None:
-            found = _found_above(name, os.path.dirname(source.file), self.access)
-            if found is None:
+        path = next(filter(os.path.isfile, places), None)
+        if path is None:
+            path = _found_above(name, os.path.dirname(source.file), self.access)
+            if path is None:
                 self._report_missing(name, source, places)
                 return None
-            message = f"{name} is in none of the places where OpenRAVE looks, so {found} is taken"
+            message = f"{name} is in none of the places where OpenRAVE looks, so {path} is taken"
             self.diagnostics.warn("found-above", message, source, "OpenRAVE needs its folder in OPENRAVE_DATA")
-        self._found[question] = found
-        return found
+        self._found[question] = path
+        return path
 
     def _report_missing(self, name: str, source: Source, places: list[str]) -> None:
         if self.access.is_dropped:
@@ -280,14 +279,14 @@ def _found_above(name: str, folder: str, access: FileAccess) -> str | None:
     """
     if os.path.isabs(name):
         return None
-    found: set[str] = set()
+    paths: set[str] = set()
     for _ in range(_MOST_ABOVE):
         if os.path.exists(os.path.join(folder, ".git")):
             break
         folder = os.path.normpath(os.path.join(folder, os.pardir))
         path = os.path.join(folder, name)
-        found.update([path] if access.permits(path) and os.path.isfile(path) else [])
-    return found.pop() if len(found) == 1 else None
+        paths.update([path] if access.permits(path) and os.path.isfile(path) else [])
+    return paths.pop() if len(paths) == 1 else None
 
 
 def _is_same_file(first: str, second: str) -> bool:

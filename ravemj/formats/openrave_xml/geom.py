@@ -152,7 +152,7 @@ GEOM_TAGS: dict[str, Tag[_Geom]] = {
 }
 GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
 GEOM_ATTRIBUTES = {
-    "type": f"{', '.join(one.xml for one in SHAPE_TYPES if one.xml)}; others have no shape here",
+    "type": f"{', '.join(kind.xml for kind in SHAPE_TYPES if kind.xml)}; others have no shape here",
     "name": "name of the shape",
     "render": "false: collides and is not drawn",
     "modifiable": "false: planners leave it alone",
@@ -165,7 +165,7 @@ MESH_ATTRIBUTES = {"file": "the mesh file", "scale": "one to three factors"}
 SIZE_TAGS = {"half_extents": "extents", "cross_section": "crosssection"}
 """Tags of the sizes that are not called like their tag."""
 
-_SHAPES = {one.xml: one.shape for one in SHAPE_TYPES}
+_SHAPES = {kind.xml: kind.shape for kind in SHAPE_TYPES}
 _VECTORS = ("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom")
 _NO_SIZES = {**dict.fromkeys(_VECTORS, ZERO), "radius": 0.0, "height": 0.0}
 
@@ -189,20 +189,20 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
 
 def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:
     """Return the geometries of a trimesh: of the collision file, else of the render file, else of its vertices."""
-    found: list[Geometry] = []
+    geometries: list[Geometry] = []
     for file in (geom.collision, geom.render):
         parts = _parts(geom, file, element, scope)
         drawn = geom.render if parts and file is geom.collision else None
         surfaces = _surfaces(geom, drawn, element, scope)
         displays = [surfaces, *[None if surfaces is None else ()] * (len(parts) - 1)]
-        found += [
+        geometries += [
             _geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part, display)
             for part, display in zip(parts or _lost(file), displays, strict=False)
         ]
         if parts:
             break
-    if found:  # the name is that of the first part alone (gap-69)
-        return [found[0], *(replace(geometry, name="") for geometry in found[1:])]
+    if geometries:  # the name is that of the first part alone (gap-69)
+        return [geometries[0], *(replace(geometry, name="") for geometry in geometries[1:])]
     corners = np.array(geom.vertices).reshape(-1, 3)
     mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
     return [_geometry(geom, element, TriMesh(_scaled(mesh, geom, scope)), scope, MeshPart(mesh), None)]

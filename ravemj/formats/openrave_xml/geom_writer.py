@@ -17,7 +17,7 @@ FOLDER = "meshes"
 
 MeshFormat = Literal["stl", "obj"]
 
-_TYPES = {one.shape: one.xml for one in SHAPE_TYPES}
+_TYPES = {kind.shape: kind.xml for kind in SHAPE_TYPES}
 
 
 class GeomWriter:

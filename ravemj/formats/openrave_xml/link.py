@@ -95,12 +95,12 @@ class _LinkScope(Placed):
         if self.skip_geometry:
             self.context.check_attributes(element, GEOM_ATTRIBUTES, {})
             return
-        found = read_geometries(element, self.geometry_scope, self.context)
+        shapes = read_geometries(element, self.geometry_scope, self.context)
         group = element.attributes.get("group", OWN_SHAPES)
         if group == OWN_SHAPES:  # geom-36
-            self.link.geometries += found
+            self.link.geometries += shapes
         else:
-            self.link.add_to_group(group, found)
+            self.link.add_to_group(group, shapes)
 
     def read_parameter(self, element: Element) -> None:
         self.link.parameters = self.context.with_parameter(self.link.parameters, element)

@@ -36,25 +36,25 @@ def add_collada(
     try:
         factor = uniform(scale, source, context)
         content = collada.read_file(path, context.access, source, factor, context.documents)
-        found = next(iter((*content.bodies, *content.others)), None)
-        if found is None:
+        first = next(iter((*content.bodies, *content.others)), None)
+        if first is None:
             raise SourceError("there is no body in it", Source(found_path, included_from=source))
-        if found.is_robot and not body.is_robot:  # gap-66
+        if first.is_robot and not body.is_robot:  # gap-66
             raise SourceError("it holds a robot, and OpenRAVE takes no robot for a KinBody", source, "write <Robot>")
-        found.joint_values = None  # those of the file hold only where it is loaded by itself (gap-51)
-        placed = found.freeze(Diagnostics())
+        first.joint_values = None  # those of the file hold only where it is loaded by itself (gap-51)
+        placed = first.freeze(Diagnostics())
     except LimitError:
         raise
     except SourceError as error:
         context.diagnostics.error("broken-file", error.message, error.source)
         return
-    body.name = found.name
+    body.name = first.name
     body.source = body.source if body.links else Source(path, 0, source)
-    for link, at_values in zip(found.links, placed.links, strict=True):
+    for link, at_values in zip(first.links, placed.links, strict=True):
         link.pose = at_values.T_world_link
         if skip_geometry:
             link.geometries = []
-    _join(body, found)
+    _join(body, first)
 
 
 def add_urdf(body: BodyBuilder, root: Element, element: Element, context: Context, *, skip_geometry: bool) -> None:
@@ -70,20 +70,20 @@ def add_urdf(body: BodyBuilder, root: Element, element: Element, context: Contex
     from ravemj.formats.urdf.robot import read_robot  # noqa: PLC0415 - rarely wanted
 
     try:
-        found = read_robot(root, context, element.attributes)
+        robot = read_robot(root, context, element.attributes)
     except LimitError:
         raise
     except SourceError as error:
         context.diagnostics.error("broken-file", error.message, error.source, error.hint)
         return
-    body.name = found.name
+    body.name = robot.name
     if not body.is_robot:
-        found.manipulators = []
+        robot.manipulators = []
     if skip_geometry:
-        for link in found.links:
+        for link in robot.links:
             link.geometries = []
-    _join(body, found)
-    body.configurations += found.configurations
+    _join(body, robot)
+    body.configurations += robot.configurations
 
 
 def uniform(scale: Vec3, source: Source, context: Context) -> float:
@@ -112,7 +112,7 @@ def _join(body: BodyBuilder, other: BodyBuilder) -> None:
     for joint in other.joints:
         joint.links = (indices[joint.links[0]], indices[joint.links[1]])
     body.joints += other.joints
-    body.adjacent += [(indices[one], indices[two]) for one, two in other.adjacent]
+    body.adjacent += [(indices[first], indices[two]) for first, two in other.adjacent]
     body.manipulators += other.manipulators
     for sensor, link_name in other.sensors:
         link = None if sensor.link is None else indices[sensor.link]

@@ -31,7 +31,9 @@ class PartNames:
             taken_any_case.add(self.links[-1].lower())
         joints = [joint.name for joint in body.all_joints]
         active = set(joints[: len(body.joints)])
-        listed = {joint for one in body.manipulators for joint in one.gripper_joints}  # in a list of words
+        listed = {
+            joint for manipulator in body.manipulators for joint in manipulator.gripper_joints
+        }  # in a list of words
         self.joints: list[str] = []
         known = {name.lower() for name in joints}
         taken = set[str]()

@@ -109,25 +109,25 @@ def read_device(element: Element, context: Context) -> SensorElement:
 
 def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
     """Read a ``<Sensor>`` that no robot carries; None, with an error, if its type is unknown."""
-    found = _read(element, context, PLACEMENT_TAGS, {})
-    if found.device is None:
+    sensor = _read(element, context, PLACEMENT_TAGS, {})
+    if sensor.device is None:
         if "type" not in element.attributes:
             message = "<Sensor> is of no type, and is left out"
             context.diagnostics.error("unknown-interface", message, element.source, 'write type="…", or file="…"')
         return None
-    problem = "it measures what its link feels, and is on none" if needs_link(found.device) else None
+    problem = "it measures what its link feels, and is on none" if needs_link(sensor.device) else None
     if problem is not None:
         hint = "put it into an <AttachedSensor> of a robot"
         context.diagnostics.warn("bad-sensor", f"the sensor stays off: {problem}", element.source, hint)
     return AttachedSensor(
-        name=found.name,
+        name=sensor.name,
         link=None,
-        T_link_sensor=found.pose,
-        type=found.type,
-        device=found.device,
+        T_link_sensor=sensor.pose,
+        type=sensor.type,
+        device=sensor.device,
         source=element.source,
-        is_on=found.is_on and problem is None,
-        color=found.color,
+        is_on=sensor.is_on and problem is None,
+        color=sensor.color,
     )
 
 
@@ -137,15 +137,15 @@ def _read(
     """Read a ``<Sensor>``; with ``file`` and without a type, that of the file, in the pose of the element."""
     context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
     root = context.include(element)
-    found = SensorElement() if root is None or root.tag != "sensor" else _read(root, context, placement, ignored)
-    type_name, name = element.attributes.get("type"), element.attributes.get("name", found.name)
+    from_file = SensorElement() if root is None or root.tag != "sensor" else _read(root, context, placement, ignored)
+    type_name, name = element.attributes.get("type"), element.attributes.get("name", from_file.name)
     if type_name is None:
         place = _Sensor(context, Intrinsics())
         context.walk(element, placement, {**ignored, **_IN_FILE}, place)
-        return found._replace(pose=place.placement.pose, name=name)
+        return from_file._replace(pose=place.placement.pose, name=name)
     kind = SENSOR_KINDS.get(next(iter(type_name.split()), "").lower())
     if kind is None:
-        hint = did_you_mean(type_name, [one.name for one in SENSOR_KINDS.values()])
+        hint = did_you_mean(type_name, [sensor_kind.name for sensor_kind in SENSOR_KINDS.values()])
         context.diagnostics.error(
             "unknown-interface", f"there is no sensor of type '{type_name}'", element.source, hint
         )

@@ -83,17 +83,17 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
     if plain is not None and len(plain) == count:
         return plain
     values, rest = leading_numbers(element.text)
-    found = len(values)
-    if found == count and not rest:  # numbers whose sum is too large for ``_plain_numbers``
+    given = len(values)
+    if given == count and not rest:  # numbers whose sum is too large for ``_plain_numbers``
         return values
-    if found < count and rest:
+    if given < count and rest:
         values.append(0.0)
     kept = [*before[len(values) :], *[0.0] * count]
     values = (values + kept)[:count]
     taken = " ".join(f"{value:g}" for value in values)
     expected = "a number" if count == 1 else f"{count} numbers separated by spaces"
     diagnostics.warn(
-        "bad-number" if found < count and rest else "number-count",
+        "bad-number" if given < count and rest else "number-count",
         f"<{element.spelled}> holds '{' '.join(element.text.split())}' where {expected} should stand; "
         f"OpenRAVE reads {taken}",
         element.source,
@@ -144,13 +144,13 @@ def words(text: str) -> list[str]:
 
 def word(element: Element, diagnostics: Diagnostics) -> str:
     """Return the first word of an element's text, a name; more words have no effect (``extra-words``)."""
-    found = words(element.text) or [""]
-    if len(found) > 1:
+    given = words(element.text) or [""]
+    if len(given) > 1:
         message = (
-            f"<{element.spelled}> holds '{' '.join(found)}' where one name should stand; OpenRAVE reads '{found[0]}'"
+            f"<{element.spelled}> holds '{' '.join(given)}' where one name should stand; OpenRAVE reads '{given[0]}'"
         )
         diagnostics.warn("extra-words", message, element.source, "names that others refer to cannot hold spaces")
-    return found[0]
+    return given[0]
 
 
 def is_true(value: str) -> bool:
@@ -217,7 +217,7 @@ def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
     except ZeroDivisionError:
         raise SourceError(f"<{element.spelled}> holds no rotation: {element.text.strip()}", element.source) from None
     taken = [entry for row in rows_from_wxyz(wxyz) for entry in row]
-    if any(abs(one - other) > _OF_FEW_DIGITS for one, other in zip(taken, m, strict=True)):  # transform-09
+    if any(abs(entry - other) > _OF_FEW_DIGITS for entry, other in zip(taken, m, strict=True)):  # transform-09
         rows = " ".join(f"{entry:.3g}" for entry in taken)
         message = f"<{element.spelled}> holds no rotation; OpenRAVE makes {rows} of it"
         diagnostics.warn("bad-rotation", message, element.source, "its rows have length 1 and are perpendicular")

@@ -78,7 +78,7 @@ def base_of(tree: RobotTree, link: str) -> str:
         joint = tree.above[link]
         link = joint.parent
         count += tree.is_dof(joint)
-        branches = [one for one in tree.below[link] if tree.is_dof(one) or any(tree.dofs_below(one.child))]
+        branches = [branch for branch in tree.below[link] if tree.is_dof(branch) or any(tree.dofs_below(branch.child))]
         if count >= _LEAST_DOFS and len(branches) > 1:
             break
     return link

@@ -26,11 +26,11 @@ def children(element: Element, tag: str) -> list[Element]:
 
 def only(element: Element, tag: str, context: Context) -> Element | None:
     """Return the first child element with a tag, or None; further ones are reported and left out."""
-    found = children(element, tag)
-    for other in found[1:]:
-        message = f"<{tag}> is left out: the first one, in line {found[0].source.line}, counts"
+    elements = children(element, tag)
+    for other in elements[1:]:
+        message = f"<{tag}> is left out: the first one, in line {elements[0].source.line}, counts"
         context.diagnostics.warn("repeated-tag", message, other.source, "write one")
-    return found[0] if found else None
+    return elements[0] if elements else None
 
 
 def check_children(
@@ -119,14 +119,14 @@ def named(elements: Sequence[Element], what: str) -> dict[str, Element]:
     Raises:
         SourceError: two of them have the same name, or one has none.
     """
-    found: dict[str, Element] = {}
+    by_name: dict[str, Element] = {}
     for element in elements:
-        first = found.setdefault(attribute(element, "name"), element)
+        first = by_name.setdefault(attribute(element, "name"), element)
         if first is not element:
             name, line = element.attributes["name"], first.source.line
             message = f"there are two {what}s '{name}'; the other one is in line {line}"
             raise SourceError(message, element.source, "give each a name of its own")
-    return found
+    return by_name
 
 
 def known_name(name: str, known: Mapping[str, object], what: str, element: Element) -> str:

@@ -24,8 +24,10 @@ def read_link(element: Element, shapes: UrdfShapeReader) -> LinkBuilder:
     context = shapes.context
     check_children(element, _KNOWN, context, ("sensor", "gazebo", "contact"))
     link = LinkBuilder(element.attributes["name"], element.source, inertial=_inertial(element, context))
-    visuals = [found for one in children(element, "visual") if (found := shapes.visual(one)) is not None]
-    collisions = [found for one in children(element, "collision") if (found := shapes.collision(one)) is not None]
+    visuals = [shape for visual in children(element, "visual") if (shape := shapes.visual(visual)) is not None]
+    collisions = [
+        shape for collision in children(element, "collision") if (shape := shapes.collision(collision)) is not None
+    ]
     link.geometries = [*(drawn for drawn, _ in visuals), *collisions]
     link.add_to_group(VISUAL_GROUP, (shaped for _, shaped in visuals))
     link.add_to_group(SPHERES_GROUP, ())
@@ -36,8 +38,8 @@ def read_groups(element: Element, shapes: UrdfShapeReader) -> dict[str, list[Geo
     """Return the shapes of the ``<geometry_group>`` elements of a link, or_urdf's extension, by group."""
     groups: dict[str, list[Geometry]] = {}
     for group in children(element, "geometry_group"):
-        found = shapes.collision(group)
-        groups.setdefault(attribute(group, "name"), []).extend([] if found is None else [found])
+        shape = shapes.collision(group)
+        groups.setdefault(attribute(group, "name"), []).extend([] if shape is None else [shape])
     return groups
 
 
@@ -48,8 +50,8 @@ def _inertial(element: Element, context: Context) -> Inertial:
         return MASSLESS
     T_link_inertial = origin_of(inertial, context)
     mass, tensor = only(inertial, "mass", context), only(inertial, "inertia", context)
-    for tag, found in (("mass", mass), ("inertia", tensor)):
-        if found is None:
+    for tag, part in (("mass", mass), ("inertia", tensor)):
+        if part is None:
             context.diagnostics.error(
                 "missing-inertia", f"<inertial> has no <{tag}>", inertial.source, "it counts as 0"
             )

@@ -92,10 +92,10 @@ class Packages:
                 yield folder
             yield os.path.join(folder, package)
         for variable in ("ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH"):
-            yield from (path for one in self._variable(variable) for path in _below(one, package))
+            yield from (path for folder in self._variable(variable) for path in _below(folder, package))
         for variable in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH"):
             yield from (os.path.join(prefix, "share", package) for prefix in self._variable(variable))
-        prefixes = (sys.prefix, *(os.path.join(one, "cmeel.prefix") for one in site.getsitepackages()))
+        prefixes = (sys.prefix, *(os.path.join(folder, "cmeel.prefix") for folder in site.getsitepackages()))
         yield from (os.path.join(prefix, "share", package) for prefix in prefixes)
         yield from (os.path.join(folder, package) for folder in data_folders())
 
@@ -142,7 +142,7 @@ def _below(entry: str, package: str) -> Iterator[str]:
 def _manifest_name(path: str) -> str:
     try:
         with open(path, "rb") as file:
-            found = _MANIFEST_NAME.search(file.read(_LONGEST_MANIFEST))
+            match = _MANIFEST_NAME.search(file.read(_LONGEST_MANIFEST))
     except OSError:
         return ""
-    return found[1].decode(errors="replace") if found else ""
+    return match[1].decode(errors="replace") if match else ""

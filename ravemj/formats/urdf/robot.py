@@ -47,7 +47,7 @@ def read_robot(root: Element, context: Context, given: Mapping[str, str]) -> Bod
     elements = named(children(root, "link"), "link")
     if not elements:
         raise SourceError("there is no <link> in it", root.source)
-    frames = [read_frame(one, elements, context) for one in named(children(root, "joint"), "joint").values()]
+    frames = [read_frame(joint, elements, context) for joint in named(children(root, "joint"), "joint").values()]
     floating = _floating(frames, elements, context)
     sources = {name: element.source for name, element in elements.items()}
     tree = RobotTree(sources, [joint for joint in frames if joint.type != "floating"], floating)
@@ -60,10 +60,10 @@ def read_robot(root: Element, context: Context, given: Mapping[str, str]) -> Bod
 
 def settle(body: BodyBuilder, context: Context) -> KinBody:
     """Return the frozen body; report initial values that limits change together, since legged robots have many."""
-    found = Diagnostics()
-    frozen = body.freeze(found)
-    moved = [finding for finding in found if finding.code == "value-outside-limits"]
-    for finding in found:
+    findings = Diagnostics()
+    frozen = body.freeze(findings)
+    moved = [finding for finding in findings if finding.code == "value-outside-limits"]
+    for finding in findings:
         if finding.code != "value-outside-limits":
             context.diagnostics.add(finding)
     if moved:
@@ -89,9 +89,9 @@ def _name(root: Element, context: Context) -> str:
 def _note_left_out(root: Element, context: Context) -> None:
     """Report unused elements, once for each tag."""
     inner = (part for child in root.children if child.spelled in {"link", "joint"} for part in child.children)
-    found = [child for child in (*root.children, *inner) if child.spelled in _LEFT_OUT]
-    for tag, count in Counter(child.spelled for child in found).items():
-        first = next(child for child in found if child.spelled == tag)
+    left_out = [child for child in (*root.children, *inner) if child.spelled in _LEFT_OUT]
+    for tag, count in Counter(child.spelled for child in left_out).items():
+        first = next(child for child in left_out if child.spelled == tag)
         context.diagnostics.note("left-out", f"<{tag}> is left out, {count} in the file", first.source)
 
 
@@ -162,7 +162,7 @@ def _add_parts(
 def _add_groups(links: Mapping[str, LinkBuilder], elements: Mapping[str, Element], shapes: UrdfShapeReader) -> None:
     """Add or_urdf's groups of shapes to all links; a link without shapes of a group has it empty."""
     groups = {name: read_groups(element, shapes) for name, element in elements.items()}
-    for group in dict.fromkeys(group for found in groups.values() for group in found):
+    for group in dict.fromkeys(group for own_groups in groups.values() for group in own_groups):
         for name, link in links.items():
             link.add_to_group(group, groups[name].get(group, ()))
 

@@ -38,9 +38,9 @@ class ShapeWriter:
         lost = [name for name in groups if name not in {VISUAL_GROUP, "spheres"}]
         if lost:
             lose(f"the group of shapes '{lost[0]}' is left out", link.name)
-        drawn = groups.get(VISUAL_GROUP) or tuple(one for one in link.geometries if one.visible)
-        visuals = [element for one in drawn for element in self._visuals(one)]
-        return [*visuals, *(element for one in link.geometries for element in self._collisions(one))]
+        drawn = groups.get(VISUAL_GROUP) or tuple(geometry for geometry in link.geometries if geometry.visible)
+        visuals = [element for geometry in drawn for element in self._visuals(geometry)]
+        return [*visuals, *(element for geometry in link.geometries for element in self._collisions(geometry))]
 
     def _visuals(self, geometry: Geometry) -> Iterator[XmlText]:
         solids = geometry.shape.solids()

@@ -222,10 +222,10 @@ class UrdfShapeReader:
 
     def _find(self, uri: str, source: Source) -> str | None:
         """Return the path of a mesh file; None, with a finding, if it is missing or must not be read."""
-        found, diagnostics = self.packages.find(uri), self.context.diagnostics
-        if found.path is not None:
-            return found.path
-        if found.is_remote:
+        package_file, diagnostics = self.packages.find(uri), self.context.diagnostics
+        if package_file.path is not None:
+            return package_file.path
+        if package_file.is_remote:
             message = f"'{uri}' is on the network, and ravemj reads no files from there"
             diagnostics.error("refused-file", message, source, "save it beside the URDF")
         elif self.context.access.is_dropped:
@@ -235,7 +235,7 @@ class UrdfShapeReader:
         else:
             package = uri.partition("://")[2].lstrip("/").partition("/")[0]
             is_packaged = uri.partition("://")[0].lower() in SCHEMES
-            places = ", ".join(found.searched) or "no folder of that name"
+            places = ", ".join(package_file.searched) or "no folder of that name"
             hint = f"--package {package}=FOLDER says where it is, and so does ROS_PACKAGE_PATH" if is_packaged else ""
             message = f"there is no file '{uri}'; looked in {places}"  # not quoted, as long quotations are cut
             diagnostics.warn("missing-file", message, source, hint)

@@ -45,9 +45,11 @@ def add_srdf(body: BodyBuilder, tree: RobotTree, document: Document, context: Co
         message = f"the SRDF is of the robot '{root.attributes['name']}', and the URDF of '{body.name}'"
         context.diagnostics.warn("other-robot", message, root.source)
     for tag in _NOTED:
-        found = children(root, tag)
-        if found:
-            context.diagnostics.note("left-out", f"<{tag}> is left out: it has no effect on the model", found[0].source)
+        elements = children(root, tag)
+        if elements:
+            context.diagnostics.note(
+                "left-out", f"<{tag}> is left out: it has no effect on the model", elements[0].source
+            )
     _Srdf(root, body, tree, context).add(state)
 
 
@@ -74,7 +76,7 @@ class _Srdf:
         self.body = body
         self.tree = tree
         self.context = context
-        self.elements = {attribute(one, "name"): one for one in children(root, "group")}
+        self.elements = {attribute(group, "name"): group for group in children(root, "group")}
         self.groups: dict[str, SrdfGroup] = {}
         for name in self.elements:
             self._group(name, ())
@@ -104,20 +106,24 @@ class _Srdf:
         names = {link.name: index for index, link in enumerate(self.body.links)}
         pairs = self._pairs("disable_collisions", ("link1", "link2"))
         silent = [
-            link for one in children(self.root, "disable_default_collisions") if (link := self._link(one, "link"))
+            link
+            for element in children(self.root, "disable_default_collisions")
+            if (link := self._link(element, "link"))
         ]
         pairs += [(link, other) for link in silent for other in names if other != link]
         kept = {frozenset(pair) for pair in self._pairs("enable_collisions", ("link1", "link2"))}
-        indices = ((names[one], names[two]) for one, two in pairs if frozenset((one, two)) not in kept and one != two)
+        indices = (
+            (names[first], names[two]) for first, two in pairs if frozenset((first, two)) not in kept and first != two
+        )
         self.body.adjacent += list(dict.fromkeys((min(pair), max(pair)) for pair in indices))
 
     def _pairs(self, tag: str, ends: tuple[str, str]) -> list[tuple[str, str]]:
-        found: list[tuple[str, str]] = []
+        pairs: list[tuple[str, str]] = []
         for element in children(self.root, tag):
-            one, two = (self._link(element, end) for end in ends)
-            if one is not None and two is not None:
-                found.append((one, two))
-        return found
+            first, two = (self._link(element, end) for end in ends)
+            if first is not None and two is not None:
+                pairs.append((first, two))
+        return pairs
 
     def _add_spheres(self) -> None:
         """Fill the groups ``spheres``; centres are in the frame of the first collision shape, as or_urdf reads them."""
@@ -125,9 +131,11 @@ class _Srdf:
             name = self._link(element, "link")
             if name is None:
                 continue
-            link = next(one for one in self.body.links if one.name == name)
-            T_link_first = next((one.T_link_geometry for one in link.geometries if not one.visible), Pose())
-            link.add_to_group(SPHERES_GROUP, [_sphere(one, T_link_first) for one in children(element, "sphere")])
+            link = next(candidate for candidate in self.body.links if candidate.name == name)
+            T_link_first = next(
+                (geometry.T_link_geometry for geometry in link.geometries if not geometry.visible), Pose()
+            )
+            link.add_to_group(SPHERES_GROUP, [_sphere(sphere, T_link_first) for sphere in children(element, "sphere")])
 
     # Groups
 
@@ -150,9 +158,9 @@ class _Srdf:
         if inner not in self.elements:
             self._unknown("group", inner, element, self.elements)
             return
-        found = self._group(inner, opened)
-        group.joints |= found.joints
-        group.links |= found.links
+        subgroup = self._group(inner, opened)
+        group.joints |= subgroup.joints
+        group.links |= subgroup.links
 
     def add_link(self, group: SrdfGroup, element: Element, _: tuple[str, ...]) -> None:
         link = self._link(element, "name")
@@ -179,7 +187,7 @@ class _Srdf:
         if name in self.tree.joints:
             group.joints[name] = None
             group.links[self.tree.joints[name].child] = None
-        elif not any(attribute(one, "name") == name for one in children(self.root, "virtual_joint")):
+        elif not any(attribute(joint, "name") == name for joint in children(self.root, "virtual_joint")):
             self._unknown("joint", name, element, self.tree.joints)
 
     # Manipulators
@@ -202,7 +210,7 @@ class _Srdf:
                 self.context.diagnostics.warn("no-arm", message, element.source, hint)
                 continue
             name = attribute(element, "name")
-            joints = [] if gripper is None else [one for one in gripper.joints if self._is_dof(one)]
+            joints = [] if gripper is None else [joint for joint in gripper.joints if self._is_dof(joint)]
             arms.setdefault(name, ManipulatorBuilder(name, element.source, base, link, gripper_joints=joints))
         for name, group in self.groups.items():
             if name not in used and name not in arms and (ends := self._serial_ends(group)) is not None:

@@ -49,10 +49,10 @@ class RobotTree:
 
     def descendants(self, link: str) -> list[str]:
         """Return a link and its descendants, parents before children."""
-        found = [link]
-        for name in found:
-            found += [joint.child for joint in self.below[name]]
-        return found
+        names = [link]
+        for name in names:
+            names += [joint.child for joint in self.below[name]]
+        return names
 
     def path(self, link: str, base: str | None = None) -> list[UrdfJoint] | None:
         """Return the joints from a base, by default a root, to a link; None if it does not hang on that base."""

@@ -168,13 +168,13 @@ class _UrdfWriter:
         equation = joint.equation
         if equation is None:
             return None
-        found = leaders(equation)
-        if equation.affine is None or len(found) != 1:
+        followed = leaders(equation)
+        if equation.affine is None or len(followed) != 1:
             self.losses.add("URDF's joints follow multiples of one other joint; this one moves on its own", joint.name)
             return None
         del index
         slope = next(iter(equation.affine.slopes.values()))
-        return _MimicRelation(self.joints[found[0]], slope, equation.affine.offset)
+        return _MimicRelation(self.joints[followed[0]], slope, equation.affine.offset)
 
     def _new_link(self, name: str) -> str:
         """Write a link without mass and shapes, and return its name."""

@@ -29,6 +29,6 @@ def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         ArgumentError: the numbers of bodies or geoms differ.
     """
     expected = f"{model.nbody} bodies and {model.ngeom} geoms"
-    found = f"{data.xpos.shape[0]} bodies and {data.geom_xpos.shape[0]} geoms"
-    if found != expected:
-        raise ArgumentError(f"these are the data of another model: {found}, expected {expected}")
+    sizes = f"{data.xpos.shape[0]} bodies and {data.geom_xpos.shape[0]} geoms"
+    if sizes != expected:
+        raise ArgumentError(f"these are the data of another model: {sizes}, expected {expected}")

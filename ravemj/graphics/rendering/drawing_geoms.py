@@ -88,10 +88,10 @@ def _frames_of_triangles(corners: Floats, eye: Floats) -> tuple[Floats, Floats, 
 
     Only the front side is lit, so the normal is towards the camera.
     """
-    one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    away = np.einsum("ij,ij->i", np.cross(one, other), corners[:, 0] - eye) > 0
-    one, other = np.where(away[:, None], other, one), np.where(away[:, None], one, other)
-    length, x = _length_and_direction(one)
+    edge, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    away = np.einsum("ij,ij->i", np.cross(edge, other), corners[:, 0] - eye) > 0
+    edge, other = np.where(away[:, None], other, edge), np.where(away[:, None], edge, other)
+    length, x = _length_and_direction(edge)
     other_length, y = _length_and_direction(other)
     _, z = _length_and_direction(np.cross(x, y))
     return length, other_length, np.stack([x, y, z], axis=2)

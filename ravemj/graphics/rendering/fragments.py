@@ -162,8 +162,8 @@ class Raster:
     def _triangles(self, batch: PrimitiveBatch) -> Iterator[Fragments]:
         batch = _select(batch, batch.corners[:, :, 2].max(axis=1) > _NEAREST)
         corners = batch.corners
-        one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        facing, first, second = np.cross(other, one), np.cross(corners[:, 0], other), np.cross(one, corners[:, 0])
+        edge, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        facing, first, second = np.cross(other, edge), np.cross(corners[:, 0], other), np.cross(edge, corners[:, 0])
         volume = np.einsum("ij,ij->i", other, second)
         normals = facing / np.maximum(np.linalg.norm(facing, axis=1), np.finfo(float).tiny)[:, None]
         for owner, ray, at in self._pairs(*self._around_triangles(corners)):

@@ -231,8 +231,8 @@ def _edges(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
     """Return the pixels that differ from the next or the previous one in their row or column, shape (H, W)."""
     edges = np.zeros(picture.shape[:2], dtype=np.bool_)
     for first, second in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
-        one, other = picture[first], picture[second]
-        differs = (np.maximum(one, other) - np.minimum(one, other) > _EDGE).any(axis=2)
+        pixel, other = picture[first], picture[second]
+        differs = (np.maximum(pixel, other) - np.minimum(pixel, other) > _EDGE).any(axis=2)
         edges[first] |= differs
         edges[second] |= differs
     return edges

@@ -247,4 +247,4 @@ def _without_clicks(events: list[Event]) -> list[Event]:
     """Drop the pointer events from the first press on."""
     presses = (number for number, event in enumerate(events) if isinstance(event, Press))
     first = next(presses, len(events))
-    return [*events[:first], *(one for one in events[first:] if not isinstance(one, Press | Move | Release))]
+    return [*events[:first], *(event for event in events[first:] if not isinstance(event, Press | Move | Release))]

@@ -102,12 +102,12 @@ class Cube:
 
     def _edges(self) -> Iterator[_CubeEdge]:
         for axis in range(3):
-            one, other = (axis + 1) % 3, (axis + 2) % 3
+            next_axis, other = (axis + 1) % 3, (axis + 2) % 3
             for sign, other_sign in itertools.product((-1, 1), repeat=2):
                 ends = np.zeros((2, 3))
-                ends[:, one], ends[:, other] = sign * self.half[one], other_sign * self.half[other]
+                ends[:, next_axis], ends[:, other] = sign * self.half[next_axis], other_sign * self.half[other]
                 ends[:, axis] = -self.half[axis], self.half[axis]
-                yield _CubeEdge(axis, ends, ((one, sign), (other, other_sign)))
+                yield _CubeEdge(axis, ends, ((next_axis, sign), (other, other_sign)))
 
     def _in_world(self, points: Floats) -> Floats:
         return points @ self.T_world_cube[:3, :3].T + self.T_world_cube[:3, 3]

@@ -112,7 +112,7 @@ class Planar:
 
     @property
     def names(self) -> tuple[tuple[int, int], ...]:
-        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
+        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
         names = self._carry.names if self._carry is not None else []
         return tuple((2 - joint if self.backward else joint, count) for joint, count in names)
 

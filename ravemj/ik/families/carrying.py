@@ -62,12 +62,12 @@ class CarryPoint:
         by, how = self._crossing
         if by is None:
             seed = np.eye(3)[np.argmin(np.abs(middle.axis).reshape(3, -1).max(axis=1))].reshape(3, 1, 1)
-            one = cross(middle.axis, np.broadcast_to(seed, middle.axis.shape))
+            direction = cross(middle.axis, np.broadcast_to(seed, middle.axis.shape))
         else:
             other = (first, middle, third)[by]
-            one = other.axis if how == "along" else cross(middle.axis, other.axis)
-        one = one / np.sqrt(dot(one, one))
-        return Measure(one, cross(middle.axis, one), sphere=False)
+            direction = other.axis if how == "along" else cross(middle.axis, other.axis)
+        direction = direction / np.sqrt(dot(direction, direction))
+        return Measure(direction, cross(middle.axis, direction), sphere=False)
 
     def _sides(self, screws: Screws, start: Floats, goal: Floats) -> tuple[Side, Side]:
         measure = self.measure or self._measured(screws)
@@ -77,7 +77,7 @@ class CarryPoint:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
+        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
         return _names(self.pair)
 
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
@@ -133,7 +133,7 @@ class CarryPlane:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """For each choice between solutions, the joint, 0 to 2, and the number of solutions."""
+        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
         if self.pair is not None:
             return _names(self.pair)
         return [(2 if self.slider != 2 else 1, 2)]
@@ -192,19 +192,19 @@ def _foot(screws: Screws) -> int:
     return next((side for side in (0, 2) if not screws[side].prismatic and _meet(screws[1], screws[side])), 1)
 
 
-def _meet(one: Screw, other: Screw) -> bool:
+def _meet(first: Screw, other: Screw) -> bool:
     """Return whether two axes intersect without being parallel, in all examples."""
-    normal = cross(*np.broadcast_arrays(one.axis, other.axis))
+    normal = cross(*np.broadcast_arrays(first.axis, other.axis))
     if np.sqrt(dot(normal, normal)).min() < _NEAR:
         return False
-    return bool(np.abs(dot(normal, other.point - one.point)).max() < _NEAR)
+    return bool(np.abs(dot(normal, other.point - first.point)).max() < _NEAR)
 
 
-def _nearest(one: Screw, other: Screw) -> Floats:
+def _nearest(first: Screw, other: Screw) -> Floats:
     """Return the point of an axis nearest to another axis."""
-    away, cosine = other.point - one.point, dot(one.axis, other.axis)
-    distance = (dot(away, one.axis) - cosine * dot(away, other.axis)) / (1 - cosine * cosine)
-    return one.point + distance * one.axis
+    away, cosine = other.point - first.point, dot(first.axis, other.axis)
+    distance = (dot(away, first.axis) - cosine * dot(away, other.axis)) / (1 - cosine * cosine)
+    return first.point + distance * first.axis
 
 
 def _crossing(screws: Screws) -> tuple[int | None, str]:

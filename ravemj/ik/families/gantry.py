@@ -31,7 +31,7 @@ class Gantry:
         self.why = "three other joints give the orientation, and the place is linear in their values"
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the joint's position and their number, the fastest first."""
+        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
         return [(self.order[self.turning[joint]], count) for joint, count in self.wrist.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

@@ -59,7 +59,7 @@ class General:
         self._shared_left = None if shift else _left(self._screws)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the joint's position and the number of solutions."""
+        """Return the choices of a solution: index of the joint, number of options."""
         return [(self.order[2], _BRANCHES)]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

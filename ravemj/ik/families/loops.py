@@ -42,12 +42,12 @@ class Arm:
         return motion
 
     def _ends(self, places: Sequence[int]) -> list[int]:
-        found: list[int] = []
+        ends: list[int] = []
         for place in places:
             if place not in self.locked:
                 break
-            found.append(place)
-        return found
+            ends.append(place)
+        return ends
 
     @property
     def inner(self) -> list[int]:
@@ -82,7 +82,7 @@ class Family(Protocol):
     shared: bool
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the joint's position and their number, the fastest first."""
+        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
         ...
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
@@ -213,7 +213,7 @@ class BlockFamily:
         return points, (Plane(normals[0], points[0]), Plane(normals[1], points[1]))
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the joint's position and their number, the fastest first."""
+        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
         around = [(self.circle.places[joint], count) for joint, count in self.carry.names]
         return around + [(self.circle.block[joint], count) for joint, count in self.inside.names]
 
@@ -267,7 +267,7 @@ class PointFamily:
         return screws, _moved(seen, self.tool)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return for each choice between solutions the joint's position and their number, the fastest first."""
+        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
         return [(self.order[joint], count) for joint, count in self.carry.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

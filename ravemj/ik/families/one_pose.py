@@ -84,7 +84,7 @@ class OnePose:
         signs = (1.0, -1.0) if side == 0 else (-1.0, 1.0)
         a, b = sides[side][1][equation]
         known, other = sides[side][1][1 - equation], sides[1 - side][1][1 - equation]
-        found: list[tuple[Turn, Turn]] = []
+        turns_found: list[tuple[Turn, Turn]] = []
         firsts = _linear(signs[0] * a, signs[0] * b, rest[equation])
         seconds = [
             _linear(
@@ -96,8 +96,8 @@ class OnePose:
         ]
         for choice in (0, 1):
             for turn, turns in zip(firsts, seconds, strict=True):
-                found.append((turn, turns[choice]) if side == 0 else (turns[choice], turn))
-        return found
+                turns_found.append((turn, turns[choice]) if side == 0 else (turns[choice], turn))
+        return turns_found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
         """Return the invariants of the middle joint for a point moved by another joint: constants and factors."""

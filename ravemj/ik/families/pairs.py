@@ -80,7 +80,9 @@ class Measure:
 
 
 def _side(constants: list[Floats], factors: list[list[Floats]]) -> Side:
-    shape = np.broadcast_shapes(*(one.shape for one in constants), *(one.shape for row in factors for one in row))
+    shape = np.broadcast_shapes(
+        *(array.shape for array in constants), *(array.shape for row in factors for array in row)
+    )
     constant, factor = np.empty((2, *shape)), np.empty((2, 2, *shape))
     for row in range(2):
         constant[row] = constants[row]
@@ -179,9 +181,9 @@ class Pair:
         k = a * start + b * start * start - rest[1]
         linear = turn[1] + (a + 2 * b * start) * slope
         square = np.array([b * slope[0] ** 2, b * slope[0] * slope[1], b * slope[1] ** 2])
-        found = solve_quadratic(k, linear, square)
-        distance = tile(start, found.shape[-2]) + tile(slope[0], found.shape[-2]) * found[0]
-        return (distance + tile(slope[1], found.shape[-2]) * found[1])[None], found
+        turns = solve_quadratic(k, linear, square)
+        distance = tile(start, turns.shape[-2]) + tile(slope[0], turns.shape[-2]) * turns[0]
+        return (distance + tile(slope[1], turns.shape[-2]) * turns[1])[None], turns
 
     def _two_turns(self, one: Floats, three: Floats, rest: Floats) -> tuple[Floats, Floats]:
         """Solve A x + C y = rest for unit vectors: |adj(A) (rest - C y)|² = det(A)²."""
@@ -194,15 +196,15 @@ class Pair:
         k = m[0] * m[0] + m[1] * m[1] - determinant * determinant
         linear = np.array([-2 * (m[0] * c[0][j] + m[1] * c[1][j]) for j in range(2)])
         square = np.array([c[0][i] * c[0][j] + c[1][i] * c[1][j] for i, j in ((0, 0), (0, 1), (1, 1))])
-        found = solve_quadratic(k, linear, square)
+        turns = solve_quadratic(k, linear, square)
         sign = np.where(determinant < 0, -1.0, 1.0)
         values = [
-            tile(sign * m[i], found.shape[-2])
-            - tile(sign * c[i][0], found.shape[-2]) * found[0]
-            - tile(sign * c[i][1], found.shape[-2]) * found[1]
+            tile(sign * m[i], turns.shape[-2])
+            - tile(sign * c[i][0], turns.shape[-2]) * turns[0]
+            - tile(sign * c[i][1], turns.shape[-2]) * turns[1]
             for i in range(2)
         ]
-        return normalized(np.stack(values)), found
+        return normalized(np.stack(values)), turns
 
 
 def _in_order(side: int, first: Floats, second: Floats) -> tuple[Floats, Floats]:

@@ -107,10 +107,10 @@ def _orders(arm: Arm) -> Iterator[Arm]:
 
 
 def _commute(arm: Arm, slider: int, other: int) -> bool:
-    one, two = arm.screws[slider], arm.screws[other]
-    if not one.prismatic or two.prismatic or {slider, other} & arm.locked:
+    first, two = arm.screws[slider], arm.screws[other]
+    if not first.prismatic or two.prismatic or {slider, other} & arm.locked:
         return False
-    return bool(np.linalg.norm(np.cross(one.axis.ravel(), two.axis.ravel())) < EXACT)
+    return bool(np.linalg.norm(np.cross(first.axis.ravel(), two.axis.ravel())) < EXACT)
 
 
 def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:

@@ -59,13 +59,13 @@ def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
     return points
 
 
-def _nearest(one: Screw, other: Screw) -> Floats | None:
+def _nearest(first: Screw, other: Screw) -> Floats | None:
     """Return the point of an axis nearest to another; None if they are parallel and apart."""
-    a, b, away = one.axis.ravel(), other.axis.ravel(), (other.point - one.point).ravel()
+    a, b, away = first.axis.ravel(), other.axis.ravel(), (other.point - first.point).ravel()
     square = 1 - (a @ b) ** 2
     if square < TOLERANCE**2:
         return None
-    return one.point.ravel() + (away @ a - (a @ b) * (away @ b)) / square * a
+    return first.point.ravel() + (away @ a - (a @ b) * (away @ b)) / square * a
 
 
 def _distance(point: Floats, screw: Screw) -> float:

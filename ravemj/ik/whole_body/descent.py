@@ -91,9 +91,9 @@ class _State(NamedTuple):
 
     def costs(self) -> list[tuple[float, float]]:
         """Return the cost and the sum of weights of each level: violated inequalities, then the priorities."""
-        violations = float(sum(np.square(np.maximum(one.least, 0.0)).sum() for one in self.inequalities))
+        violations = float(sum(np.square(np.maximum(inequality.least, 0.0)).sum() for inequality in self.inequalities))
         numbers = sorted({task.priority for task, _ in self.measured})
-        levels = [[one for one in self.measured if one[0].priority == number] for number in numbers]
+        levels = [[task for task in self.measured if task[0].priority == number] for number in numbers]
         costs = [(_cost(level), sum(task.weight for task, _ in level)) for level in levels]
         return [(violations, 1.0), *costs]
 
@@ -191,7 +191,7 @@ class Descent:
             daqp()
             return minimise_levels(self._levels(measured), damping, lower, upper, inequalities)
         kept = self.exact_contacts
-        ordered = sorted(measured, key=lambda one: not one[0].is_contact) if kept else measured
+        ordered = sorted(measured, key=lambda task: not task[0].is_contact) if kept else measured
         jacobian, error = _weighted(ordered, len(lower))
         hessian = jacobian.T.dot(jacobian)
         hessian.ravel()[:: len(lower) + 1] += damping * squared(error)
@@ -204,8 +204,8 @@ class Descent:
     def _levels(self, measured: Sequence[tuple[WeightedTask, TaskRows]]) -> list[TaskRows]:
         """Return the weighted rows of each priority; exact contacts come first within their priority."""
 
-        def level(one: tuple[WeightedTask, TaskRows]) -> tuple[int, bool]:
-            return one[0].priority, not (one[0].is_contact and self.exact_contacts)
+        def level(task: tuple[WeightedTask, TaskRows]) -> tuple[int, bool]:
+            return task[0].priority, not (task[0].is_contact and self.exact_contacts)
 
         parts = (
             _weighted(list(group), len(self.limits.lower)) for _, group in groupby(sorted(measured, key=level), level)

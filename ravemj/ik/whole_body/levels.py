@@ -52,8 +52,10 @@ def minimise_levels(
     """
     x = np.minimum(np.maximum(np.zeros(len(lower)), lower), upper)
     basis = np.eye(len(lower))[:, upper > lower]
-    rows = np.vstack([one.jacobian for one in inequalities]) if inequalities else np.zeros((0, len(lower)))
-    least = np.concatenate([one.least for one in inequalities]) if inequalities else np.zeros(0)
+    rows = (
+        np.vstack([inequality.jacobian for inequality in inequalities]) if inequalities else np.zeros((0, len(lower)))
+    )
+    least = np.concatenate([inequality.least for inequality in inequalities]) if inequalities else np.zeros(0)
     violated = rows @ x < least
     if violated.any():
         present = rows @ x
@@ -112,7 +114,7 @@ def _solve(
     hessian: Floats, gradient: Floats, matrix: Floats, below: Floats, above: Floats
 ) -> tuple[Floats, float, int, object]:
     scale = 1 / np.abs(hessian).max()
-    arrays = (np.ascontiguousarray(one) for one in (hessian * scale, gradient * scale, matrix, above, below))
+    arrays = (np.ascontiguousarray(array) for array in (hessian * scale, gradient * scale, matrix, above, below))
     return daqp().solve(*arrays, np.zeros(len(below), dtype=np.int32), **_SETTINGS)
 
 

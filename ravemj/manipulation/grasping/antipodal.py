@@ -72,7 +72,7 @@ def pairs(rows: Floats, cast: Cast, friction: float, width: float) -> list[Pair]
         [Pair(first=array([0.02, 0., 0.]), second=array([-0.02, 0., 0.]), reason='')]
     """
     rows = np.asarray(rows, dtype=float).reshape(-1, 6)
-    found: list[Pair] = []
+    candidates: list[Pair] = []
     for near in (True, False):
         fits, opposite = _opposite(rows, -rows[:, 3:], cast, width, near=near)
         good = np.zeros(len(rows), dtype=np.bool_)
@@ -88,11 +88,11 @@ def pairs(rows: Floats, cast: Cast, friction: float, width: float) -> list[Pair]
                 rest = rest[again]
                 lines[rest] = middle[again] / length[again, None]
         reasons = np.where(good, "", np.where(fits, "not closed", "too wide"))
-        found += [
+        candidates += [
             Pair(row[:3], other[:3], reason)
             for row, other, reason in zip(rows, opposite, reasons.tolist(), strict=True)
         ]
-    return _distinct(found)
+    return _distinct(candidates)
 
 
 def is_antipodal(first: Floats, second: Floats, friction: float) -> NDArray[np.bool_]:
@@ -155,11 +155,11 @@ def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bo
     return hit & ((points[:, 3:] * lines).sum(axis=1) > 0), points
 
 
-def _distinct(found: list[Pair]) -> list[Pair]:
+def _distinct(candidates: list[Pair]) -> list[Pair]:
     """Return pairs without doubles, in either order of their points."""
     seen: set[tuple[tuple[int, ...], ...]] = set()
     distinct: list[Pair] = []
-    for pair in found:
+    for pair in candidates:
         ends = [tuple(np.round(point / _SAME).astype(int).tolist()) for point in (pair.first, pair.second)]
         key = tuple(sorted(ends)) if not pair.reason else (*ends[:1],)
         if key not in seen:

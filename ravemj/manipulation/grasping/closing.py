@@ -146,7 +146,7 @@ class Approach:
         tool_direction: The direction of the tool that is turned to ``direction``, in the frame of the tool, shape (3,).
         standoff: Distance back after the contact [m]; negative values count as 0.
         plane: In place of a standoff, the hand is moved until the tool lies on the plane n.x + d = 0, shape (4,).
-        flies: Whether the hand is placed and flies; otherwise only the fingers move.
+        flies: Whether the hand is placed and moves to the target; otherwise only the fingers move.
         only_target: Whether contact with another body is a failure.
         avoid_contact: Whether fingers stop one fine step before contact, and may not start in contact.
         avoided: Indices of links that must touch nothing.

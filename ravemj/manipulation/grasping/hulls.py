@@ -196,8 +196,8 @@ class _Growth:
             spatial = import_module("scipy.spatial")
         except ImportError:
             return False
-        found = spatial.ConvexHull(self.points)
-        self.facets, equations = np.asarray(found.simplices, int), np.asarray(found.equations, float)
+        qhull = spatial.ConvexHull(self.points)
+        self.facets, equations = np.asarray(qhull.simplices, int), np.asarray(qhull.equations, float)
         self.normals, self.offsets = equations[:, :-1], -equations[:, -1]
         return True
 

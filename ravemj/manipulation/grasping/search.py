@@ -90,6 +90,16 @@ class Grasp:
         return f"{'slides along' if slides else 'turns about'} {direction}"
 
 
+_TWIN_DISTANCE, _TWIN_ANGLE = 0.015, np.radians(20)
+"""Distance of contacts [m] and angle of approaches [rad] below which one grasp is a near twin of another."""
+
+
+def _are_twins(grasp: Grasp, other: Grasp) -> bool:
+    apart = np.linalg.norm(grasp.contacts[:, None, :3] - other.contacts[None, :, :3], axis=2)
+    farthest = max(apart.min(axis=0).max(initial=0), apart.min(axis=1).max(initial=0))
+    return bool(farthest < _TWIN_DISTANCE and grasp.approach @ other.approach > np.cos(_TWIN_ANGLE))
+
+
 class Grasps(Sequence[Grasp]):
     """Grasps of an object, the best first, and the candidates that were rejected.
 
@@ -105,8 +115,8 @@ class Grasps(Sequence[Grasp]):
     """
 
     def __init__(self, grasps: Sequence[Grasp], friction: float) -> None:
-        self.kept = tuple(sorted((one for one in grasps if not one.reason), key=lambda one: -one.quality))
-        self.rejected = tuple(one for one in grasps if one.reason)
+        self.kept = tuple(sorted((grasp for grasp in grasps if not grasp.reason), key=lambda grasp: -grasp.quality))
+        self.rejected = tuple(grasp for grasp in grasps if grasp.reason)
         self.friction = friction
 
     @overload
@@ -121,10 +131,22 @@ class Grasps(Sequence[Grasp]):
         """Return the number of grasps."""
         return len(self.kept)
 
+    def distinct(self, most: int) -> list[Grasp]:
+        """Return at most ``most`` grasps, the best first, without near twins of better ones.
+
+        Twins approach within 20 degrees of each other, and each contact of either is within 1.5 cm of one of the other:
+        a hand moved a little, or turned by half a turn.
+        """
+        chosen: list[Grasp] = []
+        for grasp in self.kept:
+            if len(chosen) < most and not any(_are_twins(grasp, better) for better in chosen):
+                chosen.append(grasp)
+        return chosen
+
     @property
     def counts(self) -> dict[str, int]:
         """Number of rejected candidates for each reason, the most frequent first."""
-        return dict(Counter(one.reason for one in self.rejected).most_common())
+        return dict(Counter(grasp.reason for grasp in self.rejected).most_common())
 
     def __str__(self) -> str:
         """Return the table of counts."""
@@ -250,14 +272,14 @@ class _Search:
         return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
 
     def run(self, reach: Reach | None) -> list[Grasp]:
-        found: list[Grasp] = []
+        judged: list[Grasp] = []
         surface = self._surface()
         with hand_tests(self._world, self._robot, self._target) as tests:
             make = self._flown if self._choices.method == "fly" else self._jawed
-            found = [self._judged(candidate, tests) for candidate in make(surface, tests)]
+            judged = [self._judged(candidate, tests) for candidate in make(surface, tests)]
         if reach is not None:
-            found = [grasp if grasp.reason else self._reached(grasp, reach) for grasp in found]
-        return found
+            judged = [grasp if grasp.reason else self._reached(grasp, reach) for grasp in judged]
+        return judged
 
     def _surface(self) -> Floats:
         """Return points of the surface and outward normals in the object's frame, shape (n, 6)."""
@@ -348,8 +370,8 @@ class _Search:
         """Return a grasp with joint values of the arm, or with the reason why there are none."""
         T_world_tool = self._T_world_target @ grasp.pose
         T_world_tool[:3, 3] -= _FREE * self._T_world_target[:3, :3] @ grasp.approach
-        found = reach(T_world_tool)
-        return replace(grasp, reason=found) if isinstance(found, str) else replace(grasp, arm=found)
+        reached = reach(T_world_tool)
+        return replace(grasp, reason=reached) if isinstance(reached, str) else replace(grasp, arm=reached)
 
 
 def jaws_of(robot: BodyState, arm: Manipulator) -> antipodal.Jaws:

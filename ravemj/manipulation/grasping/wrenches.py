@@ -145,8 +145,8 @@ def volume(positions: ArrayLike, normals: ArrayLike, friction: float, edges: int
         friction: Friction coefficient.
         edges: Number of edges of a friction cone.
     """
-    found = hull(_points(positions, normals, friction, edges))
-    return 0.0 if found is None else found.volume
+    convex_hull = hull(_points(positions, normals, friction, edges))
+    return 0.0 if convex_hull is None else convex_hull.volume
 
 
 def _points(positions: ArrayLike, normals: ArrayLike, friction: float, edges: int) -> Floats:

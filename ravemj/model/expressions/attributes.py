@@ -78,15 +78,15 @@ def partials(text: str) -> dict[str, str]:
     shared = f"{shared.strip().rstrip(';')}; " if shared.strip() and parts else ""
     if not parts and text.strip():
         raise ExpressionError("a partial derivative begins otherwise", text, 0, "'|name expression'")
-    found: dict[str, str] = {}
+    derivatives: dict[str, str] = {}
     position = len(text) - sum(len(part) + 1 for part in parts)
     for part in parts:
         words = part.split(maxsplit=1)
         if len(words) < 2:
             raise ExpressionError("a partial derivative is not complete", text, position + 1, "'name expression'")
-        found[words[0]] = shared + words[1].strip()
+        derivatives[words[0]] = shared + words[1].strip()
         position += len(part) + 1
-    return found
+    return derivatives
 
 
 def linear_mimic(text: str) -> tuple[str, str, str]:

@@ -126,17 +126,17 @@ class Expression:
         The arrays, by variable name, must broadcast; mostly all have shape (N,).
         """
         shape = np.broadcast_shapes(*(np.shape(array) for array in values.values()))
-        found: dict[Node, Floats] = {}
+        results: dict[Node, Floats] = {}
         with np.errstate(all="ignore"):
             for node in self.nodes:
                 match node:
                     case Number(value):
-                        found[node] = np.asarray(value)
+                        results[node] = np.asarray(value)
                     case Variable(name):
-                        found[node] = np.asarray(values[name], dtype=np.float64)
+                        results[node] = np.asarray(values[name], dtype=np.float64)
                     case Call(function, arguments):
-                        found[node] = FUNCTIONS[function].array(*(found[argument] for argument in arguments))
-        return np.array(np.broadcast_to(found[self.root], shape), dtype=np.float64)
+                        results[node] = FUNCTIONS[function].array(*(results[argument] for argument in arguments))
+        return np.array(np.broadcast_to(results[self.root], shape), dtype=np.float64)
 
     def derivative(self, variable: str) -> "Expression":
         """Return the partial derivative with respect to a variable.
@@ -164,8 +164,8 @@ class Expression:
 
         If the equation with all its values is too large, only the first value is considered.
         """
-        found = _first_within(self.nodes, lower, upper)
-        return self if found is self.root else Expression(found)
+        root = _first_within(self.nodes, lower, upper)
+        return self if root is self.root else Expression(root)
 
     def polynomial(self, variable: str, max_degree: int = 4) -> tuple[float, ...] | None:
         """Return the coefficients, in ascending order, of a polynomial in a single variable, else None.
@@ -216,10 +216,10 @@ def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
 
 def _chosen(nodes: list[Node], choice: dict[Node, int], algebra: Algebra) -> Node:
     """Return the equation with one value chosen for each multivalued function."""
-    found: dict[Node, Node] = {}
+    replaced: dict[Node, Node] = {}
     for node in nodes:
-        found[node] = node
+        replaced[node] = node
         if isinstance(node, Call):
             function = nth(node.function, choice[node]) if node in choice else node.function
-            found[node] = algebra.call(function, *(found[argument] for argument in node.arguments))
-    return found[nodes[-1]]
+            replaced[node] = algebra.call(function, *(replaced[argument] for argument in node.arguments))
+    return replaced[nodes[-1]]

@@ -34,21 +34,21 @@ def real_roots(*coefficients: float) -> tuple[float, ...]:
         except np.linalg.LinAlgError:
             return ()  # the leading coefficient is relatively too small
         is_real = np.abs(roots.imag) <= IMAGINARY_NOISE * np.maximum(1.0, np.abs(roots))
-        found = _polished(np.array(coefficients), roots.real[is_real])
-    return tuple(sorted(found))
+        polished = _polished(np.array(coefficients), roots.real[is_real])
+    return tuple(sorted(polished))
 
 
 def _polished(coefficients: np.ndarray[tuple[int], np.dtype[np.float64]], roots: object) -> list[float]:
     """Refine roots by two Newton steps, since the eigenvalues in ``np.roots`` are less accurate."""
     slope = np.polyder(coefficients)
-    found: list[float] = []
+    distinct: list[float] = []
     for root in np.asarray(roots, dtype=np.float64).tolist():
         x = float(root)
         for _ in range(2):
             step = float(np.polyval(coefficients, x)) / (float(np.polyval(slope, x)) or math.inf)
             x -= step if abs(step) < IMAGINARY_NOISE * max(1.0, abs(x)) else 0.0
-        found.append(x)
-    return found
+        distinct.append(x)
+    return distinct
 
 
 def opposite_angle(a: float, b: float, c: float) -> tuple[float, ...]:

@@ -100,29 +100,29 @@ def _key(node: Node) -> tuple[object, ...]:
 def contents(nodes: Sequence[Node]) -> tuple[object, ...]:
     """Return a key that is equal for equal expressions: for each node its key and the indices of its arguments."""
     places: dict[Node, int] = {}
-    found: list[object] = []
+    entries: list[object] = []
     for node in nodes:
-        places[node] = len(found)
+        places[node] = len(entries)
         is_call = isinstance(node, Call)
-        found.append((node.function, *(places[one] for one in node.arguments)) if is_call else _key(node))
-    return tuple(found)
+        entries.append((node.function, *(places[argument] for argument in node.arguments)) if is_call else _key(node))
+    return tuple(entries)
 
 
 def ordered(root: Node) -> list[Node]:
     """Return the nodes of an expression in topological order, each once."""
-    found: list[Node] = []
+    nodes_in_order: list[Node] = []
     seen: set[Node] = set()
     waiting: list[tuple[Node, bool]] = [(root, False)]
     while waiting:
         node, are_arguments_done = waiting.pop()
         if are_arguments_done:
-            found.append(node)
+            nodes_in_order.append(node)
         elif node not in seen:
             seen.add(node)
             waiting.append((node, True))
             if isinstance(node, Call):
                 waiting += [(argument, False) for argument in reversed(node.arguments)]
-    return found
+    return nodes_in_order
 
 
 def steps(nodes: list[Node], most_nested: int) -> list[Node]:

@@ -151,15 +151,15 @@ class _EquationParser:
     def _arguments(self, arity: int, owner: str) -> list[Node]:
         self._take("(")
         self._descend()
-        found = [self._expression(1)]
-        while self._next.text == "," and len(found) < arity:
+        arguments = [self._expression(1)]
+        while self._next.text == "," and len(arguments) < arity:
             self._index += 1
-            found.append(self._expression(1))
-        if len(found) < arity:
+            arguments.append(self._expression(1))
+        if len(arguments) < arity:
             raise self._unexpected(f"',' as {owner} takes {arity} values")
         self._take(")")
         self._depth -= 1
-        return found
+        return arguments
 
     @property
     def _next(self) -> Token:
@@ -184,18 +184,18 @@ class _EquationParser:
 
 def _tokens(text: str) -> list[Token]:
     """Split the text into tokens; the last one marks the end."""
-    found: list[Token] = []
+    tokens: list[Token] = []
     position = 0
-    while not found or found[-1].kind != "end":
+    while not tokens or tokens[-1].kind != "end":
         match = _TOKEN.match(text, position)
         if match is None:
             start = re.compile(f"[{SPACES}]*").match(text, position)
             position = start.end() if start else position
             raise ExpressionError(f"unknown character {text[position]!r}", text, position, _OPERAND)
         kind = match.lastgroup or ""
-        found.append(Token(kind, match[kind], match.start(kind)))
+        tokens.append(Token(kind, match[kind], match.start(kind)))
         position = match.end()
-    return found
+    return tokens
 
 
 def _number(text: str) -> float:

@@ -37,8 +37,8 @@ def fit_polynomial(
         fitted = np.array([constant] + [0.0] * degree)
     else:
         basis = np.polynomial.Chebyshev.fit(points[usable], values[usable], degree, domain=[lower, upper])
-        found = basis.convert(kind=np.polynomial.Polynomial).coef  # trailing zeros are omitted
-        fitted = np.pad(found, (0, degree + 1 - len(found)))
+        coefficients = basis.convert(kind=np.polynomial.Polynomial).coef  # trailing zeros are omitted
+        fitted = np.pad(coefficients, (0, degree + 1 - len(coefficients)))
     checks = np.linspace(lower, upper, CHECK_POINTS)
     errors = np.abs(np.polynomial.polynomial.polyval(checks, fitted) - expression.evaluate_many({variable: checks}))
     largest = float(errors.max()) if np.isfinite(errors).all() else math.inf

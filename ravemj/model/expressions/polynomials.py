@@ -47,7 +47,7 @@ def affine(nodes: list[Node]) -> Affine | None:
 
 def _polynomial(nodes: list[Node]) -> _Polynomial | None:
     """Return the last of ``nodes`` as a polynomial, or None if it is not one syntactically."""
-    found: dict[Node, _Polynomial | None] = {}
+    polynomials: dict[Node, _Polynomial | None] = {}
     for node in nodes:
         match node:
             case Number(value):
@@ -55,13 +55,13 @@ def _polynomial(nodes: list[Node]) -> _Polynomial | None:
             case Variable(name):
                 terms = {(name,): 1.0}
             case Call(function, arguments):
-                known = [one for one in map(found.__getitem__, arguments) if one is not None]
+                known = [polynomial for polynomial in map(polynomials.__getitem__, arguments) if polynomial is not None]
                 terms = _combined(function, known) if len(known) == len(arguments) else None
         if terms is not None and all(map(math.isfinite, terms.values())):  # otherwise 0 times them may be nan
-            found[node] = {variables: factor for variables, factor in terms.items() if factor}
+            polynomials[node] = {variables: factor for variables, factor in terms.items() if factor}
         else:
-            found[node] = None
-    return found[nodes[-1]]
+            polynomials[node] = None
+    return polynomials[nodes[-1]]
 
 
 def _combined(function: str, known: list[_Polynomial]) -> _Polynomial | None:

@@ -157,7 +157,12 @@ class KinBody(Record):
         """Indices of the links referred to by joints, adjacent pairs, manipulators, sensors or grabs."""
         links = {link for joint in self.all_joints for link in (joint.parent, joint.child)}
         links |= {link for pair in self.adjacent for link in pair}
-        links |= {link for one in self.manipulators for link in (one.base, one.effector) if link is not None}
+        links |= {
+            link
+            for manipulator in self.manipulators
+            for link in (manipulator.base, manipulator.effector)
+            if link is not None
+        }
         links |= {sensor.link for sensor in self.sensors if sensor.link is not None}
         return links | {link for grab in self.grabs for link in (grab.link, *grab.ignored)}
 

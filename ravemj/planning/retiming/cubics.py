@@ -82,8 +82,8 @@ def _check_values(values: Floats, cubics: "_Cubics", limits: PathLimits) -> None
         beyond = values[:-1] + extreme
         for row, column in np.argwhere(limits.coordinates.outside(beyond, limits.lower, limits.upper)):
             bounds = f"[{limits.lower[column]:g}, {limits.upper[column]:g}]"
-            found = f"value {column} swings to {beyond[row, column]:.6g}, outside its limits {bounds}"
-            raise RetimingError(f"{found}; more waypoints keep the smooth path nearer to straight lines")
+            mistake = f"value {column} swings to {beyond[row, column]:.6g}, outside its limits {bounds}"
+            raise RetimingError(f"{mistake}; more waypoints keep the smooth path nearer to straight lines")
 
 
 class _Cubics:

@@ -21,7 +21,7 @@ class Polynomial:
     merges: bool
 
     def _first_time(self, way: Floats, limits: PathLimits) -> float:
-        """Return the initial time to try [s], if all joints move: the minimum from rest to rest."""
+        """Return the shortest duration to try [s] where all joints move; by default that from rest to rest."""
         return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
@@ -248,12 +248,12 @@ class JerkLimited:
         """Return the duration of a segment [s]."""
         if not segment.is_from_rest_to_rest:
             return np.inf
-        return max((_double_s(*one)[3] for one in _joints(segment.step, limits)), default=0.0)
+        return max((_double_s(*joint)[3] for joint in _joints(segment.step, limits)), default=0.0)
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: one for each change of jerk, and its end."""
         joints = _joints(segment.step, limits)
-        changes = [_changes(_double_s(*one), duration) for one in joints]
+        changes = [_changes(_double_s(*joint), duration) for joint in joints]
         inner = np.unique(np.concatenate([np.zeros(1), *changes]))
         inner = inner[(inner > _SAME_TIME) & (inner < duration - _SAME_TIME)]
         times = np.append(inner[np.diff(inner, prepend=0.0) > _SAME_TIME], duration)

@@ -54,7 +54,7 @@ class ToppRa:
 def _fastest(corners: Floats, moving: Ints, limits: PathLimits) -> "_Rows":
     """Return the time-optimal motion along the spline through waypoints, at the rows of a grid."""
     toppra, constraint = (importlib.import_module(f"toppra{part}") for part in ("", ".constraint"))
-    bounds = [np.stack([-one[moving], one[moving]], axis=1) for one in (limits.velocity, limits.acceleration)]
+    bounds = [np.stack([-bound[moving], bound[moving]], axis=1) for bound in (limits.velocity, limits.acceleration)]
     places = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1)))
     path = toppra.SplineInterpolator(places, corners[:, moving])
     rows = max(_ROWS_OF_SEGMENT, math.ceil(_LEAST_ROWS / (len(places) - 1)))

@@ -74,13 +74,13 @@ class Contents(EnvironmentPart):
     def wrap(self, state: BodyState) -> KinBody:
         """Return the API object of a body, always the same one."""
         with self._simulation.lock:
-            found = self._kept_objects.get(state) or self._objects.get(state)
-            if found is None:
-                found = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
-                self._objects[state] = found
+            wrapped = self._kept_objects.get(state) or self._objects.get(state)
+            if wrapped is None:
+                wrapped = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
+                self._objects[state] = wrapped
             if state.index:
-                self._kept_objects[state] = found
-            return found
+                self._kept_objects[state] = wrapped
+            return wrapped
 
     def _remove_all(self) -> None:
         """Remove all bodies and sensors from the environment."""
@@ -337,8 +337,10 @@ class Contents(EnvironmentPart):
 
     def GetSensors(self) -> list[Sensor]:
         """Return the sensors of all robots, then the sensors without a robot; see ``robot.GetAttachedSensors``."""
-        found = (attached.GetSensor() for robot in self.GetRobots() for attached in robot.GetAttachedSensors())
-        return [*(sensor for sensor in found if sensor is not None), *self._sensors]
+        attached_sensors = (
+            attached.GetSensor() for robot in self.GetRobots() for attached in robot.GetAttachedSensors()
+        )
+        return [*(sensor for sensor in attached_sensors if sensor is not None), *self._sensors]
 
     def GetSensor(self, name: str) -> Sensor | None:
         """Return the sensor called ``name``, or None. The name of a robot's sensor is ``robot:sensor``."""

@@ -225,19 +225,19 @@ class Description(Contents):
         added: list[KinBody] = []
         changed: list[KinBody] = []
         with self._simulation.lock:
-            named = {one._name for one in info._vBodyInfos}
+            named = {body_info._name for body_info in info._vBodyInfos}
             exact = UpdateFromInfoMode(updateMode) == UpdateFromInfoMode.Exact
             if exact:
                 self.SetUnitInfo(info._unitInfo)
             removed = [body for body in self.GetBodies() if exact and body.GetName() not in named]
             for body in removed:
                 self.Remove(body)
-            for one in info._vBodyInfos:
-                self._take_info(one, added, changed)
-            for one in info._vBodyInfos:
-                body = self.GetKinBody(one._name)
+            for body_info in info._vBodyInfos:
+                self._take_info(body_info, added, changed)
+            for body_info in info._vBodyInfos:
+                body = self.GetKinBody(body_info._name)
                 if body is not None:
-                    body.ResetGrabbed(cast("Sequence[GrabbedInfo]", one._vGrabbedInfos))
+                    body.ResetGrabbed(cast("Sequence[GrabbedInfo]", body_info._vGrabbedInfos))
             self.GetPhysicsEngine().SetGravity(np.asarray(info._gravity))
             self.annotations.description, self._keywords = info._description, list(info._keywords)
             self._numbers = dict(info._uInt64Parameters)
@@ -331,7 +331,7 @@ class Description(Contents):
             uri: The result of the robot's ``GetURI``.
         """
         bodies = cast("Sequence[Json]", envInfo.get("bodies", ()))
-        robots = [one for one in bodies if one.get("isRobot")]
+        robots = [described for described in bodies if described.get("isRobot")]
         body = self.ReadKinBodyJSON({**envInfo, "bodies": robots}, atts, uri)
         if body is not None and not isinstance(body, Robot):
             raise ArgumentError("ReadRobotJSON: the body is not a robot")

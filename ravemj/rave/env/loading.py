@@ -200,8 +200,8 @@ class Loading(Description):
             self.LoadJSON(self._json_content(path))
 
     def _json_content(self, path: str) -> dict[str, Any]:
-        found, content = read_json(path)
-        self._files[found] = None
+        file, content = read_json(path)
+        self._files[file] = None
         return content
 
     def LoadData(self, data: str | bytes, atts: Attributes | None = None) -> bool:

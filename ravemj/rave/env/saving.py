@@ -102,8 +102,8 @@ def read_json(path: str) -> tuple[str, dict[str, Any]]:
     Raises:
         SourceError: The file is missing or broken.
     """
-    found = existing(path)
-    return found, _parsed(found)
+    file = existing(path)
+    return file, _parsed(file)
 
 
 def _parsed(path: str) -> dict[str, Any]:
@@ -287,7 +287,7 @@ class Saving(Description):
         kind = cast("ModelFormat", named.get("format", usual))
         if self._metre != 1 and kind == "collada":
             raise UnsupportedError("Save", "COLLADA files in other units than the metre")
-        bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
+        bodies = [replace(body, grabs=tuple(grab for grab in body.grabs if grab.body in names)) for body in bodies]
         references = _external_names(given, names) if kind == "collada" else set[str]()
         external = external_bodies(path, Scene(tuple(bodies)), references, diagnostics, named.get("openravescheme"))
         for part in skipped:

@@ -82,10 +82,10 @@ def plain(value: Any) -> Any:  # noqa: ANN401 - what JSON can hold
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, Mapping):
-        return {str(key): plain(one) for key, one in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, str | bytes) or not isinstance(value, Iterable):
         return value
-    return [plain(one) for one in value]
+    return [plain(item) for item in value]
 
 
 def lengths(power: int = 1) -> Form:
@@ -99,7 +99,7 @@ def lengths(power: int = 1) -> Form:
 
 def _array(value: Any) -> Any:  # noqa: ANN401 - what JSON holds
     """Return a list of numbers as an array, and anything else unchanged."""
-    is_numbers = isinstance(value, list) and value and all(type(one) in {int, float} for one in value)
+    is_numbers = isinstance(value, list) and value and all(type(item) in {int, float} for item in value)
     return np.array(value, dtype=float) if is_numbers else value
 
 
@@ -119,16 +119,16 @@ def _read_pose(numbers: Sequence[float], scale: float, present: object) -> Any: 
 
 
 def _read_parameters(items: Sequence[Json], key: str, present: Mapping[str, Any]) -> Json:
-    found = dict(present)
+    arrays = dict(present)
     for item in items:
         name = item.get("id", item.get("key"))
         if not name:
             raise ArgumentError(f"parameters: {item} has no id")
         if item.get("__deleted__"):
-            found.pop(name, None)
+            arrays.pop(name, None)
         else:
-            found[name] = _array(item[key])
-    return found
+            arrays[name] = _array(item[key])
+    return arrays
 
 
 def parameters(key: str) -> Form:
@@ -164,13 +164,13 @@ def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None =
     """
 
     def read(items: Sequence[Json], scale: float, present: Sequence[Described]) -> list[Described]:
-        found, read_before = _Called(present), dict[int, Described]()
+        called, read_before = _Called(present), dict[int, Described]()
         for item in items:
             if not isinstance(item, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] - what files hold
                 raise TypeError(f"is {item!r}, and should be an object")
-            known = found.first(item)
+            known = called.first(item)
             if known is not None:
-                found.remove(known)
+                called.remove(known)
             if item.get("__deleted__"):
                 continue
             if id(known) in read_before:
@@ -178,10 +178,10 @@ def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None =
             changed = known or (robot if robot and item.get("isRobot") else kind)()
             read_before[id(changed)] = changed
             changed.DeserializeJSON(item, scale)
-            found.add(changed)
-        return found.listed()
+            called.add(changed)
+        return called.listed()
 
-    return Form(lambda values, scale: [one.SerializeJSON(scale) for one in values], read)
+    return Form(lambda values, scale: [described.SerializeJSON(scale) for described in values], read)
 
 
 class _Called:
@@ -287,10 +287,12 @@ def info_class(cls: type[T]) -> type[T]:
     The key of a field with a plain default is its name in camel case; names with a leading underscore have none.
     """
     made: Any = dataclass(eq=False, repr=False)(cls)
-    for one in fields(made):
-        if not hasattr(made, one.name):
-            setattr(made, one.name, FieldOfClass())
-    entries = [(one.name, one.metadata.get("entry", Entry(_camel(one.name), "", PLAIN))) for one in fields(made)]
+    for field_ in fields(made):
+        if not hasattr(made, field_.name):
+            setattr(made, field_.name, FieldOfClass())
+    entries = [
+        (field_.name, field_.metadata.get("entry", Entry(_camel(field_.name), "", PLAIN))) for field_ in fields(made)
+    ]
     made._entries = tuple(entry._replace(field=name) for name, entry in entries if entry.key)
     if "_called" not in vars(cls):
         made._called = cls.__name__
@@ -320,13 +322,15 @@ class Info(ApiObject):
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
             return NotImplemented
-        return all(_same(getattr(self, one.name), getattr(other, one.name)) for one in fields(self) if one.compare)
+        return all(
+            _same(getattr(self, field_.name), getattr(other, field_.name)) for field_ in fields(self) if field_.compare
+        )
 
     __hash__ = None  # pyright: ignore[reportAssignmentType] - fields change
 
     def __repr__(self) -> str:
-        shown = {one.name: getattr(self, one.name) for one in fields(self) if one.repr}
-        new = {one.name: _default(one) for one in fields(self)}
+        shown = {field_.name: getattr(self, field_.name) for field_ in fields(self) if field_.repr}
+        new = {field_.name: _default(field_) for field_ in fields(self)}
         changed = [f"{name}={_written(value)}" for name, value in shown.items() if not _same(value, new[name])]
         return f"{self._called}({', '.join(changed)})"
 
@@ -373,7 +377,7 @@ class Info(ApiObject):
         return self._entries
 
     def __dir__(self) -> list[str]:
-        shown = {one.name for one in fields(self) if one.repr}
+        shown = {field_.name for field_ in fields(self) if field_.repr}
         return sorted({*super().__dir__(), *shown})
 
 
@@ -434,8 +438,8 @@ def pose(values: ArrayLike, name: str) -> Pose:
     return pose_of(checked_transform(values, name))
 
 
-def _default(one: Field[Any]) -> object:
-    return one.default if one.default_factory is MISSING else one.default_factory()
+def _default(field_: Field[Any]) -> object:
+    return field_.default if field_.default_factory is MISSING else field_.default_factory()
 
 
 _ROUNDING = 1e-14
@@ -465,7 +469,7 @@ def _written(value: object) -> str:
     if isinstance(value, np.ndarray | np.generic):
         return repr(value.tolist())
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{key!r}: {_written(one)}' for key, one in value.items())}}}"
+        return f"{{{', '.join(f'{key!r}: {_written(item)}' for key, item in value.items())}}}"
     if isinstance(value, Sequence) and not isinstance(value, str | bytes):
         return f"[{', '.join(map(_written, value))}]"
     return repr(value)

@@ -286,7 +286,7 @@ _DOF_VALUES = Form(
         {"jointName": name, "value": float(value)} | ({"jointAxis": axis} if axis else {})
         for (name, axis), value in values
     ],
-    lambda items, scale, present: [((one["jointName"], one.get("jointAxis", 0)), one["value"]) for one in items],
+    lambda items, scale, present: [((item["jointName"], item.get("jointAxis", 0)), item["value"]) for item in items],
 )
 
 
@@ -391,21 +391,23 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     from ravemj.model.builder import BodyBuilder, SensorBuilder  # noqa: PLC0415 - slow to import
 
     builder = BodyBuilder(is_robot=like.is_robot, source=FROM_SCRIPT, name=info._name or like.name)
-    for one in _checked(info._vLinkInfos, LinkInfo):
-        builder.links.append(one.link())
+    for link_info in _checked(info._vLinkInfos, LinkInfo):
+        builder.links.append(link_info.link())
     names = [link.name for link in builder.links]
     named = [name for name in names if name]
     if len(set(named)) < len(named):
         raise ArgumentError(f"the links are called {', '.join(names)}; each link needs a name of its own, or none")
-    for index, one in enumerate(info._vLinkInfos):
-        builder.adjacent += [(index, other) for other in one.adjacent(names)]
-    builder.joints = [one.joint(builder.links) for one in _checked(info._vJointInfos, JointInfo)]
+    for index, link_info in enumerate(info._vLinkInfos):
+        builder.adjacent += [(index, other) for other in link_info.adjacent(names)]
+    builder.joints = [joint_info.joint(builder.links) for joint_info in _checked(info._vJointInfos, JointInfo)]
     diagnostics = Diagnostics()
     builder.joint_values = _asked(builder, info.values_by_axis(), diagnostics)
     if isinstance(info, RobotBaseInfo) and like.is_robot:
-        builder.manipulators = [one.manipulator() for one in _checked(info._vManipInfos, ManipulatorInfo)]
+        builder.manipulators = [
+            manipulator_info.manipulator() for manipulator_info in _checked(info._vManipInfos, ManipulatorInfo)
+        ]
         sensors = _checked(info._vAttachedSensorInfos, AttachedSensorInfo)
-        builder.sensors = [SensorBuilder(one.sensor(names)) for one in sensors]
+        builder.sensors = [SensorBuilder(sensor_info.sensor(names)) for sensor_info in sensors]
     body = builder.freeze(diagnostics)
     if builder.refusal is not None:
         raise builder.refusal
@@ -457,8 +459,8 @@ def with_connected(robot: RobotBaseInfo, bodies: Iterable[ConnectedBodyInfo]) ->
 
 def only_parts_of(robot: RobotBaseInfo, own: RobotBaseInfo) -> RobotBaseInfo:
     """Return a robot reduced to the parts named in another description."""
-    kept = {name: {one._name for one in getattr(own, name)} for name in _LISTS}
-    parts = {name: [one for one in getattr(robot, name) if one._name in kept[name]] for name in _LISTS}
+    kept = {name: {part._name for part in getattr(own, name)} for name in _LISTS}
+    parts = {name: [part for part in getattr(robot, name) if part._name in kept[name]] for name in _LISTS}
     joints = kept["_vJointInfos"]
     return replace(robot, **parts, _dofValues=[value for value in robot._dofValues if value[0][0] in joints])
 
@@ -472,7 +474,7 @@ def _with_one(robot: RobotBaseInfo, body: ConnectedBodyInfo) -> RobotBaseInfo:
     relative = checked_transform(body._trelative, "ConnectedBodyInfo._trelative")
     T_robot_body = checked_transform(carrier._t, "LinkInfo._t") @ relative
     lists = (body._linkInfos, body._jointInfos, body._gripperInfos)
-    names = {one._name for infos in lists for one in infos}
+    names = {described._name for infos in lists for described in infos}
 
     def own(name: str | None) -> str:  # only the body's own parts get the prefix; they may refer to parts of the robot
         return f"{body._name}_{name}" if name in names else name or ""
@@ -515,7 +517,10 @@ def _with_one(robot: RobotBaseInfo, body: ConnectedBodyInfo) -> RobotBaseInfo:
 
 def _renamed(joint: JointInfo, own: Rename) -> JointInfo:
     # Equations contain the names of joints: each of these words gets the prefix, functions and numbers do not.
-    mimic = [one and [_WORD.sub(lambda word: own(word[0]), equation) for equation in one] for one in joint._vmimic]
+    mimic = [
+        equations and [_WORD.sub(lambda word: own(word[0]), equation) for equation in equations]
+        for equations in joint._vmimic
+    ]
     linkname0, linkname1 = own(joint._linkname0), own(joint._linkname1)
     return replace(joint, _name=own(joint._name), _linkname0=linkname0, _linkname1=linkname1, _vmimic=mimic)
 

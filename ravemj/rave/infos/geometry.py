@@ -227,23 +227,23 @@ _CROSS_SECTION = Form(
 _WALLS = Form(
     lambda walls, scale: [
         {
-            "transf": POSE.write(one.transf, scale),
-            "vExtents": LENGTHS.write(one.vExtents, scale),
-            "type": SideWallType(one.type).name.lower(),
+            "transf": POSE.write(wall.transf, scale),
+            "vExtents": LENGTHS.write(wall.vExtents, scale),
+            "type": SideWallType(wall.type).name.lower(),
         }
-        for one in walls
+        for wall in walls
     ],
     lambda items, scale, present: [
         SideWall(
-            POSE.read(one["transf"], scale, None),
-            LENGTHS.read(one["vExtents"], scale, None),
-            SideWallType[one["type"].upper()],
+            POSE.read(item["transf"], scale, None),
+            LENGTHS.read(item["vExtents"], scale, None),
+            SideWallType[item["type"].upper()],
         )
-        for one in items
+        for item in items
     ],
 )
 _SLICES = Form(
-    lambda slices, scale: [number * scale for one in slices for number in (one.zOffset, one.radius)],
+    lambda slices, scale: [number * scale for slice_ in slices for number in (slice_.zOffset, slice_.radius)],
     lambda value, scale, present: [AxialSlice(z * scale, r * scale) for z, r in np.reshape(value, (-1, 2)).tolist()],
 )
 
@@ -264,7 +264,9 @@ def _of_sizes(shape: type[scene.Shape]) -> Iterator[Entry]:
             yield Entry(key, next(vectors), _EXTENTS, optional)
 
 
-_SIZES_JSON = {GeometryType[one.name]: tuple(_of_sizes(one.shape)) for one in scene.SHAPE_TYPES} | {
+_SIZES_JSON = {
+    GeometryType[shape_type.name]: tuple(_of_sizes(shape_type.shape)) for shape_type in scene.SHAPE_TYPES
+} | {
     GeometryType.ConicalFrustum: (
         Entry("topRadius", "_vGeomData", _number(0)),
         Entry("bottomRadius", "_vGeomData", _number(1)),
@@ -287,8 +289,8 @@ def _mesh_json(mesh: TriMesh, scale: float) -> Json:
     return {"vertices": (vertices.ravel() * scale).tolist(), "indices": indices.ravel().astype(int).tolist()}
 
 
-TYPES = {one.shape: GeometryType[one.name] for one in scene.SHAPE_TYPES}
-_SHAPES = {GeometryType[one.name]: one.shape for one in scene.SHAPE_TYPES}
+TYPES = {shape_type.shape: GeometryType[shape_type.name] for shape_type in scene.SHAPE_TYPES}
+_SHAPES = {GeometryType[shape_type.name]: shape_type.shape for shape_type in scene.SHAPE_TYPES}
 
 
 @info_class
@@ -440,8 +442,8 @@ class GeometryInfo(GeometrySizes):
     def _numbers(self, count: int) -> list[float]:
         numbers = checked_numbers(self._vGeomData, "GeometryInfo._vGeomData").ravel()
         if len(numbers) < count or not np.isfinite(numbers[:count]).all():
-            found = numbers.tolist()
-            raise ArgumentError(f"GeometryInfo._vGeomData: is {found}, and should have {count} finite numbers")
+            given = numbers.tolist()
+            raise ArgumentError(f"GeometryInfo._vGeomData: is {given}, and should have {count} finite numbers")
         return numbers[:count].tolist()
 
     def _mesh(self) -> scene.Mesh:

@@ -169,8 +169,8 @@ _WORDS = named(
 )
 _CONTROL = named({mode: mode.name.removeprefix("JCM_") for mode in JointControlMode})
 _MIMICS = Form(
-    lambda mimics, scale: [{"equations": list(one) if one else ["", "", ""]} for one in mimics],
-    lambda items, scale, present: [[*one["equations"], "", ""][:3] for one in items],
+    lambda mimics, scale: [{"equations": list(mimic) if mimic else ["", "", ""]} for mimic in mimics],
+    lambda items, scale, present: [[*item["equations"], "", ""][:3] for item in items],
 )
 _VALUES = Form(PLAIN.write, PLAIN.read)
 """Conversion of joint values and their derivatives: plain numbers, or lengths if the joint is prismatic."""
@@ -268,7 +268,9 @@ class JointInfo(ParameterFields):
         joint = body.all_joints[index]
         mimic = joint.mimic
         of_axes: dict[str, Any] = {
-            one.field: np.array([getattr(axis, one.of) for axis in joint.axes]) for one in cls._entries if one.of
+            entry.field: np.array([getattr(axis, entry.of) for axis in joint.axes])
+            for entry in cls._entries
+            if entry.of
         }
         return cls(
             _type=type_of(joint.kind),
@@ -278,7 +280,7 @@ class JointInfo(ParameterFields):
             _vanchor=np.array(reported_anchor(joint)),
             _vaxes=[np.array(direction) for direction in _directions(body, joint, values)],
             _vcurrentvalues=np.array(values),
-            _bIsActive=index < len(body.joints) or all(one.mimic for one in body.all_joints[index:]),
+            _bIsActive=index < len(body.joints) or all(follower.mimic for follower in body.all_joints[index:]),
             _infoElectricMotor=_motor_of(joint.axes[0]),
             _vmimic=[] if mimic is None else [[mimic.position, mimic.velocity, mimic.acceleration]],
             **of_axes,
@@ -296,7 +298,7 @@ class JointInfo(ParameterFields):
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
         kind = JointType(self._type) if obj is None or not obj.get("type") else _WORDS.read(obj["type"], 1.0, None)
         form = LENGTHS if kind == JointType.Prismatic else PLAIN
-        return [one._replace(form=form) if one.form is _VALUES else one for one in self._entries]
+        return [entry._replace(form=form) if entry.form is _VALUES else entry for entry in self._entries]
 
     def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
         """Return the joint in OpenRAVE's JSON format, see ``Info``. Its lists have one number for each axis.
@@ -306,7 +308,7 @@ class JointInfo(ParameterFields):
             options: Not used.
         """
         written = super().SerializeJSON(unitScale, options)
-        return written | {one.key: written[one.key][: self.GetDOF()] for one in self._entries if one.of}
+        return written | {entry.key: written[entry.key][: self.GetDOF()] for entry in self._entries if entry.of}
 
     def named_values(self) -> list[tuple[tuple[str, int], float]]:
         """Return the current values, each as ((joint name, axis), value)."""
@@ -365,7 +367,7 @@ class JointInfo(ParameterFields):
         directions = [vector(axis, "JointInfo._vaxes") for axis in self._vaxes[:count]]
         directions += [(0.0, 0.0, 1.0)] * (count - len(directions))
         motor = None if self._infoElectricMotor is None else self._infoElectricMotor.motor()
-        columns = {one.of: self._per_axis(one.field, count) for one in self._entries if one.of}
+        columns = {entry.of: self._per_axis(entry.field, count) for entry in self._entries if entry.of}
         axes = list[scene.Axis]()
         for i, numbers in enumerate(zip(*columns.values(), strict=True)):
             fields: dict[str, Any] = dict(zip(columns, numbers, strict=True))
@@ -395,7 +397,9 @@ class JointInfo(ParameterFields):
         return Equations(*map(str, first)) if first and any(first) else None
 
 
-_DEFAULTS = {one.field: float(next(iter(getattr(JointInfo(), one.field)), 0.0)) for one in JointInfo._entries if one.of}
+_DEFAULTS = {
+    entry.field: float(next(iter(getattr(JointInfo(), entry.field)), 0.0)) for entry in JointInfo._entries if entry.of
+}
 """Default values of new infos for each axis."""
 
 

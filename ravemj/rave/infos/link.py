@@ -82,7 +82,9 @@ class LinkInfo(ParameterFields):
             _vinertiamoments=principal_moments(link.inertial),
             _vgeometryinfos=[GeometryInfo.of(geometry) for geometry in link.geometries],
             _mapExtraGeometries={
-                name: [GeometryInfo.of(one) for one in group] for name, group in link.groups if name != scene.OWN_SHAPES
+                name: [GeometryInfo.of(geometry) for geometry in group]
+                for name, group in link.groups
+                if name != scene.OWN_SHAPES
             },
             _vForcedAdjacentLinks=[body.links[other].name for _, other in pairs],
             _bStatic=link.static,
@@ -132,9 +134,9 @@ def geometries_of(infos: Sequence[GeometryInfo], *, visible: bool = True) -> tup
     Raises:
         ArgumentError: an object is not a ``GeometryInfo``, or its fields do not make a geometry.
     """
-    found: list[scene.Geometry] = []
+    geometries: list[scene.Geometry] = []
     for info in infos:
         if not isinstance(info, GeometryInfo):  # pyright: ignore[reportUnnecessaryIsInstance] - what users hand in
             raise ArgumentError(f"a geometry is of type {type(info).__name__}, and should be GeometryInfo")
-        found.append(info.geometry(visible=visible))
-    return tuple(found)
+        geometries.append(info.geometry(visible=visible))
+    return tuple(geometries)

@@ -335,11 +335,11 @@ def _described(device: scene.Device) -> type[SensorGeometry]:
 
 def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[str, str, Any]]:
     """Yield the names in the info and in the device of each common property, and its type in the device."""
-    types = {one.name: one.type for one in fields(device)}
-    for one in fields(geometry):
-        name = _OTHER_NAMES.get(one.name, one.name)
+    types = {field.name: field.type for field in fields(device)}
+    for field in fields(geometry):
+        name = _OTHER_NAMES.get(field.name, field.name)
         if name in types:
-            yield one.name, name, types[name]
+            yield field.name, name, types[name]
 
 
 def _is_angle(field: str, kind: Any) -> bool:  # noqa: ANN401 - a type

@@ -226,7 +226,7 @@ class KinBody(BodyConfiguration, Interface):
             held = checked_kind(body, KinBody, "Grab: body").simulation_state
             check_holdable(self._state, held)
             link = self._own_link(grablink, "Grab")
-            ignored = [] if linkstoignore is ... else [self._link_index(one) for one in linkstoignore]
+            ignored = [] if linkstoignore is ... else [self._link_index(ignored_link) for ignored_link in linkstoignore]
             self._state.grab(grab_as_it_stands(self._state, held, link, ignored))
             return True
 
@@ -270,7 +270,10 @@ class KinBody(BodyConfiguration, Interface):
             return GrabbedInfoCheckResult.BodyNotGrabbed
         if grab.link != index:
             return GrabbedInfoCheckResult.GrabbingLinkNotMatch
-        if linkstoignore is not None and not {self._link_index(one) for one in linkstoignore} <= grab.ignored:
+        if (
+            linkstoignore is not None
+            and not {self._link_index(ignored_link) for ignored_link in linkstoignore} <= grab.ignored
+        ):
             return GrabbedInfoCheckResult.IgnoredLinksNotMatch
         return GrabbedInfoCheckResult.Identical
 
@@ -703,8 +706,8 @@ class _Saving(Block["KinBody"]):
 
 def _check_checker(checker: object, caller: str) -> None:
     if getattr(checker, "GetInterfaceType", lambda: None)() is not InterfaceType.collisionchecker:
-        found = f"is of type {type(checker).__name__}, and should be CollisionChecker"
-        raise ArgumentError(f"{caller}: collisionchecker: {found}")
+        given = f"is of type {type(checker).__name__}, and should be CollisionChecker"
+        raise ArgumentError(f"{caller}: collisionchecker: {given}")
 
 
 def link_index(state: BodyState, link: int | str) -> int:
@@ -713,7 +716,7 @@ def link_index(state: BodyState, link: int | str) -> int:
     Raises:
         ArgumentError: the body has no such link.
     """
-    names = [one.name for one in state.scene.links]
+    names = [scene_link.name for scene_link in state.scene.links]
     if isinstance(link, str) and link in names:
         return names.index(link)
     if isinstance(link, str) or not 0 <= link < len(names):

@@ -38,26 +38,26 @@ def body_restorers(state: BodyState, options: int) -> list[Restorer]:
         state: The body.
         options: ``SaveParameters`` combined, as a plain number.
     """
-    found: list[Restorer] = []
+    restorers: list[Restorer] = []
     if options & _GRABBED:
         grabs = state.grabs
         moves = bool(options & _TRANSFORMATION)
-        found.append(lambda body: _hold(body.simulation_state, grabs, moves_held=not moves))
+        restorers.append(lambda body: _hold(body.simulation_state, grabs, moves_held=not moves))
     if options & _TRANSFORMATION:
         saved = state.configuration()
-        found.append(lambda body: body.simulation_state.restore(saved))
+        restorers.append(lambda body: body.simulation_state.restore(saved))
     if options & _VELOCITIES:
         velocities = state.link_velocities()
-        found.append(lambda body: body.simulation_state.set_link_velocities(velocities))
+        restorers.append(lambda body: body.simulation_state.set_link_velocities(velocities))
     if options & _ENABLE:
         enabled = state.link_enabled
-        found.append(lambda body: setattr(body.simulation_state, "link_enabled", enabled))
+        restorers.append(lambda body: setattr(body.simulation_state, "link_enabled", enabled))
     fields = [name for option, names in _AXIS_FIELDS.items() if options & option for name in names]
     if fields:
         axes = state.scene.dof_axes
         kept = {name: [getattr(axis, name) for axis in axes] for name in fields}
-        found.append(lambda body: _set_axes(body, kept))
-    return found
+        restorers.append(lambda body: _set_axes(body, kept))
+    return restorers
 
 
 class StateSaver(ApiObject):

@@ -379,10 +379,10 @@ class ArmIk(ApiObject):
         local = self.goals_in_base(goals, iktype)
         try:
             with self._state.simulation.lock:
-                found = solver.solve(local, limits=limits)
+                solutions = solver.solve(local, limits=limits)
         except ValueError as error:
             raise ArgumentError(f"goals: {error}") from error
-        return IkBatch(found.values, found.valid, branch_names(solver, found.values.shape[1]))
+        return IkBatch(solutions.values, solutions.valid, branch_names(solver, solutions.values.shape[1]))
 
     def batch_solutions(
         self,

@@ -170,7 +170,10 @@ class Manipulation:
         values.postprocessing = postprocessing or values.postprocessing
         space, conditions = values.space(), values.conditions
         self._warn_of_limits(conditions, space, goals)
-        wanted = [[space.clamp(one) for one in some] for some in (starts or [values.vectors["_vinitialconfig"]], goals)]
+        wanted = [
+            [space.clamp(configuration) for configuration in some]
+            for some in (starts or [values.vectors["_vinitialconfig"]], goals)
+        ]
         moved = [jittered(conditions, space, some, jitter) for some in wanted]
         values.vectors |= {"_vinitialconfig": np.array(moved[0]).ravel(), "_vgoalconfig": np.array(moved[1]).ravel()}
         status = PlannerStatus("no attempt was allowed; give at least one try")
@@ -211,7 +214,7 @@ class Manipulation:
         for end, (asked, used) in enumerate(zip(wanted, moved, strict=True)):
             place = traj.GetNumWaypoints() if end else 0
             reached = traj.GetWaypoint(-1 if end else 0, spec)
-            nearest = int(np.argmin([np.abs(one - reached).max() for one in used]))
+            nearest = int(np.argmin([np.abs(goal - reached).max() for goal in used]))
             is_it = np.abs(used[nearest] - reached).max() < _SAME  # and no goal that came later
             if is_it and (asked[nearest] != used[nearest]).any():
                 rest = np.zeros(len(reached))
@@ -256,9 +259,9 @@ class Manipulation:
 
 
 def _check(goals: Sequence[Floats], starts: Sequence[Floats], dof: int) -> None:
-    for one in [*goals, *starts]:
-        if len(one) != dof or not np.isfinite(one).all():
-            raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
+    for configuration in [*goals, *starts]:
+        if len(configuration) != dof or not np.isfinite(configuration).all():
+            raise ArgumentError(f"a goal or start is {configuration.tolist()}, and should be {dof} finite numbers")
 
 
 def _unreached(manip: Manipulator, goals: Sequence[IkParameterization]) -> str:
@@ -326,13 +329,13 @@ class BaseManipulation(Manipulation):
         gripper = preshaped_dofs(manip, sets.goals)
         present = self.robot.GetDOFValues()[gripper]
         stream = (np.append(row, present) for goal in goals for row in manip.search(goal, _CHECKED).every())
-        found = list(islice(stream, min(seedik, goalsamples)))
-        if not (found or sets.goals):
+        solutions = list(islice(stream, min(seedik, goalsamples)))
+        if not (solutions or sets.goals):
             raise _without_solutions(manip, goals)
-        rest = islice(stream, goalsamples - len(found))
+        rest = islice(stream, goalsamples - len(solutions))
         more = Sampler(FunctionRoots(lambda: next(rest, None)), options.goalsampleprob)
         return self.move_joints(
-            found,
+            solutions,
             options,
             dofs=[*manip.description.arm_dofs, *gripper],
             starts=[np.append(row, present) for row in starts],
@@ -452,9 +455,9 @@ class BaseManipulation(Manipulation):
                 continue
             if goal is here:
                 return self.straight(here[None])
-            found = self._by(options.planner, lambda goal=goal: self.move_joints([goal], JointMotion()))
-            if found is not None:
-                return found
+            motion = self._by(options.planner, lambda goal=goal: self.move_joints([goal], JointMotion()))
+            if motion is not None:
+                return motion
         raise PlanningError("there is no place where the joints can move to their values")
 
     def _by(self, planner: str, plan: Callable[[], Trajectory]) -> Trajectory | None:
@@ -474,10 +477,10 @@ class BaseManipulation(Manipulation):
         """
         values = self.stated()
         here = values.vectors["_vinitialconfig"]
-        found = free_configuration(values.conditions, values.space(), here, options.maxiter, options.jitter)
-        if found is None:
+        free = free_configuration(values.conditions, values.space(), here, options.maxiter, options.jitter)
+        if free is None:
             raise PlanningError(f"{options.maxiter} configurations within {options.jitter:g} are all in collision")
-        return found, self.straight(here[None] if found is here else np.stack([here, found]))
+        return free, self.straight(here[None] if free is here else np.stack([here, free]))
 
 
 _CAUSES = {
@@ -496,12 +499,12 @@ def _without_solutions(manip: Manipulator, goals: Sequence[IkParameterization]) 
         failures: list[IkFailureInfo] = []
         manip.FindIKSolutions(goal, _CHECKED, ikFailureAccumulator=failures)
         refusals: list[RefusedError] = []
-        for one in failures:
-            first, second = one.GetCollisionReport().plink1, one.GetCollisionReport().plink2
+        for failure in failures:
+            first, second = failure.GetCollisionReport().plink1, failure.GetCollisionReport().plink2
             if first is not None and second is not None:
                 pairs[f"link '{first.GetName()}' with link '{second.GetName()}'"] += 1
-            cause = _CAUSES.get(one.GetAction(), Cause.COLLISION)
-            refusals.append(RefusedError(cause.value, cause=cause, values=one.GetConfiguration()))
+            cause = _CAUSES.get(failure.GetAction(), Cause.COLLISION)
+            refusals.append(RefusedError(cause.value, cause=cause, values=failure.GetConfiguration()))
         tally.note(0, refusals or [RefusedError(Cause.REACH.value, cause=Cause.REACH)])
     example = f" (e.g. {pairs.most_common(1)[0][0]})" if pairs else ""
     reason = f"inverse kinematics (IK) has no solution {_unreached(manip, goals)}"

@@ -117,16 +117,16 @@ def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
     Raises:
         ArgumentError: an option is unknown, or is followed by wrong tokens.
     """
-    tokens, found = Tokens(text), dict[str, Any]()
+    tokens, values = Tokens(text), dict[str, Any]()
     while tokens:
         name = tokens.next().lower()
         if name not in readers:
             raise ArgumentError(f"the command has no argument '{name}'; it takes {', '.join(readers)}")
         try:
-            found[name] = readers[name](tokens)
+            values[name] = readers[name](tokens)
         except ArgumentError as error:
             raise ArgumentError(f"{name}: {error.message}") from None
-    return found
+    return values
 
 
 def switch(tokens: Tokens) -> bool:
@@ -210,8 +210,8 @@ def _reply(manipulation: Manipulation, traj: Trajectory, options: Options, befor
     return before + (traj.serialize(AS_TEXT).decode() if options.get("outputtraj") else "")
 
 
-def _final_and_reply(manipulation: Manipulation, found: tuple[Floats, Trajectory], options: Options) -> str:
-    return _reply(manipulation, found[1], options, _text(found[0]) if options.get("outputfinal") else "")
+def _final_and_reply(manipulation: Manipulation, motion: tuple[Floats, Trajectory], options: Options) -> str:
+    return _reply(manipulation, motion[1], options, _text(motion[0]) if options.get("outputfinal") else "")
 
 
 def some(options: Options, *names: str) -> dict[str, Any]:
@@ -245,7 +245,7 @@ def _move_manipulator(base: BaseManipulation, arguments: str) -> str:
 def _move_to_hand_position(base: BaseManipulation, arguments: str) -> str:
     """Move the active manipulator's tool to one of several poses without collisions."""
     readers: dict[str, Reader] = {**_SEARCH, **_TOOL_GOAL}
-    readers |= {name: _several(_TOOL_GOAL[one]) for name, one in _TOOL_GOALS.items()}
+    readers |= {name: _several(_TOOL_GOAL[kind]) for name, kind in _TOOL_GOALS.items()}
     readers |= {"goalmaxsamples": Tokens.integer, **readers_of(ToolMotion)}
     readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Tokens.number)
     readers |= {"initialconfigs": _rows(base.arm().GetArmDOF())}
@@ -315,16 +315,16 @@ def _gripper_options(task: TaskManipulation, arguments: str) -> dict[str, Any]:
 def _close_fingers(task: TaskManipulation, arguments: str) -> str:
     """Close the gripper until its fingers touch something."""
     options = _gripper_options(task, arguments)
-    found = task.close_fingers(options.get("movingdir"), options.get("offset"), finger_steps(options))
-    return _final_and_reply(task, found, options)
+    motion = task.close_fingers(options.get("movingdir"), options.get("offset"), finger_steps(options))
+    return _final_and_reply(task, motion, options)
 
 
 def _release_fingers(task: TaskManipulation, arguments: str) -> str:
     """Open the gripper and release a body."""
     options = _gripper_options(task, arguments)
     target = task.env.GetKinBody(options["target"]) if "target" in options else None
-    found = task.release_fingers(options.get("movingdir"), target, finger_steps(options))
-    return _final_and_reply(task, found, options)
+    motion = task.release_fingers(options.get("movingdir"), target, finger_steps(options))
+    return _final_and_reply(task, motion, options)
 
 
 def _release_active(task: TaskManipulation, arguments: str) -> str:

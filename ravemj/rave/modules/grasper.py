@@ -144,15 +144,15 @@ class GraspSimulation(Manipulation):
         """
         if request.parameters.target is None:
             raise PlanningError("there is no target; give the body to grasp")
-        found = simulate(self.robot, request.parameters, self._sides(request.chuckingdirection), _RANDOM)
-        if found.closed.reason is not None:
-            raise PlanningError(found.closed.reason)
-        contacts, links = found.contacts, found.links
+        grasped = simulate(self.robot, request.parameters, self._sides(request.chuckingdirection), _RANDOM)
+        if grasped.closed.reason is not None:
+            raise PlanningError(grasped.closed.reason)
+        contacts, links = grasped.contacts, grasped.links
         if request.stablecontacts:
-            kept = self._is_stable(found, request)
+            kept = self._is_stable(grasped, request)
             contacts, links = contacts[kept], links[kept]
         distance, size = force_closure(contacts, request.friction) if request.forceclosure else (None, None)
-        return GraspAnswer(contacts, links, found.closed.end, distance, size, found.closed.path)
+        return GraspAnswer(contacts, links, grasped.closed.end, distance, size, grasped.closed.path)
 
     def sweep(self, candidates: Candidates, request: GraspRequest, sweep: Sweep) -> tuple[int, list[Found]]:
         """Simulate candidates one after the other, and keep those that are good enough.
@@ -160,20 +160,20 @@ class GraspSimulation(Manipulation):
         Returns:
             The index of the next candidate, and the grasps in the order of their indices.
         """
-        found: list[Found] = []
+        grasps: list[Found] = []
         manip, state = self._manipulator(), self.robot.simulation_state
         gripper, number = manip.GetGripperIndices(), 0
         with state.simulation.lock, kept_in_place(state):
             for number, (parameters, preshape) in enumerate(candidates.all(request.parameters)):
                 if number < sweep.start:
                     continue
-                if sweep.most and len(found) >= sweep.most:
-                    return number, found
+                if sweep.most and len(grasps) >= sweep.most:
+                    return number, grasps
                 self.robot.SetDOFValues(preshape, gripper)
                 answer = self._good(replace(request, parameters=parameters), sweep, manip)
                 if answer is not None:
-                    found.append(Found(parameters, preshape, answer))
-        return max(len(candidates), sweep.start), found
+                    grasps.append(Found(parameters, preshape, answer))
+        return max(len(candidates), sweep.start), grasps
 
     def _good(self, request: GraspRequest, sweep: Sweep, manip: Manipulator) -> GraspAnswer | None:
         noise = request.parameters.graspingnoise
@@ -256,8 +256,8 @@ class GraspSimulation(Manipulation):
             speeds[manip.GetGripperIndices()] = manip.GetChuckingDirection()
         return speeds
 
-    def _is_stable(self, found: Grasped, request: GraspRequest) -> list[bool]:
-        target, end, state = request.parameters.target, found.closed.end, self.robot.simulation_state
+    def _is_stable(self, grasped: Grasped, request: GraspRequest) -> list[bool]:
+        target, end, state = request.parameters.target, grasped.closed.end, self.robot.simulation_state
         assert target is not None, "there are contacts"
         direction = target.GetTransform()[:3, :3] @ request.parameters.direction
         speeds = self._closing()
@@ -266,7 +266,7 @@ class GraspSimulation(Manipulation):
         with state.simulation.lock, kept_in_place(state):
             state.set_transform(end.T_world_base)
             state.set_values(end.values)
-            return self._presses(found.contacts, found.links, direction, request.friction, speeds)
+            return self._presses(grasped.contacts, grasped.links, direction, request.friction, speeds)
 
     def _presses(self, contacts: Floats, links: Ints, direction: Floats, friction: float, speeds: Floats) -> list[bool]:
         """Return for each contact whether its link moves into the friction cone, in the present configuration."""

@@ -103,8 +103,8 @@ def _grasp_threaded(grasper: GraspSimulation, arguments: str) -> str:
         tries,
         options.get("checkik", False),
     )
-    following, found = grasper.sweep(candidates, request, sweep)
-    return f"{following} {len(found)} " + "".join(map(_found_text, found))
+    following, grasps = grasper.sweep(candidates, request, sweep)
+    return f"{following} {len(grasps)} " + "".join(map(_found_text, grasps))
 
 
 def candidates_of(grasper: GraspSimulation, options: Options) -> Candidates:
@@ -123,11 +123,11 @@ def candidates_of(grasper: GraspSimulation, options: Options) -> Candidates:
     )
 
 
-def _found_text(found: Found) -> str:
-    parameters, answer = found.parameters, found.answer
+def _found_text(grasp: Found) -> str:
+    parameters, answer = grasp.parameters, grasp.answer
     assert parameters.manipulatordirection is not None, "candidates have one"
     rows = [parameters.position, parameters.direction, [parameters.roll, parameters.standoff]]
-    rows += [parameters.manipulatordirection, [answer.mindist or 0.0, answer.volume or 0.0], found.preshape]
+    rows += [parameters.manipulatordirection, [answer.mindist or 0.0, answer.volume or 0.0], grasp.preshape]
     rows += [pose_of(answer.end.T_world_base).numbers(), answer.end.values]
     numbers = _text(np.concatenate([np.asarray(row, dtype=float) for row in rows]))
     return f"{numbers}{len(answer.contacts)} {_text(answer.contacts.ravel())}"
@@ -141,15 +141,15 @@ def _convex_hull(grasper: GraspSimulation, arguments: str) -> str | None:
     options = read_options(arguments, {**readers, "points": _points})
     points = options.get("points", np.zeros((0, 3)))
     planes, faces, triangles = (options.get(name, True) for name in wanted[:3])
-    found = hull(points) if len(points) else None
-    if found is None or (triangles and points.shape[1] != 3):
+    convex_hull = hull(points) if len(points) else None
+    if convex_hull is None or (triangles and points.shape[1] != 3):
         return None
-    reply = f"{len(found.planes)} {_text(found.planes.ravel())}" if planes else ""
+    reply = f"{len(convex_hull.planes)} {_text(convex_hull.planes.ravel())}" if planes else ""
     if faces:
-        reply += f"{len(found.faces)} " + "".join(f"{len(face)} {_integers(face)}" for face in found.faces)
+        reply += f"{len(convex_hull.faces)} " + "".join(f"{len(face)} {_integers(face)}" for face in convex_hull.faces)
     if triangles:
-        reply += f"{len(found.triangles)} {_integers(found.triangles.ravel().tolist())}"
-    return reply + (repr(found.volume) if options.get("returnvolume") else "")
+        reply += f"{len(convex_hull.triangles)} {_integers(convex_hull.triangles.ravel().tolist())}"
+    return reply + (repr(convex_hull.volume) if options.get("returnvolume") else "")
 
 
 def _points(tokens: Tokens) -> Floats:

@@ -80,8 +80,8 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
     if manip.GetIkSolver() is None:
         raise PlanningError(f"manipulator '{manip.GetName()}' has no solver of inverse kinematics (IK)")
     seconds, reachable, refused = 0.0, 0, "no grasp can be reached without collisions"
-    found = _reachable(base, manip, query)
-    while batch := list(islice(found, max(1, query.options.seedgrasps))):
+    candidates = _reachable(base, manip, query)
+    while batch := list(islice(candidates, max(1, query.options.seedgrasps))):
         reachable += len(batch)
         begin = time.perf_counter()
         try:
@@ -110,10 +110,10 @@ def _planned(
 ) -> tuple[Trajectory, Grasp]:
     robot = base.robot
     gripper = manip.GetGripperIndices()
-    changed = np.array([one.preshape != robot.GetDOFValues(gripper) for one in batch]).any(axis=0)
+    changed = np.array([candidate.preshape != robot.GetDOFValues(gripper) for candidate in batch]).any(axis=0)
     dofs = [*manip.description.arm_dofs, *gripper[changed].tolist()]
-    owners = [one for one in batch for _ in one.rows]
-    goals = [np.append(row, one.preshape[changed]) for one in batch for row in one.rows]
+    owners = [candidate for candidate in batch for _ in candidate.rows]
+    goals = [np.append(row, candidate.preshape[changed]) for candidate in batch for row in candidate.rows]
     traj = base.move_joints(goals, options, dofs=dofs)
     last = traj.GetWaypoint(-1, ConfigurationSpecification.of(base.groups(dofs)))
     return traj, owners[int(np.argmin([np.abs(goal - last).max() for goal in goals]))]
@@ -177,8 +177,11 @@ class TaskManipulation(Manipulation):
         tool = problems.hand_of(self.env, values).tool
         error, threshold, _ = tool.to_constraint(constraint)
         with tool.bodies.kept():
-            found = [project(one, error, values.space(), threshold, PROJECTION_STEPS) for one in configurations]
-        return [steps for steps, _ in found], [row for _, row in found]
+            projected = [
+                project(configuration, error, values.space(), threshold, PROJECTION_STEPS)
+                for configuration in configurations
+            ]
+        return [steps for steps, _ in projected], [row for _, row in projected]
 
     def close_fingers(
         self, directions: Floats | None = None, offsets: Floats | None = None, steps: Steps = STEPS

@@ -67,10 +67,10 @@ def _file(uri: str) -> str:
     """
     if "://" not in uri:
         return uri
-    found = Packages("", FileAccess.opened(uri), {}).find(uri)
-    if found.path is None:
+    package_file = Packages("", FileAccess.opened(uri), {}).find(uri)
+    if package_file.path is None:
         raise SourceError(f"there is no file {uri}", Source(uri), "set ROS_PACKAGE_PATH for package://")
-    return found.path
+    return package_file.path
 
 
 def _added(env: "Environment", body: KinBody | None) -> str | None:

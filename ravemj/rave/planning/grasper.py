@@ -60,7 +60,7 @@ class GraspParameters:
             manipulator's.
         standoff: Distance back after the contact [m].
         vintersectplane: Plane on which the tool stops, in place of a standoff: n.x + d = 0, shape (4,).
-        transformrobot: Whether the hand is placed and flies.
+        transformrobot: Whether the hand is placed and moves to the target.
         onlycontacttarget: Whether contact with another body is a failure.
         avoidcontact: Whether fingers stop before contact.
         leavescontact: Whether fingers that start in contact may leave it, if they avoid contact.
@@ -162,10 +162,10 @@ def _target(robot: Robot, target: KinBody | None) -> BodyState | None:
 
 
 def _direction(vector: Floats, name: str) -> Floats:
-    found = checked_vector(vector, 3, f"Grasper: {name}")
-    if not np.linalg.norm(found):
+    direction = checked_vector(vector, 3, f"Grasper: {name}")
+    if not np.linalg.norm(direction):
         raise ArgumentError(f"Grasper: {name} is 0 0 0, and should be a direction")
-    return found
+    return direction
 
 
 def _ordered(sides: Mapping[int, float], order: Sequence[int] | None) -> dict[int, float]:
@@ -184,7 +184,7 @@ def _ordered(sides: Mapping[int, float], order: Sequence[int] | None) -> dict[in
 def motion_of(robot: Robot, dofs: Sequence[int], path: Sequence[Waypoint]) -> Waypoints:
     """Return configurations of a grasp as waypoints: values of some joints, and the pose of the robot."""
     groups = body_groups(robot.simulation_state.scene.name, list(dofs), int(DOFAffine.Transform), "linear")
-    rows = [configuration_values(one.values[list(dofs)], one.T_world_base) for one in path]
+    rows = [configuration_values(step.values[list(dofs)], step.T_world_base) for step in path]
     return Waypoints(groups, np.array(rows))
 
 
@@ -236,14 +236,14 @@ class Grasper(Planner):
             if len(start):
                 bodies.move(start[0])
             try:
-                found = simulate(robot, self._parameters(values, robot), sides, values.random())
+                grasped = simulate(robot, self._parameters(values, robot), sides, values.random())
             except RavemjError as error:
                 return self._failed(error.message)
-        if found.closed.reason is not None:
-            return self._failed(str(found.closed.reason))
-        path = found.closed.path if flag(values.tags, "breturntrajectory") else [found.closed.end]
+        if grasped.closed.reason is not None:
+            return self._failed(str(grasped.closed.reason))
+        path = grasped.closed.path if flag(values.tags, "breturntrajectory") else [grasped.closed.end]
         traj.set_waypoints(motion_of(robot, dofs, path))
-        return self._solved(f"the hand has {len(found.contacts)} contacts with the target")
+        return self._solved(f"the hand has {len(grasped.contacts)} contacts with the target")
 
     def _problem(self, values: Values) -> tuple[Robot, list[int], list[int]]:
         """Return the robot, the DOF indices of the joints that may close, and their columns.
@@ -278,12 +278,12 @@ _DEFAULTS = GraspParameters()
 
 def _numbers(text: str, count: int | None, tag: str) -> Floats:
     try:
-        found = np.array([float(word) for word in text.split()])
+        numbers = np.array([float(word) for word in text.split()])
     except ValueError:
         raise ArgumentError(f"<{tag}>: '{text}' should be numbers") from None
-    if count is not None and len(found) != count:
+    if count is not None and len(numbers) != count:
         raise ArgumentError(f"<{tag}>: '{text}' should be {count} numbers")
-    return found
+    return numbers
 
 
 def _link(robot: Robot, name: str) -> int:

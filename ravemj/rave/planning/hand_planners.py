@@ -111,15 +111,15 @@ class WorkspaceTrajectoryTracker(Planner):
     ) -> list[Floats]:
         """Return the configurations that reach a goal, the nearest to ``near`` first; greedy searches need only one."""
         hand.tool.bodies.move(near)
-        found: list[Floats] = []
+        solutions: list[Floats] = []
         for row in hand.manip.FindIKSolutions(goal, 0):
             configuration = np.zeros(hand.tool.dof)
             configuration[hand.tool.columns] = row
-            found.append(near + values.space().difference(configuration, near))
+            solutions.append(near + values.space().difference(configuration, near))
         if check:
-            found = list(filter(values.conditions.allowed(), found))
-        found.sort(key=lambda one: values.space().distance(one, near))
-        return found[:1] if flag(values.tags, "greedysearch") else found
+            solutions = list(filter(values.conditions.allowed(), solutions))
+        solutions.sort(key=lambda solution: values.space().distance(solution, near))
+        return solutions[:1] if flag(values.tags, "greedysearch") else solutions
 
     def _connection(self, values: Values, hand: Hand, times: Floats) -> Callable[[int, Floats, Floats], bool]:
         """Return a test of the joint-space line between two consecutive solutions.
@@ -138,7 +138,9 @@ class WorkspaceTrajectoryTracker(Planner):
             elapsed = times[number] - times[number - 1]
             if np.abs(step).max() > LARGEST_JUMP or (np.abs(step) > fastest * elapsed * (1 + 1e-9)).any():
                 return False
-            turned = [hand.tool.motion(one)[0][:3, :3] for one in (before, before + step / 2, after)]
+            turned = [
+                hand.tool.motion(configuration)[0][:3, :3] for configuration in (before, before + step / 2, after)
+            ]
             if max(_angle(turned[0], turned[1]), _angle(turned[1], turned[2])) > largest_turn:
                 return False
             return not self._is_checked(values, times[number]) or edges.line(before, step)
@@ -177,8 +179,8 @@ def _goal(traj: Trajectory, time: float, hand: Hand) -> IkParameterization:
     return IkParameterization(matrixFromPose(pose.numbers()), IkParameterization.Type.Transform6D)
 
 
-def _angle(one: Floats, other: Floats) -> float:
-    return float(np.arccos(np.clip((np.trace(one.T @ other) - 1) / 2, -1.0, 1.0)))
+def _angle(rotation: Floats, other: Floats) -> float:
+    return float(np.arccos(np.clip((np.trace(rotation.T @ other) - 1) / 2, -1.0, 1.0)))
 
 
 class GraspGradient(PathPlanner):
@@ -221,5 +223,5 @@ class GraspGradient(PathPlanner):
         near = [place for place in order if far[place] <= values.tag("graspdistthresh", 1.4)]
         tries = int(values.tag("numgradsamples", 5))
         wanted = [errors[place] for place in near]
-        found = descend(problem.edges, start, wanted, _REACHED, problem.budget, problem.random, tries)
-        return replace(found, goal=near[found.goal] if found.path is not None else -1)
+        search = descend(problem.edges, start, wanted, _REACHED, problem.budget, problem.random, tries)
+        return replace(search, goal=near[search.goal] if search.path is not None else -1)

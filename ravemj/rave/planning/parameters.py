@@ -430,9 +430,9 @@ class PlannerParameters(ApiObject):
         last = steps if int(interval) in {Interval.OpenStart, Interval.Closed} else steps - 1
         with bodies.lock:
             for number in range(first, last + 1):
-                found = given.conditions.violation(start + step * (number / steps), int(options))
-                if found:
-                    return found
+                violated = given.conditions.violation(start + step * (number / steps), int(options))
+                if violated:
+                    return violated
         return FREE
 
     def report(self, values: Floats, options: int) -> CollisionReport:

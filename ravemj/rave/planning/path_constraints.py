@@ -48,8 +48,8 @@ def constrain(
     if not 0 < tolerance < np.inf:
         raise ArgumentError(f"add_constraint: tolerance is {tolerance:g}, and should be more than 0")
     if isinstance(given, Sets) and not given.any:
-        for one in given.members:
-            constrain(values, one, manip, tolerance, holding)
+        for member in given.members:
+            constrain(values, member, manip, tolerance, holding)
         return
     if isinstance(given, ToolConstraint):
         add_manifold(values, hand_of(manip().GetRobot().GetEnv(), values, gripper=True).tool.to_constraint(given))
@@ -84,7 +84,7 @@ def _lacking(
 ) -> Lacking | None:
     """Return the error function of a set; None if it only has a membership test."""
     if isinstance(given, Sets):
-        parts = [_lacking(bodies, one, manip, holding) for one in given.members]
+        parts = [_lacking(bodies, member, manip, holding) for member in given.members]
         known = [part for part in parts if part is not None]
         return (any_of if given.any else all_of)(known) if len(known) == len(parts) else None
     if not is_region(given):
@@ -102,7 +102,7 @@ def _test(
 ) -> Constraint:
     """Return the membership test of a set without error function; it is called with the bodies at the configuration."""
     if isinstance(given, Sets):
-        tests = [_test(bodies, one, manip, tolerance, holding) for one in given.members]
+        tests = [_test(bodies, member, manip, tolerance, holding) for member in given.members]
         combine = any if given.any else all
         return lambda values: combine(test(values) for test in tests)
     lacking = _lacking(bodies, given, manip, holding)
@@ -144,7 +144,7 @@ def stacked(errors: Sequence[Error], scales: Sequence[float]) -> Error:
     """Combine several error functions into one, each multiplied by its scale."""
 
     def error(values: Floats) -> tuple[Floats, Floats]:
-        parts = [one(values) for one in errors]
+        parts = [error_of(values) for error_of in errors]
         rows = [(scale * part, scale * jacobian) for scale, (part, jacobian) in zip(scales, parts, strict=True)]
         return np.concatenate([part for part, _ in rows]), np.concatenate([jacobian for _, jacobian in rows])
 

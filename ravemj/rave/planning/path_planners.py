@@ -113,10 +113,10 @@ class PathPlanner(Planner):
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Find a path and post-process it."""
         self._action = 0
-        found = self._found(values)
-        if isinstance(found, PlannerStatus):
-            return found
-        status = self._completed(values, traj, found)
+        search = self._found(values)
+        if isinstance(search, PlannerStatus):
+            return search
+        status = self._completed(values, traj, search)
         return self._certified(values, traj, status) if status and values.certify else status
 
     def _found(self, values: Values, *, strict_iterations: int = 0) -> Search | PlannerStatus:
@@ -154,23 +154,22 @@ class PathPlanner(Planner):
     def _certified(self, values: Values, traj: Trajectory, status: PlannerStatus) -> PlannerStatus:
         """Certify a motion; if that fails, search for one that can be certified."""
         search, certificate = self._search_made, traj.certify()
-        for found, others in self._alternatives(values, search):
+        for alternative, others in self._alternatives(values, search):
             if certificate.certified or certificate.reason:
                 break
             other = Trajectory(self._env, "")
-            done = self._completed(others, other, found)
+            done = self._completed(others, other, alternative)
             if done and other.certify().certified:
                 traj.take(other)
-                search, certificate, status = found, traj.certificate or certificate, done
+                search, certificate, status = alternative, traj.certificate or certificate, done
         self._search_made = search
         return status if certificate.certified or values.certify != "required" else self._failed(str(certificate))
 
     def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
         """Yield alternative paths with their post-processing parameters, the quick ones first.
 
-        Other shortcuts of the same path mostly succeed. Otherwise each shortcut is certified, then also each edge of a
-        new
-        path.
+        Other shortcuts of the same path mostly succeed. Otherwise each shortcut is certified, then also each edge of
+        another path.
         """
         assert search is not None, "it has found the motion"
         proving = replace(values, conditions=replace(values.conditions, proves=True))
@@ -179,9 +178,9 @@ class PathPlanner(Planner):
             yield search, replace(values, numbers={**values.numbers, "_nrandomgeneratorseed": seed})
         yield search, proving
         most = max(_STRICT_ITERATIONS, _STRICT_EFFORT * search.iterations)
-        found = self._found(proving, strict_iterations=most)
-        if isinstance(found, Search):
-            yield found, proving
+        search_ = self._found(proving, strict_iterations=most)
+        if isinstance(search_, Search):
+            yield search_, proving
 
     @abstractmethod
     def _search(self, problem: Problem, values: Values) -> Search: ...

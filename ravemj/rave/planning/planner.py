@@ -94,7 +94,11 @@ class PlannerStatus(ApiObject):
     @property
     def examples(self) -> dict[str, Floats]:
         """A configuration for each cause [rad or m], shape (dof,); empty for poses that are out of reach."""
-        return {} if self.tally is None else {cause.value: one.values for cause, one in self.tally.examples.items()}
+        return (
+            {}
+            if self.tally is None
+            else {cause.value: example.values for cause, example in self.tally.examples.items()}
+        )
 
     def __bool__(self) -> bool:
         return bool(self.statusCode & PlannerStatusCode.HasSolution)

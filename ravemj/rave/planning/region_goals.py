@@ -63,8 +63,8 @@ class MotionSets(NamedTuple):
 
     def state(self, values: Values, hand: Callable[[], Hand], probability: float) -> None:
         """Add goals and constraints to a problem of a hand; an iteration samples a goal with ``probability``."""
-        for one in self.constraints:
-            constrain(values, one, lambda: hand().manip, TOLERANCE, self.holding)
+        for constraint in self.constraints:
+            constrain(values, constraint, lambda: hand().manip, TOLERANCE, self.holding)
         if self.goals:
             values.goal_sampler = Sampler(region_roots(values, hand(), self.goals, self.holding), probability)
 
@@ -84,14 +84,14 @@ def region_roots(values: Values, hand: Hand, regions: Sequence[Region], holding:
     """
     bodies, names = hand.tool.bodies, _names(regions)
     tool = tool_frame(bodies, hand.manip)
-    sets = [of_tool(one.at_present(), hand.manip, holding) for one in regions]
-    for one, poses in zip(regions, sets, strict=True):
+    sets = [of_tool(region.at_present(), hand.manip, holding) for region in regions]
+    for given_region, poses in zip(regions, sets, strict=True):
         poses.sample(np.random.default_rng(0), 0)  # which needs bounds
-        if one.frame is not None and moving_frame(bodies, one.frame) is not None:
-            raise ArgumentError(f"region '{one.name}': its frame moves with the arm that should reach it")
+        if given_region.frame is not None and moving_frame(bodies, given_region.frame) is not None:
+            raise ArgumentError(f"region '{given_region.name}': its frame moves with the arm that should reach it")
     assert tool is not None, "the tool of the arm moves"
-    errors = [at_values(bodies, region_error(one, tool, None)) for one in sets]
-    solver = _PoseSolver(hand, values.space(), errors, [_at_start(hand, one) for one in regions])
+    errors = [at_values(bodies, region_error(poses_of_tool, tool, None)) for poses_of_tool in sets]
+    solver = _PoseSolver(hand, values.space(), errors, [_at_start(hand, region) for region in regions])
     solve = solver.solve if solver.solves_poses else solver.search
     return RegionRoots(sets, names, solve, lambda region, row: _repaired(values, errors[region], row))
 
@@ -104,13 +104,15 @@ def preshaped_dofs(manip: Manipulator, regions: Sequence[Region]) -> list[int]:
     """
     dofs = [int(dof) for dof in manip.GetGripperIndices()]
     present, moved = manip.GetRobot().GetDOFValues()[dofs], set[int]()
-    for one in regions:
-        if one.preshape is None:
+    for region in regions:
+        if region.preshape is None:
             continue
-        if len(one.preshape) != len(dofs):
+        if len(region.preshape) != len(dofs):
             joints = f"the gripper of '{manip.GetName()}' has {len(dofs)} joints"
-            raise ArgumentError(f"region '{one.name}': its preshape has {len(one.preshape)} values, and {joints}")
-        moved |= {dof for dof, value, now in zip(dofs, one.preshape, present, strict=True) if abs(value - now) > _SAME}
+            raise ArgumentError(f"region '{region.name}': its preshape has {len(region.preshape)} values, and {joints}")
+        moved |= {
+            dof for dof, value, now in zip(dofs, region.preshape, present, strict=True) if abs(value - now) > _SAME
+        }
     return [dof for dof in dofs if dof in moved]
 
 
@@ -131,7 +133,7 @@ def _at_start(hand: Hand, region: Region) -> Floats:
 
 def _names(regions: Sequence[Region]) -> list[str]:
     """Return unique names of regions; an unnamed region, or one whose name is taken, gets its index."""
-    given = Counter(one.name for one in regions)
+    given = Counter(region.name for region in regions)
     return [
         one.name if one.name and given[one.name] == 1 else f"{one.name or 'region'} {number}"
         for number, one in enumerate(regions)
@@ -158,14 +160,14 @@ class _PoseSolver:
         T_base_tool = T_world_tool if base is None else inverse(base.GetTransform()) @ T_world_tool
         goal = T_base_tool if kind == _Type.Transform6D else goal_of_tool(kind, T_base_tool, self._direction)
         if self._given is None:
-            found, asked = self._manip.ik_solver(kind).solve_one(goal, limits=True), False
+            solutions, asked = self._manip.ik_solver(kind).solve_one(goal, limits=True), False
         else:
-            found, asked = self._accepted(self._given, goal)
-        if not len(found):
-            return PoseSolutions(found, self._cause(kind, goal, asked=asked))
-        rows = np.tile(self._starts[region], (len(found), 1))
+            solutions, asked = self._accepted(self._given, goal)
+        if not len(solutions):
+            return PoseSolutions(solutions, self._cause(kind, goal, asked=asked))
+        rows = np.tile(self._starts[region], (len(solutions), 1))
         near = rows[0].copy()
-        rows[:, self._columns], near[self._columns] = found, self._manip.GetArmDOFValues()
+        rows[:, self._columns], near[self._columns] = solutions, self._manip.GetArmDOFValues()
         rows = _some(rows, near, random)
         if kind == _Type.Transform6D:
             return PoseSolutions(rows, Cause.FILTER)
@@ -193,11 +195,11 @@ class _PoseSolver:
         del T_world_tool
         starts = np.array([self._space.sample(random) for _ in range(_TRIES)])
         starts[:, self._rest] = self._starts[region][self._rest]
-        found = self._moved(region, starts, self._space)
+        solutions = self._moved(region, starts, self._space)
         endless = np.full(len(self._space.lower), np.inf)
         unlimited = replace(self._space, lower=-endless, upper=endless)
-        is_limited = not len(found) and len(self._moved(region, starts[:2], unlimited))
-        return PoseSolutions(found, Cause.LIMITS if is_limited else Cause.REACH)
+        is_limited = not len(solutions) and len(self._moved(region, starts[:2], unlimited))
+        return PoseSolutions(solutions, Cause.LIMITS if is_limited else Cause.REACH)
 
     def _moved(self, region: int, rows: Floats, space: Space) -> Floats:
         error, smallest = self._errors[region], TOLERANCE * _PROJECTED
@@ -222,5 +224,5 @@ def _repaired(values: Values, error: Error, row: Floats) -> Floats | None:
     if manifold is None:
         return None
     both = stacked([manifold.error, error], [1.0, manifold.threshold / TOLERANCE])
-    steps, found = project(row, both, values.space(), _PROJECTED * manifold.threshold, PROJECTION_STEPS)
-    return found if steps >= 0 else None
+    steps, projected = project(row, both, values.space(), _PROJECTED * manifold.threshold, PROJECTION_STEPS)
+    return projected if steps >= 0 else None

@@ -262,13 +262,13 @@ class Values:
             ArgumentError: the number of limits is wrong.
         """
         names = ("lower", "upper", "velocity", "acceleration", "jerk")
-        dof, found = count(self.groups), [self.vectors[f"_vconfig{name}limit"] for name in names]
-        if not len(found[4]):
-            found[4] = np.full(dof, np.inf)
-        for name, numbers in zip(names, found, strict=True):
+        dof, vectors = count(self.groups), [self.vectors[f"_vconfig{name}limit"] for name in names]
+        if not len(vectors[4]):
+            vectors[4] = np.full(dof, np.inf)
+        for name, numbers in zip(names, vectors, strict=True):
             if numbers.shape != (dof,):
                 raise ArgumentError(f"{name} limits: are {len(numbers)}, and there are {dof} values")
-        return PathLimits(self.coordinates(), *found)
+        return PathLimits(self.coordinates(), *vectors)
 
     def check(self) -> None:
         """Check that there are joints or bodies to move, and that each value has limits and a resolution.
@@ -287,8 +287,8 @@ class Values:
     def index_of(self, side: int, end: Floats) -> int:
         """Return the index of a start (side 0) or goal (1); regions are counted after configurations."""
         given = self.configurations("_vgoalconfig" if side else "_vinitialconfig")
-        for number, one in enumerate(given):
-            if np.abs(one - end).max() <= _SAME:
+        for number, configuration in enumerate(given):
+            if np.abs(configuration - end).max() <= _SAME:
                 return number
         sampler = self.goal_sampler if side else self.start_sampler
         region = -1 if sampler is None else sampler.source.region_of(end)

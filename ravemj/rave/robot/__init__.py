@@ -422,19 +422,19 @@ class Robot(ActiveDofs):
 
     def restorers(self, options: int) -> list[Restorer]:
         """Return functions that restore the current state of this robot, on it or on one of the same structure."""
-        found = super().restorers(options)
+        restorers = super().restorers(options)
         if options & _ACTIVE_DOF:
             choice = self.active_choice
-            found.append(lambda body: setattr(body, "active_choice", choice))
+            restorers.append(lambda body: setattr(body, "active_choice", choice))
         if options & _ACTIVE_MANIPULATOR:
             name = self._active_manipulator
-            found.append(lambda body: setattr(body, "_active_manipulator", name))
+            restorers.append(lambda body: setattr(body, "_active_manipulator", name))
         tools = self.GetManipulators() if options & _TOOLS else []
         if options & _ACTIVE_TOOL and (active := self.GetActiveManipulator()) is not None:
             tools.append(active)
         for tool, transform in [(tool.GetName(), tool.GetLocalToolTransform()) for tool in tools]:
-            found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
-        return found
+            restorers.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
+        return restorers
 
     devices: Devices
     """Sensor objects that were used so far; others are not created."""
@@ -455,7 +455,7 @@ class Robot(ActiveDofs):
             self._manipulators = (*known, *new)
         if manipname is None:
             return list(self._manipulators)
-        return [one for one, arm in zip(self._manipulators, arms, strict=True) if arm.name == manipname]
+        return [manipulator for manipulator, arm in zip(self._manipulators, arms, strict=True) if arm.name == manipname]
 
     def GetManipulator(self, manipname: str) -> Manipulator | None:
         """Return the manipulator called ``manipname``, or None."""
@@ -609,7 +609,7 @@ class Robot(ActiveDofs):
         """
         if manipname is None:
             raise RavemjError("SetActiveManipulator: is None, and should be a name; '' means none", ErrorCode.Assert)
-        names = [one.name for one in self._state.scene.manipulators]
+        names = [manipulator.name for manipulator in self._state.scene.manipulators]
         name = manipname.GetName() if isinstance(manipname, Manipulator) else manipname
         if isinstance(name, int):
             name = names[name] if 0 <= name < len(names) else None if name == -1 else f"number {name}"
@@ -712,7 +712,7 @@ class Robot(ActiveDofs):
         with self._simulation.lock:
             name = attsensor.GetName()
             self.devices.forget(name)
-            self._state.edit(sensors=tuple(one for one in self._state.scene.sensors if one.name != name))
+            self._state.edit(sensors=tuple(sensor for sensor in self._state.scene.sensors if sensor.name != name))
         return True
 
     def GetConnectedBodies(self) -> list[ConnectedBody]:

@@ -96,7 +96,7 @@ def affine_numbers(kinds: Mapping[str, AffineKind], affine: int, axis: Vec3, nam
 
 def default_kinds() -> dict[str, AffineKind]:
     """Return OpenRAVE's defaults, rounded to single precision as in OpenRAVE."""
-    defaults = {name: (-one.limit, one.limit, *one[2:5]) for name, one in _KINDS.items()}
+    defaults = {name: (-values.limit, values.limit, *values[2:5]) for name, values in _KINDS.items()}
     return {
         name: AffineKind(*(np.full(_KINDS[name].size, float(np.float32(value))) for value in values))
         for name, values in defaults.items()
@@ -136,7 +136,7 @@ def _setter(kind: str, fields: tuple[str, ...], arguments: Signature) -> Callabl
         settings = self.affine_kinds[kind]
         count = len(settings.lower)
         pairs = list(zip(fields, given, strict=True))
-        checked = {field: checked_vector(one, count, f"SetAffine{kind}: {field}") for field, one in pairs}
+        checked = {field: checked_vector(row, count, f"SetAffine{kind}: {field}") for field, row in pairs}
         for field, numbers in checked.items():
             setattr(settings, field, numbers)
 
@@ -381,7 +381,9 @@ class ActiveDofs(KinBody):
             ArgumentError: the number of values is wrong.
         """
         count, joints = self.GetActiveDOF(), self._active_dofs()
-        minuend, subtrahend = (checked_vector(one, count, "SubtractActiveDOFValues") for one in (values0, values1))
+        minuend, subtrahend = (
+            checked_vector(values, count, "SubtractActiveDOFValues") for values in (values0, values1)
+        )
         difference = minuend - subtrahend
         split = len(joints)
         difference[:split] = self.SubtractDOFValues(minuend[:split], subtrahend[:split], joints)

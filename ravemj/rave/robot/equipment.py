@@ -48,16 +48,16 @@ class AttachedSensor(ApiObject):
     @property
     def description(self) -> scene.AttachedSensor:
         """The attached sensor in the scene; an error if the robot no longer has it."""
-        found = next((one for one in self._state.scene.sensors if one.name == self._name), None)
-        if found is None:
+        description = next((sensor for sensor in self._state.scene.sensors if sensor.name == self._name), None)
+        if description is None:
             raise RavemjError(f"'{self._robot.GetName()}' has no sensor '{self._name}' any more")
-        return found
+        return description
 
     def edit(self, **changes: Any) -> scene.AttachedSensor:  # noqa: ANN401 - the fields of a scene.AttachedSensor
         """Change the description, and return it."""
         with self._state.simulation.lock:
             changed = replace(self.description, **changes)
-            sensors = (changed if one.name == changed.name else one for one in self._state.scene.sensors)
+            sensors = (changed if sensor.name == changed.name else sensor for sensor in self._state.scene.sensors)
             self._state.edit(sensors=tuple(sensors))
         return changed
 
@@ -260,27 +260,27 @@ class ConnectedBody(ApiObject):
 
     def GetResolvedLinks(self) -> list[Link | None]:
         """Return the body's links on the robot; None for each while it is not connected."""
-        return [self._robot.GetLink(self._resolved(one._name)) for one in self._info._linkInfos]
+        return [self._robot.GetLink(self._resolved(info._name)) for info in self._info._linkInfos]
 
     def GetResolvedJoints(self) -> "list[Joint | None]":
         """Return the body's joints on the robot; None for each while it is not connected."""
-        return [self._robot.GetJoint(self._resolved(one._name)) for one in self._info._jointInfos]
+        return [self._robot.GetJoint(self._resolved(info._name)) for info in self._info._jointInfos]
 
     def GetResolvedManipulators(self) -> "list[Manipulator | None]":
         """Return the body's manipulators on the robot; None for each while it is not connected."""
-        return [self._robot.GetManipulator(self._resolved(one._name)) for one in self._info._manipulatorInfos]
+        return [self._robot.GetManipulator(self._resolved(info._name)) for info in self._info._manipulatorInfos]
 
     def GetResolvedAttachedSensors(self) -> list[AttachedSensor | None]:
         """Return the body's sensors on the robot; None for each while it is not connected."""
-        return [self._robot.GetAttachedSensor(self._resolved(one._name)) for one in self._info._attachedSensorInfos]
+        return [self._robot.GetAttachedSensor(self._resolved(info._name)) for info in self._info._attachedSensorInfos]
 
     def GetResolvedGripperInfos(self) -> list[GripperInfo | None]:
         """Return the body's gripper descriptions on the robot; None for each while it is not connected."""
-        return [self._robot.GetGripperInfo(self._resolved(one._name)) for one in self._info._gripperInfos]
+        return [self._robot.GetGripperInfo(self._resolved(info._name)) for info in self._info._gripperInfos]
 
     def CanProvideManipulator(self, resolvedManipulatorName: str) -> bool:
         """Return whether the connected body gives the robot a manipulator called ``resolvedManipulatorName``."""
-        return resolvedManipulatorName in {self._resolved(one._name) for one in self._info._manipulatorInfos}
+        return resolvedManipulatorName in {self._resolved(info._name) for info in self._info._manipulatorInfos}
 
     def SetLinkEnable(self, enable: bool) -> None:
         """Enable collisions of its links if ``enable``, while it is connected."""

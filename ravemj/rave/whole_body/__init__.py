@@ -311,7 +311,7 @@ class WholeBodyIK(ApiObject):
         is_contact: bool = False,
         goal: Goal | None = None,
     ) -> WholeBodyTask:
-        found = frame_of(self._robot, frame, "frame")
+        placed = frame_of(self._robot, frame, "frame")
 
         def checked(target: ArrayLike | IkParameterization | KinBody | Link) -> Target:
             checked = target_of(self._robot, target, "target", rotation=rotation)
@@ -320,7 +320,7 @@ class WholeBodyIK(ApiObject):
             return checked if goal is None else Target(goal, checked.numbers)
 
         with self._state.simulation.lock:
-            number = self._moving.add_frame(found.link, found.T_link_frame)
+            number = self._moving.add_frame(placed.link, placed.T_link_frame)
             given = self._moving.frame(number)[0].copy() if target is None else target
             current = checked(given)
 
@@ -328,8 +328,8 @@ class WholeBodyIK(ApiObject):
             nonlocal current
             current = checked(target)
 
-        measure = frame_rows(self._moving, number, found.direction, lambda: current)
-        name = self._new_name(found.name)
+        measure = frame_rows(self._moving, number, placed.direction, lambda: current)
+        name = self._new_name(placed.name)
         task = WeightedTask(
             name, measure, lambda error: f"{name} {described(current.goal, error)}", _checked_weight(weight)
         )
@@ -641,7 +641,11 @@ class WholeBodyIK(ApiObject):
 
     def _new_name(self, name: str) -> str:
         known = {task.name for task in self._tasks}
-        return next(one for number in counting(1) if (one := f"{name} {number}" if number > 1 else name) not in known)
+        return next(
+            candidate
+            for number in counting(1)
+            if (candidate := f"{name} {number}" if number > 1 else name) not in known
+        )
 
     def _variable_names(self) -> list[str]:
         """Return the names of the active joints; multi-axis joints get numbered names."""
@@ -655,25 +659,25 @@ class WholeBodyIK(ApiObject):
     def _pressed_limits(self) -> list[str]:
         """Return the joints at a limit beyond which the cost would decrease."""
         limits, values, pull = self._descent.limits, self._moving.values(), self._descent.pressing()
-        found: list[str] = []
+        sentences: list[str] = []
         for index, name in enumerate(self._variable_names()):
             if pull[index] > _PRESSING and values[index] >= limits.upper[index] - _AT_LIMIT:
-                found.append(f"{name} is at its upper limit")
+                sentences.append(f"{name} is at its upper limit")
             if pull[index] < -_PRESSING and values[index] <= limits.lower[index] + _AT_LIMIT:
-                found.append(f"{name} is at its lower limit")
-        return found
+                sentences.append(f"{name} is at its lower limit")
+        return sentences
 
     def _violated(self) -> Sequence[str]:
-        found: list[str] = []
+        sentences: list[str] = []
         for keeper in self._moving.keepers:
             distance, names = self._moving.nearest(keeper)
             if distance < keeper.least - _TOUCHED:
-                found.append(f"{names} are {distance:.3g} m apart, and should be {keeper.least:.3g} m")
+                sentences.append(f"{names} are {distance:.3g} m apart, and should be {keeper.least:.3g} m")
         com = self._moving.com()[0]
         for normals, offsets in self._moving.edges:
             if (beyond := float((normals @ com[:2] - offsets).max())) > _TOUCHED:
-                found.append(f"the centre of mass is {beyond:.3g} m outside of its support")
-        return found
+                sentences.append(f"the centre of mass is {beyond:.3g} m outside of its support")
+        return sentences
 
 
 def _subject(thing: KinBody | Link) -> BodyState | tuple[BodyState, int]:

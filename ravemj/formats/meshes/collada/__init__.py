@@ -81,8 +81,8 @@ class _Flattening:
         self._count = 0
         self._groups: dict[Element, list[tuple[Element, Floats]]] = {}
         library = (item for each in children(document.root, "library_materials") for item in children(each, "material"))
-        found = {item.get("id", ""): read_material(document, item) for item in library}
-        self._materials = {name: material for name, material in found.items() if material is not None}
+        materials = {item.get("id", ""): read_material(document, item) for item in library}
+        self._materials = {name: material for name, material in materials.items() if material is not None}
         self.pieces: dict[str, list[Floats]] = {}
 
     def material(self, name: str) -> ColladaMaterial:

@@ -151,8 +151,8 @@ def numbers(element: Element | None) -> Floats:
 
 
 def _leading_number(word: str) -> float:
-    found = _LEADING_NUMBER.match(word)
-    return float(found[0]) if found else 0.0
+    match = _LEADING_NUMBER.match(word)
+    return float(match[0]) if match else 0.0
 
 
 def attribute_number(element: Element | None, name: str, default: float) -> float:

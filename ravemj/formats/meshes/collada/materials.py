@@ -95,6 +95,6 @@ def _float(effect: Element, element: Element | None) -> float | None:
     reference = child(element, "param")
     if not len(values) and reference is not None:
         sid = reference.get("ref")
-        found = (item for item in effect.iter("{*}newparam") if item.get("sid") == sid)
-        values = numbers(child(next(found, None), "float"))
+        parameters = (item for item in effect.iter("{*}newparam") if item.get("sid") == sid)
+        values = numbers(child(next(parameters, None), "float"))
     return float(values[0]) if len(values) else None

@@ -126,8 +126,8 @@ class Traversal:
 
         Its materials count only ``with_materials``. Return the state at its end.
         """
-        found = (self.file.refer(name) for name in names)
-        file = next((candidate for candidate in found if candidate is not None), None)
+        files = (self.file.refer(name) for name in names)
+        file = next((candidate for candidate in files if candidate is not None), None)
         if file is None:
             _log.warning("%s: %s: nothing to include", self.file.access.named(node.document.path), node.kind)
             return state

@@ -150,7 +150,7 @@ def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
     old, new = before.get("controls", ()), said.get("controls", ())
     if new and [control.name for control in old] == [control.name for control in new]:
         del said["controls"]
-        said["changed"] = [_difference(one, other) for one, other in zip(new, old, strict=True) if one != other]
+        said["changed"] = [_difference(layer, other) for layer, other in zip(new, old, strict=True) if layer != other]
     return said
 
 
@@ -191,10 +191,10 @@ def _drawn(kind: int, primitives: Primitives) -> bytes:
     return struct.pack("<I", kind) + package.content(_LEVEL)
 
 
-def _is_same(one: Primitives, other: Primitives) -> bool:
+def _is_same(drawn: Primitives, other: Primitives) -> bool:
     """Return whether two drawings are equal."""
-    return one is other or all(
+    return drawn is other or all(
         np.array_equal(array, others)
-        for batch, other_batch in zip(one.batches, other.batches, strict=True)
+        for batch, other_batch in zip(drawn.batches, other.batches, strict=True)
         for array, others in zip(batch, other_batch, strict=True)
     )
