@@ -10,7 +10,7 @@ from browsers import browser, chromium, webgl_browser  # noqa: F401 - fixtures
 from hypothesis import HealthCheck, settings
 from newcomers import pytest_report_header, pytest_terminal_summary  # noqa: F401 - hooks
 from screens import display, folder  # noqa: F401 - fixtures
-from strategies import DEV
+from strategies import DEV, PROFILE
 
 import ravemj
 
@@ -23,7 +23,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background jo
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # Examples may take as long as a busy machine needs, and are the same each time but with HYPOTHESIS_PROFILE=dev.
-settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=not DEV)
+settings.register_profile(
+    "patient",
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+    derandomize=not DEV,
+    max_examples=100 if PROFILE else 25,  # as ``examples(100)`` has
+)
 settings.load_profile("patient")
 
 

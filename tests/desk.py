@@ -2,7 +2,6 @@
 
 import ast
 import signal
-import time
 from pathlib import Path
 
 import numpy as np
@@ -17,20 +16,38 @@ from ravemj.gui.interaction import Button, Interaction, Key, Move, Press, Releas
 SIZE = 640, 480
 ASLANT = ravemj.transformLookat(lookat=[0.386, 0.325, 0.136], camerapos=[0.943, 0.792, 0.474], cameraup=[0, 0, -1])
 DISTANCE = 0.8
+SETTLE = """
+import time
+from ravemj.gui.viewers import sharpness, window
+
+def settle():
+    count, usual, window._LONGEST_SYNC = -1, window._LONGEST_SYNC, 60.0
+    while count != len(pictures):  # the last one is crisp
+        count = len(pictures)
+        viewer.EnvironmentSync()
+        time.sleep(1.5 * sharpness.REST)
+        viewer.EnvironmentSync()
+    window._LONGEST_SYNC = usual
+"""
+"""Waits until a window draws nothing more, also on a busy machine; ``pictures`` has an entry for each picture."""
+
 _SCRIPT = """
 import ravemj
 env = ravemj.Environment()
+pictures = []
 
 def show(model, camera, distance, width, height):
-    global robot, viewer, pictures, kept
+    global robot, viewer, kept
     env.Reset()
     env.Load(model)
     env.SetViewer('window')
-    robot, viewer, pictures = env.GetRobots()[0], env.GetViewer(), []
+    robot, viewer = env.GetRobots()[0], env.GetViewer()
+    pictures.clear()
     kept = viewer.RegisterViewerImageCallback(lambda picture: pictures.append(1))
     viewer.SetSize(width, height)
     viewer.Move(0, 0)
     viewer.SetCamera(camera, distance)
+
 
 print('=ready.')
 while True:
@@ -47,7 +64,7 @@ class Desk:
 
     def __init__(self, display: Display, folder: Path) -> None:
         self.display, self.folder = display, folder
-        (folder / "script.py").write_text(_SCRIPT)
+        (folder / "script.py").write_text(SETTLE + _SCRIPT)
         self.terminal = on_terminal(folder, "script.py", DISPLAY=display.name)
         self.answer()
 
@@ -103,9 +120,8 @@ class Desk:
         return self.display.picture(int(self.window))
 
     def settled_picture(self) -> np.ndarray:
-        """Return the pixels once the screen has what the environment has."""
-        self.ask("viewer.EnvironmentSync()")
-        time.sleep(0.3)
+        """Return the pixels once the screen has what the environment has, and no more is drawn."""
+        self.ask("settle()")
         return self.picture()
 
     def at(self, point) -> tuple[int, int]:

@@ -11,7 +11,7 @@ from ravemj.cli.console import print_findings
 from ravemj.cli.models import failure_of, load_model
 from ravemj.engine import sim_check
 from ravemj.engine.export import is_folder, marked, write
-from ravemj.engine.translation import Choices, translated
+from ravemj.engine.translation import TranslationChoices, translated
 from ravemj.errors import Diagnostic, Diagnostics, OutputError
 from ravemj.formats.suffixes import SUFFIXES, format_of
 from ravemj.rave import Environment
@@ -41,9 +41,9 @@ def convert(options: argparse.Namespace) -> int:
     return 0
 
 
-def choices_of(options: argparse.Namespace) -> Choices:
+def choices_of(options: argparse.Namespace) -> TranslationChoices:
     """Return the options of a translation to MJCF from those of a command."""
-    return Choices(
+    return TranslationChoices(
         base=options.base,
         actuators=options.actuators,
         gains=options.gains,
@@ -79,7 +79,7 @@ def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
     """Write a model in one of OpenRAVE's formats."""
     if options.output == TO_STANDARD_OUTPUT:
         raise OutputError(f"a model in the format {kind} needs a file; write -o FILE")
-    if choices_of(options)._replace(state=None) != Choices():
+    if choices_of(options)._replace(state=None) != TranslationChoices():
         raise OutputError("--base, --actuators, --decompose and the like are for MJCF; leave them out")
     if any(Path(file).exists() and Path(options.output).resolve() == Path(file).resolve() for file in env.files):
         raise OutputError(f"cannot write {options.output}: the model was read from it")

@@ -27,7 +27,7 @@ def info(options: argparse.Namespace) -> int:
     out = console()
     for index, body in enumerate(bodies):
         print("\n" * (index > 0) + _headline(body) + "\n")
-        print("\n".join(_Tree(body, out.width).lines()), flush=True)
+        print("\n".join(_KinematicTree(body, out.width).lines()), flush=True)
         for rows in _tables(body):
             out.print()
             out.print(rows)
@@ -44,7 +44,7 @@ def _headline(body: KinBody) -> str:
     return f"{kind} {body.name}: {links} link{'s' * (links != 1)}, {dof} DOF{'s' * (dof != 1)}, {mass:.6g} kg"
 
 
-class _Tree:
+class _KinematicTree:
     """Prints the kinematic tree of a body: each link below its parent, with the joint between them."""
 
     def __init__(self, body: KinBody, width: int) -> None:

@@ -42,7 +42,7 @@ _LIGHT_DISTANCE = 2.0
 """Distance of lights from the centre of a model, in multiples of its extent."""
 
 
-class Choices(NamedTuple):
+class TranslationChoices(NamedTuple):
     """User choices of a translation to MJCF.
 
     Attributes:
@@ -115,7 +115,7 @@ class Translation:
 
     mjcf: mjcf.Mjcf
     bodies: tuple[KinBody, ...]
-    choices: Choices
+    choices: TranslationChoices
     excluded: tuple[tuple[str, str], ...]
 
     @cached_property
@@ -144,7 +144,7 @@ class Translation:
 def translated(
     simulation: Simulation,
     diagnostics: Diagnostics,
-    choices: Choices,
+    choices: TranslationChoices,
     model: AnyPath,
     sensors: tuple[AttachedSensor, ...] = (),
 ) -> Translation:
@@ -158,7 +158,7 @@ def translated(
     return translate(scene, diagnostics, choices, os.path.dirname(os.fspath(model)) or ".")
 
 
-def translate(scene: Scene, diagnostics: Diagnostics, choices: Choices, folder: str) -> Translation:
+def translate(scene: Scene, diagnostics: Diagnostics, choices: TranslationChoices, folder: str) -> Translation:
     """Translate a scene, and check that MuJoCo accepts the result.
 
     Args:
@@ -220,14 +220,14 @@ def _scene_text(scene: Scene, excluded: Sequence[tuple[str, str]]) -> XmlLines:
     return content
 
 
-def _check_state(scene: Scene, choices: Choices) -> None:
+def _check_state(scene: Scene, choices: TranslationChoices) -> None:
     known = dict.fromkeys(configuration.name for body in scene.bodies for configuration in body.configurations)
     if choices.state is not None and choices.state not in known:
         raise ArgumentError(f"there is no state '{choices.state}'; the model has {', '.join(known) or 'none'}")
 
 
 def _gains(
-    scene: Scene, starts: Sequence[Floats], choices: Choices, diagnostics: Diagnostics
+    scene: Scene, starts: Sequence[Floats], choices: TranslationChoices, diagnostics: Diagnostics
 ) -> tuple[Gains | None, ...]:
     """Return the servo gains of each body; those of a file replace computed ones."""
     given = [] if choices.gains is None else read_gains(choices.gains)
@@ -338,7 +338,9 @@ def _add_excludes(document: MjcfSections, pairs: Sequence[tuple[str, str]]) -> N
         document.add("contact", content)
 
 
-def _keyframes(poses: _Poses, bodies: Sequence[KinBody], starts: Sequence[Floats], choices: Choices) -> XmlLines:
+def _keyframes(
+    poses: _Poses, bodies: Sequence[KinBody], starts: Sequence[Floats], choices: TranslationChoices
+) -> XmlLines:
     """Return the keyframe of the start pose, and one for each other named configuration."""
     content = XmlLines(2)
     for name, values in _named_poses(bodies, starts, choices):
@@ -349,7 +351,7 @@ def _keyframes(poses: _Poses, bodies: Sequence[KinBody], starts: Sequence[Floats
 
 
 def _named_poses(
-    bodies: Sequence[KinBody], starts: Sequence[Floats], choices: Choices
+    bodies: Sequence[KinBody], starts: Sequence[Floats], choices: TranslationChoices
 ) -> Iterator[tuple[str, list[Floats]]]:
     yield HOME, list(starts)
     names = dict.fromkeys(configuration.name for body in bodies for configuration in body.configurations)

@@ -142,7 +142,7 @@ def _read_collada(
         if not content.bodies and content.others:
             message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
             context.diagnostics.error("no-kinematics", message, source, "read it with ReadKinBodyURI")
-        built_bodies, names = (*content.bodies, *content.others), _BodyNames()
+        built_bodies, names = (*content.bodies, *content.others), _NameSuffixes()
         give(given, built_bodies)
         for built in built_bodies:
             built.name = names.give(built.name or "body")
@@ -158,7 +158,7 @@ def _read_collada(
     return Reading(scene, context.diagnostics, failure, access.files, renames=True)
 
 
-class _BodyNames:
+class _NameSuffixes:
     """The body names of a file in use, each with its next numeric suffix."""
 
     def __init__(self) -> None:

@@ -77,7 +77,7 @@ def _searched(
     settings: Mapping[str, str],
 ) -> Search:
     base = importlib.import_module("ompl.base")
-    space, questions = _Space(base, edges.space), _Questions(edges, budget)
+    space, questions = _OmplSpace(base, edges.space), _Questions(edges, budget)
 
     def is_allowed(state: Ompl) -> bool:
         return questions.point(space.values(state))
@@ -187,7 +187,7 @@ class _Questions:
         return not self.safely(proceeds)
 
 
-class _Space:
+class _OmplSpace:
     """OMPL space of one of ravemj's: a box of weighted values, and a circle for each circular value."""
 
     def __init__(self, base: Ompl, space: Space) -> None:

@@ -205,7 +205,7 @@ def connect(
 
     At first, blocked edges are discarded; later, the trees keep the steps before an obstacle.
     """
-    growth = _Growth(edges, starts, goals)
+    growth = _TreeGrowth(edges, starts, goals)
     stopped = budget.end(0)
     if stopped is None and (path := growth.straight(starts, goals)) is not None:
         return path
@@ -224,7 +224,7 @@ def connect(
     return Search(stopped, None, -1, -1, iteration, growth.trees)
 
 
-class _Growth:
+class _TreeGrowth:
     """Growing trees from starts and goals."""
 
     def __init__(self, edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats]) -> None:

@@ -372,9 +372,9 @@ class Environment(Loading, Saving, Viewing):
             'desk_arm.mjcf.xml'
         """
         from ravemj.engine.export import write  # noqa: PLC0415 - slow to import, and rarely wanted
-        from ravemj.engine.translation import Choices, translated  # noqa: PLC0415
+        from ravemj.engine.translation import TranslationChoices, translated  # noqa: PLC0415
 
-        choices = Choices(
+        choices = TranslationChoices(
             base, actuators, gains, state, self_collision, exclude, decompose, hull_vertices, merge_fixed, sensors,
             append, timestep,
         )  # fmt: skip

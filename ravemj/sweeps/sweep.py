@@ -128,7 +128,7 @@ def sweep(  # noqa: PLR0913 - keyword arguments
     return result
 
 
-class _Plan(NamedTuple):
+class _SweepInputs(NamedTuple):
     """All inputs of the numbers of a sweep, and its folder."""
 
     first: ShardTask  # all items
@@ -233,7 +233,7 @@ def _unsendable(why: str) -> str:
     return f"sweep: what: processes cannot import it ({why}): {hint}"
 
 
-def _plan(env: Environment, job: Job, items: Items, seed: int, block: int | None, folder: Path) -> _Plan:
+def _plan(env: Environment, job: Job, items: Items, seed: int, block: int | None, folder: Path) -> _SweepInputs:
     work = Work.for_job(job, env)
     known = JOBS[job.what] if isinstance(job.what, str) else None
     given, total = _items(items)
@@ -244,7 +244,7 @@ def _plan(env: Environment, job: Job, items: Items, seed: int, block: int | None
             JOBS[job.what].shape(work)  # says what is missing
     size = (BLOCK if known is None else known.block) if block is None else _at_least("block", block, 1)
     task = ShardTask(pickle.dumps(env), job, seed, size, 0, total, given, str(folder.absolute()), 0)
-    return _Plan(task, job, given is None, 0)
+    return _SweepInputs(task, job, given is None, 0)
 
 
 def _items(items: Items) -> tuple[NDArray[Any] | None, int]:
@@ -272,7 +272,7 @@ def _items_of_file(path: str) -> NDArray[Any]:
         raise ArgumentError(f"sweep: items: cannot read {path} as .npy, .npz or .csv: {reason}") from error
 
 
-def _shard_size(plan: _Plan, folder: Path, shard: int | None, workers: int) -> int:
+def _shard_size(plan: _SweepInputs, folder: Path, shard: int | None, workers: int) -> int:
     """Return the number of items per shard: the given one, that of the folder, or an estimate from a first block."""
     task, is_function = plan.first, callable(plan.job.what)
     if shard is None:

@@ -188,14 +188,14 @@ def _from_message(content: object, source: Source) -> JointTrajectory:
         raise SourceError(f"found {fields:.60}, expected joint_names and points", source, _EXPECTED)
     if not all(isinstance(name, str) for name in names):
         raise SourceError("joint_names: expected texts", source, _EXPECTED)
-    rows = [_Point(number, point, len(names), source) for number, point in enumerate(points)]
+    rows = [_MessagePoint(number, point, len(names), source) for number, point in enumerate(points)]
     positions, *rates = (_same_for_all([point.values(name) for point in rows], name, source) for name in _ORDERS)
     if positions is None:
         raise SourceError("the points have no positions", source, _EXPECTED)
     return JointTrajectory(list(map(str, names)), [point.time() for point in rows], positions, rates[0], rates[1])
 
 
-class _Point:
+class _MessagePoint:
     """Point of a message, with errors that name it."""
 
     def __init__(self, number: int, content: object, count: int, source: Source) -> None:

@@ -103,16 +103,20 @@ CLOSED = "ravemj: error: cannot write standard output: it is closed\n"
 FULL = "ravemj: error: cannot write standard output: no space left on device\n"
 REDIRECTED = [
     (f"info {MODEL} >&-", (1, "", CLOSED)),
-    (f"render {MODEL} -o picture.png >&- 2>&- <&-", (1, "", "")),
-    (f"play {MODEL} -o frames --size 96x72 --fps 1 2>&-", (0, "wrote .*\n", "")),
     ("--help >/dev/full", (1, "", FULL)),
     ("render accents.xml -o picture.png 2>/dev/full", (0, "wrote picture.png\n", "")),
+    (f"render {MODEL} -o picture.png >&- 2>&- <&-", (1, "", "")),
+    (f"play {MODEL} -o frames --size 96x72 --fps 1 2>&-", (0, "wrote .*\n", "")),
 ]
 
 
 @POSIX
 @pytest.mark.parametrize(
-    ("words", "expected"), REDIRECTED, ids=[words.replace(str(MODEL), "M") for words, _ in REDIRECTED]
+    ("words", "expected"),
+    [
+        pytest.param(words, expected, id=words.replace(str(MODEL), "M"), marks=[pytest.mark.stress] * (place > 1))
+        for place, (words, expected) in enumerate(REDIRECTED)
+    ],
 )
 def test_streams_that_take_nothing(tmp_path, words, expected):
     if "/dev/full" in words and not Path("/dev/full").exists():
@@ -154,8 +158,8 @@ sys.meta_path.insert(0, Interrupter())
     [
         (["--help"], "signal", (130, "", "")),  # so early that there is no handler
         (["info", MODEL], "numpy._core._multiarray_umath", INTERRUPTED),  # whose C code imports
-        (["info", MODEL], "rich.console", INTERRUPTED),
-        (["play", MODEL], "av", INTERRUPTED),  # in the thread that encodes
+        pytest.param(["info", MODEL], "rich.console", INTERRUPTED, marks=pytest.mark.stress),
+        pytest.param(["play", MODEL], "av", INTERRUPTED, marks=pytest.mark.stress),  # in the thread that encodes
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )

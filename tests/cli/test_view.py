@@ -24,8 +24,8 @@ def served(folder, *options) -> Served:
     ("options", "number", "end"),
     [
         (["--web"], signal.SIGINT, (0, "", "")),
-        ([], signal.SIGINT, (0, "", "")),
-        (["--web"], signal.SIGTERM, (143, "", "ravemj: ended by SIGTERM\n")),
+        pytest.param([], signal.SIGINT, (0, "", ""), marks=pytest.mark.stress),
+        pytest.param(["--web"], signal.SIGTERM, (143, "", "ravemj: ended by SIGTERM\n"), marks=pytest.mark.stress),
     ],
     ids=["web", "without a display", "terminated"],
 )

@@ -23,7 +23,7 @@ from command_line import (
     ravemj_command,
     run,
 )
-from conftest import MODELS
+from conftest import MODELS, one_in
 
 import ravemj
 
@@ -239,7 +239,7 @@ COMPLETED = "env robot viewer link joint geometry controller engine checker repo
 
 
 @pytest.mark.parametrize("jedi", [True, False])
-@pytest.mark.parametrize("name", COMPLETED.split())
+@pytest.mark.parametrize("name", one_in(3, COMPLETED.split()))
 def test_completion_lists_what_a_user_may_call(shell, objects, name, jedi):
     found = completions(shell, f"{name}.", jedi)
     assert found, "nothing is completed"
@@ -382,7 +382,7 @@ def test_alias_installs_runs_old_scripts_and_is_removed(venv, folder):
     assert venv.ravemj(folder, "alias", "--remove").returncode == 0
 
 
-@pytest.mark.parametrize("place", ["package", "module", "elsewhere"])
+@pytest.mark.parametrize("place", one_in(3, ["package", "module", "elsewhere"]))
 def test_alias_leaves_a_real_openravepy_alone(venv, folder, place):
     outside = folder / "elsewhere"
     files = {

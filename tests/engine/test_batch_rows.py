@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from conftest import MODELS
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from strategies import examples
 
 import ravemj
 
@@ -53,7 +54,7 @@ def test_a_row_alone_is_that_of_the_batch(name):
             np.testing.assert_array_equal(alone[0], together[row])
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(st.sampled_from(NAMES), st.integers(0, COUNT - 1), st.integers(1, COUNT))
 def test_rows_of_a_part_are_those_of_the_whole(name, first, count):
     values = configurations(ROBOTS[name])

@@ -6,8 +6,8 @@ import math
 import mujoco
 import numpy as np
 import pytest
-from conftest import MODELS, one_in
-from hypothesis import given, settings
+from conftest import MODELS
+from hypothesis import given
 from hypothesis import strategies as st
 from strategies import examples
 
@@ -108,7 +108,7 @@ turns = st.tuples(*[st.floats(-3, 3)] * 3)
 positions = st.tuples(*[st.floats(-2, 2)] * 3)
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.lists(st.tuples(positions, turns, st.tuples(*[st.floats(0.05, 1.0)] * 3)), min_size=2, max_size=7))
 def test_all_pairs_of_boxes_are_found(boxes):
     """Against separating axes, for every pair of bodies, none of which ever moves by a joint."""
@@ -134,7 +134,7 @@ def test_all_pairs_of_boxes_are_found(boxes):
         assert env.CheckCollision(one, other) == (frozenset((one.GetName(), other.GetName())) in expected)
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.lists(st.tuples(positions, st.floats(0.05, 1.0)), min_size=2, max_size=7))
 def test_distances_and_contacts_of_spheres(spheres):
     env = ravemj.Environment()
@@ -214,7 +214,7 @@ class TestReportsOfDistances:
         assert (report.minDistance, report.collisionInfos, report.plink1) == (1e20, [], None)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(positions, turns, st.tuples(*[st.floats(0.15, 1.0)] * 3))  # too thick to be inside of a leg
 def test_meshes_are_their_triangles(position, turn, half):
     """A box against a U of three boxes, whose hull is no answer."""
@@ -593,7 +593,7 @@ def test_tolerance(env):
         assert report.numWithinTol == count
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(positions, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
 def test_rays_at_a_box(start, end, turn, half):
     """Against slabs."""
@@ -728,8 +728,10 @@ class TestManyPairs:
                 self.overlap(self.solids(snake, [one]), self.solids(snake, [other])) for one, other in tested
             )
 
-    @pytest.mark.parametrize("seed", one_in(4, range(4)))
-    def test_everything_can_move(self, env, snake, seed):
+    @pytest.mark.parametrize(
+        ("seed", "count"), [(0, 10), *(pytest.param(seed, 40, marks=pytest.mark.stress) for seed in range(4))]
+    )
+    def test_everything_can_move(self, env, snake, seed, count):
         random = np.random.default_rng(seed)
         bodies = [body for body in env.GetBodies() if body != snake]
         steps = {
@@ -741,7 +743,7 @@ class TestManyPairs:
             "grab": lambda: snake.Grab(random.choice(bodies), snake.GetLinks()[6]),
             "release": snake.ReleaseAllGrabbed,
         }
-        for _ in range(40):
+        for _ in range(count):
             steps[random.choice(list(steps))]()
             self.check(env, snake)
 
@@ -918,6 +920,7 @@ def test_batch_agrees_with_single_questions(env, texts):
         arm.batch_collides([0, 0, 0])
 
 
+@pytest.mark.stress
 def test_thousands_of_bodies(env):
     """A grid in which each body touches none, and one across two of them."""
     for number in range(1500):
@@ -936,7 +939,7 @@ def test_thousands_of_bodies(env):
 SHAPES = st.sampled_from(["box", "sphere", "cylinder", "capsule", "trimesh"])
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(SHAPES, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
 def test_bounds_hold_the_shape_tightly(kind, position, turn, sizes):
     """Against many points of the surface."""

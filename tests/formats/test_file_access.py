@@ -14,6 +14,7 @@ import pytest
 from conftest import DATA
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from strategies import examples
 
 import ravemj
 from ravemj.cli.checking import check
@@ -450,7 +451,7 @@ def anywhere(tmp_path_factory):
         yield Places(root)
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(kind=st.sampled_from(sorted(ALL)), spelling=SPELLINGS, end=ENDS)
 def test_no_spelling_leads_outside(anywhere, kind, spelling, end):
     try_spelling(anywhere, kind, spelling + end)

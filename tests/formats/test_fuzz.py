@@ -26,7 +26,7 @@ class TestDamaged:
         monkeypatch.chdir(tmp_path)
         monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
-    @pytest.mark.parametrize("batch", one_in(5, range(BATCHES)))
+    @pytest.mark.parametrize("batch", one_in(10, range(BATCHES)))
     def test_documents(self, batch, capfd, tmp_path):
         fuzzer = Fuzzer(seed=0)
         linked, crashes = 0, []

@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from strategies import examples
 
 from ravemj.errors import ArgumentError
 from ravemj.formats.databases.grasp_tables import Owner, StoredGrasps, read_grasps, write_grasps
@@ -107,7 +108,7 @@ def test_bad_files_say_what_is_wrong(tmp_path, monkeypatch, content):
 
 
 @given(st.integers(0, 10**6), st.integers(1, 255))
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_damaged_bytes_are_found_or_harmless(tmp_path_factory, place, change):
     path = tmp_path_factory.mktemp("tables") / "table.pp"
     write_grasps(path, TABLE)
@@ -122,7 +123,7 @@ def test_damaged_bytes_are_found_or_harmless(tmp_path_factory, place, change):
 
 
 @given(st.integers(0, 10**6))
-@settings(max_examples=30, deadline=None)
+@examples(30)
 def test_files_that_end_early_are_found(tmp_path_factory, length):
     path = tmp_path_factory.mktemp("tables") / "table.pp"
     write_grasps(path, TABLE)

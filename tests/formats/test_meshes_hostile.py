@@ -6,8 +6,9 @@ import warnings
 import numpy as np
 import pytest
 from conftest import DATA
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from strategies import examples
 from waiting import time_limit
 
 from ravemj.errors import SourceError
@@ -69,7 +70,7 @@ def damaged(name, edits):
     survives(name, bytes(data))
 
 
-calm = settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+calm = examples(60)
 PLACES = st.floats(0, 1, exclude_max=True)
 
 

@@ -6,8 +6,9 @@ import importlib.util
 import mujoco
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from strategies import examples
 
 from ravemj.errors import RavemjError
 from ravemj.formats.meshes import area, collision_form, decompose, decomposition, volume, write_obj
@@ -140,7 +141,7 @@ def test_welding_joins_equal_corners_only():
     assert len(weld(np.zeros((0, 3, 3))).vertices) == 0
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(
     st.lists(st.floats(0.2, 1), min_size=4, max_size=40),
     st.sampled_from([np.eye(3), np.eye(3)[[1, 2, 0]], -np.eye(3)[[0, 2, 1]]]),
@@ -167,7 +168,7 @@ def test_bent_polygons_are_cut_from_the_last_corner():
     assert [set(one) for one in clip_ears(hexagon).tolist()] == [set(one) for one in cut.tolist()]
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=1, max_size=30))
 def test_any_polygon_is_cut_somehow(points):
     polygon = np.array(points, float)

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from strategies import examples
 
 import ravemj
 from ravemj.formats.readers import read_file
@@ -126,7 +127,7 @@ def test_places_of_the_first_file_are_kept(puma, tmp_path):
     assert source.included_from.file == str(tmp_path / "model.xml")
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=30)
+@examples(30)
 @given(st.integers(0, 10**6), st.sampled_from(["", "0", '"', "]", "9", "-"]))
 def test_texts_damaged_anywhere_are_read_or_left_out(puma, tmp_path, place, new):
     start, end = puma.index("data='") + 6, puma.index("'/>")

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import DATA
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mjcf_truth import check_model, loaded
+from strategies import examples
 
 import ravemj
 from ravemj.formats.file_access import FileAccess
@@ -249,7 +250,7 @@ def test_named_files_are_those_of_the_model(tmp_path):
     assert reading.files == (str(tmp_path / "model.xml"), str(tmp_path / "part.xml"))
 
 
-@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@examples(100)
 @given(
     name=st.sampled_from(sorted(EDGES)),
     place=st.integers(0, 10**6),

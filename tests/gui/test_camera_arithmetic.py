@@ -6,7 +6,7 @@ from importlib import resources
 
 import numpy as np
 import pytest
-from browsers import CHROMIUM, NEEDS_A_BROWSER
+from browsers import NEEDS_A_BROWSER
 
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction.viewpoint import Viewpoint
@@ -82,17 +82,11 @@ def test_python_projects_by_the_table():
 class TestPage:
     pytestmark = NEEDS_A_BROWSER
 
-    def test_pages_move_a_camera_and_project_by_the_table(self):
-        from playwright.sync_api import sync_playwright
-
+    def test_pages_move_a_camera_and_project_by_the_table(self, browser):
         script = resources.files("ravemj.graphics.webgl").joinpath("page", "camera.js").read_text(encoding="utf-8")
         moves = [(method, numbers, np.asarray(first).tolist()) for method, numbers, first, *_ in MOVES]
         given = {"moves": moves, "points": [point for point, _ in POINTS], "position": (1, 2, 3), "size": SIZE}
-        with (
-            sync_playwright() as playwright,
-            playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"]) as browser,
-        ):
-            answers = browser.new_page().evaluate(f"{script}\n({SCRIPT})({json.dumps(given)})")
+        answers = browser.new_page().evaluate(f"{script}\n({SCRIPT})({json.dumps(given)})")
         for move, answer in zip(MOVES, answers["moves"], strict=True):
             assert_moved(np.reshape(answer["rotation"], (3, 3)), answer["position"], answer["distance"], move)
         np.testing.assert_allclose(answers["points"], [pixel for _, pixel in POINTS], atol=1e-9)

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from strategies import examples
 
 import ravemj
 from ravemj.gui.interaction import pick
@@ -91,7 +92,7 @@ numbers = st.floats(-1, 1, allow_subnormal=False)
 
 
 @pytest.mark.parametrize("kind", SHAPES)
-@settings(max_examples=60)
+@examples(60)
 @given(arrays(float, 3, elements=numbers), arrays(float, 3, elements=numbers))
 def test_rays_meet_every_shape_where_it_begins(kind, aside, towards):
     away = np.linalg.norm(aside)

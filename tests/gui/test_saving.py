@@ -5,6 +5,7 @@ import re
 import threading
 import time
 import weakref
+from pathlib import Path
 from types import SimpleNamespace
 
 import imageio.v3
@@ -15,7 +16,7 @@ from waiting import PATIENCE, await_that
 
 import ravemj
 from ravemj.gui.viewers import recorder
-from ravemj.gui.viewers.recorder import FrameSource, free_path
+from ravemj.gui.viewers.recorder import FrameSource, Recorder, free_path
 from ravemj.gui.viewers.window import WindowViewer
 
 SIZE = 320, 240
@@ -57,13 +58,13 @@ def shows(viewer, frame, angle: float) -> bool:
 
 def test_names_are_free(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(time, "strftime", lambda form: "ravemj-20260102-030405")
+    then = time.mktime((2026, 1, 2, 3, 4, 5, 0, 0, -1))
     names = []
     for _ in range(3):
-        names.append(str(free_path(".png")))
-        free_path(".png").touch()
+        names.append(str(free_path(".png", lambda: then)))
+        Path(names[-1]).touch()
     assert names == [f"ravemj-20260102-030405{more}.png" for more in ("", "-2", "-3")]
-    assert str(free_path(".mp4")) == "ravemj-20260102-030405.mp4"
+    assert str(free_path(".mp4", lambda: then)) == "ravemj-20260102-030405.mp4"
 
 
 def test_a_picture_is_saved_whole_and_the_viewer_says_where(viewer, tmp_path):
@@ -112,10 +113,10 @@ class Clock(threading.Event):
         return self.is_set()
 
 
-def test_without_a_motion_a_video_is_what_happens_until_it_is_stopped(viewer, robot, tmp_path, monkeypatch):
-    clock = viewer._recorder._stop = Clock()
-    monkeypatch.setattr(recorder, "time", SimpleNamespace(monotonic=lambda: clock.now, strftime=time.strftime))
-    notices = viewer.interaction.controls.notices
+def test_without_a_motion_a_video_is_what_happens_until_it_is_stopped(viewer, robot, tmp_path):
+    clock, notices = Clock(), viewer.interaction.controls.notices
+    viewer._recorder = Recorder(notices, lambda: clock.now)
+    viewer._recorder._stop = clock
     record(viewer)
     assert notices.recording
     assert viewer.interaction.controls.all()[1].label == "Stop recording"
@@ -147,7 +148,7 @@ def test_another_motion_ends_a_video(viewer, tmp_path):
 def test_a_viewer_that_closes_ends_its_video_and_leaves_whole_files(viewer, tmp_path, monkeypatch):
     monkeypatch.setattr(recorder, "_LONGEST_END", PATIENCE)
     record(viewer)
-    time.sleep(0.2)
+    await_that(lambda: list(tmp_path.iterdir()))
     viewer._recorder.save_picture(look(viewer))
     viewer.close()
     assert sorted(file.suffix for file in tmp_path.iterdir()) == [".mp4", ".png"]
@@ -177,8 +178,11 @@ def test_a_video_does_not_keep_a_forgotten_environment(models, tmp_path, monkeyp
     env = ravemj.load(models / "env.xml")
     env.SetViewer("offscreen")
     env.GetViewer().SetSize(64, 48)
-    record(env.GetViewer())
-    time.sleep(0.2)
+    source, drawn = look(env.GetViewer()), []
+    frame = source.frame
+    source.frame = lambda: drawn.append(frame()) or drawn[-1]
+    env.GetViewer()._recorder.record(source, env.GetViewer().playback)
+    await_that(lambda: drawn)
     reference = weakref.ref(env)
     del env
 

@@ -204,7 +204,6 @@ class Around(http.server.ThreadingHTTPServer):
 @pytest.fixture
 def page(webgl_browser):
     page = webgl_browser.new_page(viewport={"width": 520, "height": 560})
-    page.set_default_timeout(1000 * PATIENCE)
     yield page
     page.close()
 

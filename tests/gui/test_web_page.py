@@ -1,6 +1,6 @@
 """The page of the viewer in a real browser, with its mouse, keys and fingers.
 
-The server draws, but for tests of ``BOTH``: these are done once more by a page that draws by itself, with WebGL.
+The server draws; but in tests of ``BOTH`` the page does, with WebGL, and the server only with ``-m stress``.
 """
 
 import contextlib
@@ -23,7 +23,7 @@ from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.interaction.shortcuts import TOUCH_GESTURES
 
 pytestmark = NEEDS_A_BROWSER
-BOTH = pytest.mark.parametrize("desk", ["browser", "webgl_browser"], indirect=True)
+BOTH = pytest.mark.parametrize("desk", one_in(2, ["webgl_browser", "browser"]), indirect=True)
 SLIDING = """<Robot name="Sliding"><KinBody>
 <Body name="Base"><Geom type="box"><extents>0.05 0.05 0.05</extents></Geom></Body>
 <Body name="Block"><Translation>0 0.2 0</Translation>
@@ -212,8 +212,9 @@ class TestInteractionMode:
             desk.await_picture()
             desk.click(again)
             await_that(lambda: desk.viewer.GetSelectedBody() is None, "the cube stays")
-            desk.await_picture()
-            assert np.ptp(desk.picture()[around], axis=2).max() < 10
+            await_that(
+                lambda around=around: np.ptp(desk.picture()[around], axis=2).max() < 10, "the cube is still seen"
+            )
 
     @BOTH
     def test_dragging_a_face_moves_the_body(self, desk):
@@ -266,7 +267,8 @@ class TestInteractionMode:
         desk.escape()
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)), keys=["Control"])
         areas = []
-        for _ in range(3):
+        for size in range(3):
+            await_that(lambda size=size: getattr(desk.viewer.interaction.selection, "size", -1) == size, "another size")
             desk.await_picture()
             picture = desk.picture()[CLEAR]
             areas.append(int(((picture[..., 0] > picture[..., 2] + 60) & (picture[..., 1] > 40)).sum()))
@@ -455,12 +457,14 @@ class TestPage:
 
         await_that(is_still, "it is sent again and again")
         count = len(frames)
-        assert 2 <= count <= 10  # text and picture, once while it moves and once crisp; more often on slow machines
+        assert 2 <= count <= 20  # text and picture, once while it moves and once crisp; more often on slow machines
         desk.robot.SetDOFValues([0.5, 0])
         await_that(lambda: (page.wait_for_timeout(20), len(frames) > count)[1], "nothing was sent")
 
     @pytest.mark.parametrize(
-        "own_desk", [(pendulum, {"device_scale_factor": 2}), (pendulum, {"device_scale_factor": 1.5})], indirect=True
+        "own_desk",
+        one_in(2, [(pendulum, {"device_scale_factor": 1.5}), (pendulum, {"device_scale_factor": 2})]),
+        indirect=True,
     )
     def test_pictures_have_the_pixels_of_the_screen_and_follow_its_size(self, own_desk):
         ratio = own_desk.page.evaluate("devicePixelRatio")
@@ -539,9 +543,13 @@ class TestTrouble:
         own_desk.await_camera()
         own_desk.escape()
         await_that(lambda: own_desk.page.get_attribute("body", "data-mode") == "interaction", "another mode")
+        own_desk.page.evaluate(
+            "() => { const say = reconnecting.say.bind(reconnecting);"
+            "window.said = []; reconnecting.say = (...words) => { said.push(words[0]); say(...words); }; }"
+        )
         for connection in list(own_desk.viewer._clients):
             connection.socket.shutdown(2)
-        await_that(lambda: "reconnecting" in own_desk.page.inner_text("#notice"), "nothing is said")
+        await_that(lambda: "reconnecting" in own_desk.page.evaluate("said.join()"), "nothing is said")
         own_desk.robot.SetDOFValues([0.4, 0.4])
         await_that(lambda: own_desk.page.inner_text("#notice") == "", "it does not come back")
         own_desk.await_picture()
@@ -549,7 +557,7 @@ class TestTrouble:
         own_desk.click(own_desk.at(own_desk.point(2, 0.15, 0, 0)))
         await_that(lambda: own_desk.viewer.GetSelectedBody() == own_desk.robot, "clicks do nothing any more")
 
-    @pytest.mark.parametrize("how", ["SetViewer", "Destroy", "quitmainloop"])
+    @pytest.mark.parametrize("how", one_in(3, ["SetViewer", "Destroy", "quitmainloop"]))
     def test_a_page_says_that_its_viewer_is_closed(self, own_desk, how):
         own_desk.drag((320, 100), (340, 130))
         if how == "SetViewer":
@@ -587,15 +595,15 @@ class TestTrouble:
                 server.end(number)
             said = "Connection lost" if number == signal.SIGKILL else "The viewer has been closed"
             page.wait_for_selector(f"#notice >> text={said}, reconnecting")
-            page.evaluate("window.setTimeout = () => 0")  # after the next try, in vain, only the button connects
-            page.wait_for_timeout(3000)
+            page.evaluate("() => { clearTimeout(reconnecting.timer); window.setTimeout = () => 0; }")
+            page.wait_for_function("socket.readyState === WebSocket.CLOSED")  # from now on only the button connects
             with Served(folder, "view", *options):
                 page.get_by_role("button", name="Try now").click()
                 page.wait_for_selector("#notice span", state="hidden")
                 page.keyboard.press("Escape")
                 page.wait_for_selector("[data-mode=interaction]")
 
-    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+    @pytest.mark.parametrize("number", one_in(2, [signal.SIGKILL, signal.SIGINT]))
     def test_with_another_address_at_each_start_it_says_that_its_server_has_ended(self, browser, folder, number):
         with contextlib.closing(browser.new_page()) as page:
             page.clock.install()

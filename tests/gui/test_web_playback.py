@@ -60,6 +60,7 @@ def test_the_motion_is_there_while_there_is_one(desk):
     assert not desk.page.locator("#motion").is_visible()
     desk.page.focus("#view")
     desk.await_picture()
+    desk.page.wait_for_selector("[data-crisp=true]")
     plain = desk.picture()
     for key in ("Space", "ArrowLeft", "ArrowRight"):
         desk.page.keyboard.press(key)
@@ -272,21 +273,21 @@ def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):
     desk.await_picture()
     with desk.page.expect_download() as download:
         button(desk, "PNG").click()
+    await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
     assert re.fullmatch(r"ravemj-\d{8}-\d{6}\.png", download.value.suggested_filename)
     saved = imageio.v3.imread(io.BytesIO(download.value.path().read_bytes()))
     assert np.array_equal(saved, desk.expected(shadows=True))
-    await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
 
 
 def test_a_video_is_downloaded_too(desk, tmp_path):
     desk.viewer.play(ravemj.Motion.line([0, 0], [2.0, -1.0], 0.3))
     with desk.page.expect_download() as download:
         button(desk, "MP4").click()
+    await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
     assert re.fullmatch(r"ravemj-\d{8}-\d{6}\.mp4", download.value.suggested_filename)
     download.value.save_as(tmp_path / "a.mp4")
     assert imageio.v3.imread(tmp_path / "a.mp4").shape == (10, SIZE[1], SIZE[0], 3)
     assert [file.name for file in tmp_path.iterdir()] == ["a.mp4"], "the server keeps none"
-    await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
 
 
 def test_a_video_ends_with_the_last_tab_and_the_tab_that_comes_back_gets_it(desk, tmp_path, caplog):

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from command_line import TUTORIAL, colour_of
+from conftest import one_in
 from desk import ASLANT, DISTANCE, SIZE, Desk
 from screens import NEEDS_A_SCREEN
 from test_interaction import SLIDING
@@ -119,7 +120,7 @@ CAMERA_ROWS = {
 }
 
 
-@pytest.mark.parametrize("row", CAMERA_ROWS)
+@pytest.mark.parametrize("row", one_in(2, list(CAMERA_ROWS)))
 def test_camera_mode(desk, row):
     gesture, judge = CAMERA_ROWS[row]
     await_arms(desk)
@@ -272,7 +273,7 @@ def test_dragging_a_face_translates(desk):
     assert not desk.array("robot.GetDOFValues()").any()
 
 
-@pytest.mark.parametrize("edge", [(0.2, 1, 1), (1, 0.2, 1), (1, 1, 0.2)])
+@pytest.mark.parametrize("edge", one_in(3, [(0.2, 1, 1), (1, 0.2, 1), (1, 1, 0.2)]))
 def test_dragging_an_edge_rotates_about_its_axis_through_the_centre(desk, edge):
     select_robot(desk)
     cube = Cube.around(desk.robot.simulation_state)
@@ -394,7 +395,9 @@ def test_what_is_held_follows_the_joint(desk):
 # --- text
 
 
-@pytest.mark.parametrize("background", [[0, 0, 0], [1, 1, 1], [0.5, 0.5, 0.5], [1, 0.9, 0.2], [0.8, 0.85, 0.9]])
+@pytest.mark.parametrize(
+    "background", one_in(3, [[0, 0, 0], [0.5, 0.5, 0.5], [1, 0.9, 0.2], [1, 1, 1], [0.8, 0.85, 0.9]])
+)
 def test_hovering_tells_the_link_readably_on_any_background(desk, background):
     desk.ask(f"viewer.SetBkgndColor({background})")
     corner = slice(8, 24), slice(5, 300)
@@ -447,7 +450,7 @@ def test_other_keys_and_buttons_do_nothing(desk):
         assert desk.ask("viewer.GetSelectedBody()") == "None"
         assert not desk.array("robot.GetDOFValues()").any()
         desk.escape()
-    assert desk.ask("viewer.interaction.mode.value") == "camera"
+    await_that(lambda: desk.ask("viewer.interaction.mode.value") == "camera", "keys change the mode")
     desk.escape()
     desk.wheel(3)
     for how in ({"keys": ["shift"]}, {"button": Button.MIDDLE}, {"button": Button.RIGHT}, {}):
@@ -457,7 +460,7 @@ def test_other_keys_and_buttons_do_nothing(desk):
     assert desk.ask("viewer.GetSelectedBody()") == "None"
     desk.escape()
     desk.move(5, 240)
-    assert np.array_equal(desk.settled_picture(), picture)
+    await_that(lambda: np.array_equal(desk.settled_picture(), picture), "the picture has changed")
 
 
 def test_a_drag_goes_on_beyond_the_window(desk):

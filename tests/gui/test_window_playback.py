@@ -2,12 +2,12 @@
 
 import ast
 import re
-import time
 
 import imageio.v3
 import numpy as np
 import pytest
-from command_line import on_terminal
+from command_line import TUTORIAL, on_terminal
+from desk import SETTLE
 from screens import NEEDS_A_SCREEN
 from waiting import await_that
 
@@ -28,6 +28,13 @@ viewer.Move(0, 0)
 viewer.SetCamera([[0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 def play(duration=100.0):
     viewer.play(ravemj.Motion.line([0, 0], [2, -1], duration))
+def reset():
+    viewer.playback.clear()
+    viewer.playback.speed = 1.0
+    viewer.interaction.controls.notices.advance(float('inf'))
+    robot.SetDOFValues([0, 0])
+    pictures.clear()
+    settle()
 print('ready')
 while True:
     try:
@@ -41,8 +48,8 @@ class Desk:
     """A window that is driven by real events, and the script behind it."""
 
     def __init__(self, display, folder) -> None:
-        self.display = display
-        (folder / "script.py").write_text(SCRIPT)
+        self.display, self.folder = display, folder
+        (folder / "script.py").write_text(SETTLE + SCRIPT)
         self.terminal = on_terminal(folder, "-m", "ravemj", "run", "script.py", DISPLAY=display.name)
         self.terminal.expect("ready")
         self.window = display.await_window()
@@ -87,12 +94,23 @@ class Desk:
         await_that(lambda: condition(self.value(expression)), otherwise)
 
 
-@pytest.fixture
-def desk(display, folder):
+@pytest.fixture(scope="module")
+def process(display, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("desk")
+    for path in TUTORIAL.iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
     desk = Desk(display, folder)
     yield desk
     desk.display.close(desk.window)
     desk.terminal.close(force=True)
+
+
+@pytest.fixture
+def desk(process) -> Desk:
+    """The window as it was at first, with nothing under the pointer."""
+    process.display.tool("mousemove", "--window", str(process.window), "320", "5")
+    process.ask("reset()")
+    return process
 
 
 def test_mouse_and_keys_play_pause_step_and_go_through_the_time(desk):
@@ -100,7 +118,7 @@ def test_mouse_and_keys_play_pause_step_and_go_through_the_time(desk):
     assert np.ptp(desk.picture()[row]) < 50, "there is nothing to play"
     desk.ask("play()")
     desk.await_value("viewer.playback.time", lambda time: time > 0.2, "it does not play")
-    assert np.ptp(desk.picture()[row]) > 100
+    await_that(lambda: np.ptp(desk.picture()[row]) > 100, "there is nothing to stop it")
     desk.click("play")
     desk.await_value("viewer.playback.playing", lambda playing: not playing, "it does not pause")
     time = desk.value("viewer.playback.time")
@@ -123,19 +141,18 @@ def test_mouse_and_keys_play_pause_step_and_go_through_the_time(desk):
 def test_a_paused_motion_is_not_drawn_and_a_playing_one_is(desk):
     desk.ask("play(2.0)")
     desk.await_value("viewer.playback.playing", lambda playing: not playing, "it does not end")
-    assert 4 <= int(desk.ask("len(pictures)")) < 400
+    assert 4 <= int(desk.ask("len(pictures)")) < 400  # a pause between two of them counts as half a second at most
 
     def is_still():
         drawn = desk.ask("len(pictures)")
-        desk.ask("__import__('time').sleep(1)")
+        desk.ask("time.sleep(1)")
         return desk.ask("len(pictures)") == drawn
 
     await_that(is_still, "it is drawn again and again")
 
 
 def test_sliders_unfold_and_turn_joints_and_numbers_are_typed(desk):
-    desk.ask("[viewer.EnvironmentSync(), viewer.EnvironmentSync()]")
-    time.sleep(0.5)  # until it is crisp
+    desk.ask("settle()")
     plain = desk.picture()
     desk.click("joints")
     desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 15, "no sliders")
@@ -152,7 +169,8 @@ def test_sliders_unfold_and_turn_joints_and_numbers_are_typed(desk):
     await_that(lambda: np.array_equal(desk.picture(), plain), "something of them stays")
 
 
-def test_a_picture_and_a_video_are_saved_and_the_window_says_where(desk, folder):
+def test_a_picture_and_a_video_are_saved_and_the_window_says_where(desk):
+    folder = desk.folder
     desk.ask("[viewer.SetBkgndColor([0, 0.4, 0.2]), viewer.EnvironmentSync()]")
     desk.click("picture")
     await_that(lambda: list(folder.glob("ravemj-*.png")), "no picture is saved")

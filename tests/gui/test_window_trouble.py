@@ -5,6 +5,7 @@ import time
 import numpy as np
 import pytest
 from command_line import TUTORIAL, colour_at, finish, on_terminal
+from conftest import one_in
 from desk import SIZE, Desk
 from screens import NEEDS_A_SCREEN, Started, virtual_screen
 from waiting import await_that
@@ -33,7 +34,7 @@ print(env.SetViewer('window'), env.GetViewer().render(64, 48).std() > 1)
 """
 
 
-@pytest.mark.parametrize("step", [0, 0.01])
+@pytest.mark.parametrize("step", one_in(2, [0.01, 0]))
 def test_a_display_that_goes_away_takes_the_window_and_not_the_script(folder, step):
     (folder / "loses.py").write_text(LOSES_ITS_DISPLAY.replace("STEP", str(step)))
     with virtual_screen() as (display, server), Started(display, folder, "loses.py") as command:
@@ -46,6 +47,7 @@ def test_a_display_that_goes_away_takes_the_window_and_not_the_script(folder, st
     assert "the connection to the display broke" in complaints
 
 
+@pytest.mark.stress
 def test_opengl_that_fails_closes_the_window_and_not_the_script(display, folder):
     (folder / "fails.py").write_text("""
 import mujoco, time, ravemj
@@ -165,6 +167,7 @@ def test_a_body_that_is_removed_while_it_is_dragged(process):
     desk.await_colour(desk.on_link(2), "blue")
 
 
+@pytest.mark.stress
 def test_an_environment_that_is_destroyed_while_the_user_drags(process):
     desk = process.show()
     drag_begun(desk)
@@ -188,6 +191,7 @@ def test_nonsense_is_refused_and_the_window_stays_as_it_is(process):
     assert desk.ask("viewer.is_open") == "True"
 
 
+@pytest.mark.stress
 def test_setviewer_again_and_again_leaves_one_window(process):
     desk = process.show()
     assert desk.ask("[env.SetViewer('window') for _ in range(5)]") == str([True] * 5)
@@ -221,6 +225,7 @@ def test_two_windows_on_one_environment_are_driven_apart(process):
     await_that(lambda: len(desk.display.windows()) == 1, "the other window stays")
 
 
+@pytest.mark.stress
 def test_small_pixels_have_large_buttons_and_letters(tmp_path):
     for path in TUTORIAL.iterdir():
         (tmp_path / path.name).write_bytes(path.read_bytes())

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from ik_arms import KINDS, PANDA, PUMA, RIGHT, UR5, WAM, arm, from_dh, pose
+from strategies import examples
 
 from ravemj.ik import Chain, NumericSolver, Task, derive, make_solver
 from ravemj.ik.derive import certify, random_values
@@ -213,7 +214,7 @@ def test_a_certificate_tells_a_wrong_solver():
     assert not certify(solver).holds
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(st.sampled_from(KINDS), st.integers(0, 2**32 - 1))
 def test_every_configuration_is_among_the_solutions_of_its_pose(kind, seed):
     rng = np.random.default_rng(seed)

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import MODELS
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from ik_arms import PANDA, PANDA_LIMITED, PUMA, UR5, WAM, arm
+from strategies import examples
 
 from ravemj import ik
 from ravemj.formats.readers import read_file
@@ -95,7 +96,7 @@ class TestLimits:
         found = distances(chain, np.array([[3.1, 3.1]]), np.array([-3.1, -3.1]), np.array([1.0, 2.0]))
         np.testing.assert_allclose(found, np.hypot(2 * np.pi - 6.2, 12.4))
 
-    @settings(deadline=None, max_examples=50)
+    @examples(50)
     @given(st.floats(-3.14, 3.14), st.floats(-9, 9), st.floats(0, 12), st.floats(-9, 9))
     def test_turns_are_within_limits_and_nearest(self, value, lower, span, near):
         chain = Chain.of([[0, 0, 1]], [[0, 0, 0]], lower=[lower], upper=[lower + span])

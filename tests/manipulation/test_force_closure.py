@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from strategies import examples
 
 from ravemj.manipulation.grasping import wrenches
 from ravemj.manipulation.grasping.hulls import hull, nearest_facet
@@ -149,7 +150,7 @@ def test_flat_points_have_no_hull(flat):
 
 
 @given(st.integers(0, 10**6), st.integers(2, 5), st.integers(3, 40))
-@settings(max_examples=40, deadline=None)
+@examples(40)
 def test_hull_contains_its_points(seed, dimension, count):
     """Points of a coarse grid, so that many are on common planes or equal."""
     points = np.random.default_rng(seed).integers(0, 4, (count, dimension)).astype(float)
@@ -206,7 +207,7 @@ def test_eight_corners_cost_less_than_qhull():
 
 
 @given(st.integers(0, 10**6), st.sampled_from([1e-14, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7]), st.booleans())
-@settings(max_examples=40, deadline=None)
+@examples(40)
 def test_nearly_coplanar_contacts(seed, noise, turned):
     """Points and normals as simulations give them: rounded anywhere, epsilon is that of the exact ones."""
     random = np.random.default_rng(seed)

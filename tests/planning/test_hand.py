@@ -368,6 +368,7 @@ def test_a_cup_is_carried_upright_around_a_wall(robot):
     planningutils.VerifyTrajectory(None, found, 0.01)
 
 
+@pytest.mark.stress
 def test_the_tool_moves_in_a_plane_by_command(robot):
     here, there = beside_a_wall(robot)
     plane = np.eye(4)

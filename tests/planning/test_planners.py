@@ -184,8 +184,8 @@ robot = env.GetRobot("arm")
 robot.SetDOFValues([-1.2, 0.2])
 test_planners.box(env, "wall", [0.4, 0, 0.2, 0.2, 0.01, 0.3])
 helper = ravemj.interfaces.BaseManipulation(robot)
-print("planning", flush=True)
 try:
+    print("planning", flush=True)
     helper.MoveActiveJoints([1.2, 0.2], maxiter=10**9)
 except KeyboardInterrupt:
     print(robot.GetDOFValues().tolist(), robot.GetController().IsDone(), env.GetRobots() == [robot])

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from conftest import one_in
 
 import ravemj
 from ravemj import IkParameterization, Planner, PlanningError, Region
@@ -125,7 +126,7 @@ def failure(robot, **options):
     return caught.value
 
 
-@pytest.mark.parametrize("kind", SOLVERS)
+@pytest.mark.parametrize("kind", one_in(2, SOLVERS))
 def test_regions_out_of_reach(kind):
     robot = planar(1, 1)
     give_solver(robot, kind)
@@ -134,7 +135,7 @@ def test_regions_out_of_reach(kind):
     assert error.status.causes == {"out of reach": 200}
 
 
-@pytest.mark.parametrize("kind", SOLVERS)
+@pytest.mark.parametrize("kind", one_in(2, SOLVERS))
 def test_regions_outside_the_limits(kind):
     robot = planar(1, 1)
     give_solver(robot, kind)
@@ -142,7 +143,7 @@ def test_regions_outside_the_limits(kind):
     assert failure(robot, regions=[SQUARE]).status.causes == {"outside the joint limits": 200}
 
 
-@pytest.mark.parametrize("kind", SOLVERS)
+@pytest.mark.parametrize("kind", one_in(2, SOLVERS))
 def test_regions_in_collision_name_a_pair_and_a_configuration(kind):
     robot = planar(1, 1)
     give_solver(robot, kind)
@@ -160,6 +161,7 @@ def test_regions_in_collision_name_a_pair_and_a_configuration(kind):
     assert str(failure(robot, regions=[SQUARE])) == str(error), "the same for the same seed"
 
 
+@pytest.mark.stress
 def test_regions_off_a_constraint_say_how_far():
     robot = planar(1, 1)
     aside = Region(Bw=bounds(x=ANY, y=[0.5, math.inf], yaw=TURN))
@@ -170,6 +172,7 @@ def test_regions_off_a_constraint_say_how_far():
     assert 0.27 < high < 0.302
 
 
+@pytest.mark.stress
 def test_causes_add_up_by_region():
     robot = planar(1, 1)
     status = failure(robot, regions=[FAR, Region(at(3, 0), Bw=bounds(yaw=TURN))]).status

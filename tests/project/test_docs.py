@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import tutorial
 from command_line import Served, ravemj_command
-from conftest import REPOSITORY
+from conftest import REPOSITORY, one_in
 
 import ravemj
 import ravemj.compat.openravepy
@@ -23,7 +23,7 @@ def blocks(page: Path, language: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in PAGES if page.stem not in tutorial.PAGES], ids=lambda page: page.name
+    "page", one_in(3, [page for page in PAGES if page.stem not in tutorial.PAGES]), ids=lambda page: page.name
 )
 def test_python_runs(page, tmp_path, monkeypatch, capsys):
     """The tutorials have tests of their own."""
@@ -81,9 +81,10 @@ def sequences() -> list[object]:
         for lines in [[line] for line in shown] if page.name in SEVERAL else [shown]:
             found.setdefault(tuple(line for line in lines if (line,) not in found), page.name)
     found.pop((), None)
-    first = {"README.md", "CONTRIBUTING.md", "cli.md"}  # the commands of other pages take minutes
+    first = {"README.md", "CONTRIBUTING.md"}  # the commands of other pages take minutes
+    few = [lines for lines, page in found.items() if page == "cli.md" and not lines[0].startswith("ravemj grasp")][::3]
     return [
-        pytest.param(lines, id=" & ".join(lines), marks=[] if page in first else [pytest.mark.stress])
+        pytest.param(lines, id=" & ".join(lines), marks=[] if page in first or lines in few else [pytest.mark.stress])
         for lines, page in found.items()
     ]
 

@@ -88,7 +88,7 @@ def _forks() -> Forks:
     return Forks(
         environment(PACKAGE_ROOT, PYTHONPATH=path),
         PATIENCE,
-        ["ravemj.compat.alias", "ravemj.formats.readers", "ravemj.formats.mjcf", "mujoco", "numpy"],
+        ["ravemj.compat.openravepy", "ravemj.formats.readers", "ravemj.formats.mjcf", "ravemj.formats.meshes.files"],
     )
 
 

@@ -397,7 +397,11 @@ PYTHONS_OWN = {"IndexError": IndexError, "ValueError": ValueError}
 
 @pytest.mark.parametrize(
     ("call", "code"),
-    [(call, code) for code, text in CALLS.items() for call in lines(text)],
+    [
+        pytest.param(call, code, marks=[pytest.mark.stress] * (place % 3 > 0))
+        for code, text in CALLS.items()
+        for place, call in enumerate(lines(text))
+    ],
     ids=str,
 )
 def test_wrong_input_raises_and_changes_nothing(names, call, code):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, initialize, invariant, precondition, rule
+from strategies import examples
 
 import ravemj
 
@@ -346,7 +347,7 @@ def compare(expected, body):
         assert body.GetActiveDOFIndices().tolist() == expected.active
 
 
-World.TestCase.settings = settings(max_examples=60, stateful_step_count=30)
+World.TestCase.settings = settings(examples(60), stateful_step_count=30)
 TestWorld = World.TestCase
 
 

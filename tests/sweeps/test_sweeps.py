@@ -15,8 +15,9 @@ import jobs
 import numpy as np
 import pytest
 from conftest import MODELS
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from strategies import examples
 
 import ravemj
 from ravemj.sweeps.digests import digest
@@ -202,7 +203,7 @@ def test_each_entry_of_the_manifest_counts(tmp_path):
             ravemj.sweep(*arguments)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(st.data())
 def test_damaged_shards_are_found(tmp_path_factory, data):
     folder = tmp_path_factory.mktemp("shard")

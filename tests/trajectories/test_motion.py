@@ -7,9 +7,10 @@ import zipfile
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from strategies import examples
 
 from ravemj.errors import ArgumentError, SourceError
 from ravemj.trajectories.motion import Motion
@@ -17,7 +18,7 @@ from ravemj.trajectories.motion_reading import read_motion
 
 JOINTS = ["Arm0", "Arm1", "Slider"]
 CURRENT = [0.1, 0.2, 0.3]
-FILES = settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+FILES = examples(150)
 
 finite = st.floats(-1e6, 1e6)
 

@@ -229,7 +229,7 @@ def _complete(model: GraspUse, row: Floats, answer: tuple[Floats, Floats, Floats
 # What the generation does with them
 
 
-class Job(NamedTuple):
+class GenerationJob(NamedTuple):
     """Files and processes of a generation.
 
     Attributes:
@@ -244,7 +244,7 @@ class Job(NamedTuple):
 
 
 def generate(
-    model: GraspUse, rows: Floats, settings: Settings, job: Job, check: Check | None
+    model: GraspUse, rows: Floats, settings: Settings, job: GenerationJob, check: Check | None
 ) -> tuple[Generation, Path]:
     """Try candidates; what an earlier call finished is not tried again.
 
@@ -269,7 +269,7 @@ def generate(
             (WorldRecord.from_simulation(env.simulation), rows, sorted(map(repr, options.items())), versions())
         )[:16]
         parts = _writable(Path(job.folder) / key)
-        chosen = _Chosen(check, parts)
+        chosen = _GraspFilter(check, parts)
         if (parts / MANIFEST).exists():
             done = Sweep.open(parts).done
             _LOG.warning("going on with %d of %d candidates that are tried already", done, len(rows))
@@ -291,7 +291,7 @@ def generate(
         return collected(model.graspindices, parts, chosen), parts
 
 
-class _Chosen:
+class _GraspFilter:
     """Grasps that a function keeps; it sees the grasps of each shard once."""
 
     def __init__(self, check: Check | None, parts: Path) -> None:
@@ -341,7 +341,7 @@ def _run(
         raise
 
 
-def collected(columns: Mapping[str, Sequence[int]], parts: Path, chosen: _Chosen | None = None) -> Generation:
+def collected(columns: Mapping[str, Sequence[int]], parts: Path, chosen: _GraspFilter | None = None) -> Generation:
     """Return the grasps of a generation, complete or not."""
     done = Sweep.open(parts)
     arrays: Mapping[str, NDArray[Any]] = done.arrays(partial=True)

@@ -375,7 +375,7 @@ class GraspingModel(ValidGrasps):
         assert self.grasper is not None
         rating = float(self.grasper.friction), links, plannername
         settings = generation.Settings(*names, self._more, *rating, *steps, float(noise), int(tries), threshold)
-        job = generation.Job(self._unfinished_folder(), self.numthreads, self.disableallbodies)
+        job = generation.GenerationJob(self._unfinished_folder(), self.numthreads, self.disableallbodies)
         check = None if checkgraspfn is None else _checking(self, checkgraspfn)
         generated, folder = generation.generate(self, rows, settings, job, check)
         self.grasps = generated.rows if len(generated.rows) else np.zeros((0, self.totaldof))

@@ -76,7 +76,7 @@ def _same_pose(first: Pose, second: Pose) -> bool:
     return _near(first.matrix(), second.matrix())
 
 
-class _Recorder(XmlLines):
+class _GeomRecorder(XmlLines):
     """Records the attributes of geoms instead of writing them."""
 
     def __init__(self) -> None:
@@ -184,7 +184,7 @@ class _OwnBody:
         if self._names.decomposed:
             is_same = index < len(self._names.geoms) and count == self._names.geoms[index]
         else:
-            out, writer = _Recorder(), MjcfGeomWriter(Diagnostics())
+            out, writer = _GeomRecorder(), MjcfGeomWriter(Diagnostics())
             for geometry in link.geometries:
                 writer.write(geometry, out)
             geoms = zip(out.geoms, range(first, first + count), strict=False)

@@ -21,7 +21,7 @@ from ravemj.formats.collada.extras import own_techniques
 from ravemj.formats.collada.formulas import read_formulas
 from ravemj.formats.collada.geometry import GeometryReader
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.physics import NO_MASS, Physics
+from ravemj.formats.collada.physics import NO_MASS, PhysicsScenes
 from ravemj.formats.collada.visual import Node, read_pose, rigid_part
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name
 from ravemj.model.builder import BodyBuilder, JointBuilder, LinkBuilder
@@ -47,7 +47,7 @@ class SceneContext(NamedTuple):
 
     library: Library
     bindings: Bindings
-    physics: Physics
+    physics: PhysicsScenes
     geometry: GeometryReader
 
 

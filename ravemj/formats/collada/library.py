@@ -39,7 +39,7 @@ _MODELS = {
 }
 
 
-class Found(NamedTuple):
+class ResolvedReference(NamedTuple):
     """The result of resolving a reference.
 
     Attributes:
@@ -74,7 +74,7 @@ class Library:
         self._of_root: dict[Element, ColladaDocument] = {}
         self._units: dict[Element, float] = {}
         self._reported: set[tuple[Element, str]] = set()
-        self._scopes: dict[Element, dict[str, Found]] = {}
+        self._scopes: dict[Element, dict[str, ResolvedReference]] = {}
 
     def open_file(self, path: str, named_by: Source | None = None) -> ColladaDocument:
         """Return the document of a ``.dae`` file, or the first one of a ``.zae`` archive.
@@ -206,7 +206,7 @@ class Library:
                 self.warn("bad-number", message, unit)
         return metres
 
-    def resolve(self, path: str, scope: Element) -> Found | None:
+    def resolve(self, path: str, scope: Element) -> ResolvedReference | None:
         """Resolve a path of names.
 
         The first name is an id, or a sid in the scope or in one around it; ``.`` is the scope itself. The others are
@@ -214,51 +214,51 @@ class Library:
         """
         first, *rest = path.strip().split("/")
         for start in self._starts(first, scope):
-            place: Found | None = start
+            place: ResolvedReference | None = start
             for name in rest:
                 place = None if place is None else self._below(place, name)
             if place is not None:
                 return place
         return None
 
-    def _starts(self, name: str, scope: Element) -> Iterator[Found]:
+    def _starts(self, name: str, scope: Element) -> Iterator[ResolvedReference]:
         if name == ".":
-            yield Found(scope)
+            yield ResolvedReference(scope)
             return
         for element in self.document_of(scope).identified(name):
-            yield Found(element)
+            yield ResolvedReference(element)
         for around in (scope, *scope.iterancestors()):
             place = self._scope(around).get(name)
             if place is not None:
                 yield place
 
-    def _below(self, place: Found, name: str) -> Found | None:
+    def _below(self, place: ResolvedReference, name: str) -> ResolvedReference | None:
         inner = self._scope(place.element).get(name)
-        return None if inner is None else Found(inner.element, (*place.through, *inner.through))
+        return None if inner is None else ResolvedReference(inner.element, (*place.through, *inner.through))
 
-    def _scope(self, element: Element) -> dict[str, Found]:
+    def _scope(self, element: Element) -> dict[str, ResolvedReference]:
         """Return the elements below one by their sids; of equal ones the nearest, and of these the first, counts."""
         names = self._scopes.get(element)
         if names is not None:
             return names
         names = self._scopes[element] = {}
-        queue: deque[Found] = deque([Found(element)])
+        queue: deque[ResolvedReference] = deque([ResolvedReference(element)])
         entered = {element}
         while queue:
             around, through = queue.popleft()
             target = self._target(around)
             if target is not None and target not in entered:
                 entered.add(target)
-                queue.append(Found(target, (*through, around)))
+                queue.append(ResolvedReference(target, (*through, around)))
             for item in around.iterchildren(etree.Element):
                 if item in entered:
                     continue
                 entered.add(item)
                 name = item.get("sid") or (item.get("symbol") if local_name(item) == "bind" else None)
                 if name:
-                    names.setdefault(name, Found(item, through))
+                    names.setdefault(name, ResolvedReference(item, through))
                 if len(item) or item.get("url"):
-                    queue.append(Found(item, through))
+                    queue.append(ResolvedReference(item, through))
         return names
 
     def _target(self, element: Element) -> Element | None:
@@ -267,7 +267,7 @@ class Library:
             return None
         return self.follow(element)
 
-    def parameter(self, name: str, *scopes: Element) -> Found | None:
+    def parameter(self, name: str, *scopes: Element) -> ResolvedReference | None:
         """Resolve a parameter to an element that is not a parameter, or to a parameter with a plain value.
 
         Its name, which may be a path of names, is looked for in the scopes, in their order.
@@ -278,7 +278,7 @@ class Library:
             if place is None or path is None:
                 return place
             inner = self.resolve(path, place.element)
-            place = None if inner is None else Found(inner.element, (*place.through, *inner.through))
+            place = None if inner is None else ResolvedReference(inner.element, (*place.through, *inner.through))
         return None
 
     def value(self, element: Element | None, *scopes: Element) -> Element | None:

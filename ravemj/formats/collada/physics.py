@@ -53,7 +53,7 @@ class RigidBody:
         return inertial_about(weight, T_link_mass, moments)
 
 
-class Physics:
+class PhysicsScenes:
     """The physics scenes of a document.
 
     Attributes:

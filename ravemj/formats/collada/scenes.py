@@ -7,7 +7,7 @@ from ravemj.formats.collada.bindings import read_bindings
 from ravemj.formats.collada.geometry import GeometryReader
 from ravemj.formats.collada.kinematics_model import Infos, ModelReader, SceneContext, valid_name
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.physics import NO_MASS, Physics
+from ravemj.formats.collada.physics import NO_MASS, PhysicsScenes
 from ravemj.formats.collada.robot import ExtraReader, interface_kind
 from ravemj.formats.collada.sensor import read_loose
 from ravemj.formats.collada.supplement import SupplementReader
@@ -56,7 +56,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     instance = child(scene, "instance_visual_scene")
     visual = None if instance is None else library.follow(instance)
     root = None if visual is None else expand(library, visual)
-    physics = Physics(library, scene, root)
+    physics = PhysicsScenes(library, scene, root)
     up = " ".join(words(child(document.root, "asset", "up_axis")))
     gravity = physics.gravity or _GRAVITY.get(up)
     geometry = GeometryReader(library)

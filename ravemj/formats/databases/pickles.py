@@ -18,7 +18,7 @@ _SAME = {"numpy._core.multiarray": "numpy.core.multiarray", "__builtin__": "buil
 _RENAMED = {"xrange": "range"}
 
 
-class _Closed(pickle.Unpickler):
+class _ArrayUnpickler(pickle.Unpickler):
     """Unpickler that knows arrays and plain containers only."""
 
     def find_class(self, module: str, name: str, /) -> Any:  # noqa: ANN401 - as the base class
@@ -49,7 +49,7 @@ def read_pickle(content: bytes) -> Any:  # noqa: ANN401 - any plain value
         pickle.UnpicklingError: it is damaged, or holds something else than numbers, texts, arrays and containers.
     """
     try:
-        return _Closed(BytesIO(content), encoding="latin1").load()
+        return _ArrayUnpickler(BytesIO(content), encoding="latin1").load()
     except pickle.UnpicklingError:
         raise
     except Exception as error:  # damaged pickles raise nearly anything

@@ -29,7 +29,7 @@ _WRITTEN = re.compile(r"mesh-[0-9a-f]{16}\.obj")
 
 
 @dataclass(slots=True)
-class _Material:
+class _MtlMaterial:
     diffuse: Rgb = GRAY
     ambient: Rgb = BLACK
     opacity: float = 1.0
@@ -37,14 +37,14 @@ class _Material:
     index: list[int] = field(default_factory=list[int])
 
 
-class _Reading:
+class _ObjParser:
     """State of the parser."""
 
     def __init__(self, file: FileContent) -> None:
         self.file = file
         self._triangles = 0
         self.points: list[tuple[float, ...]] = []
-        self.materials = {"": _Material()}
+        self.materials = {"": _MtlMaterial()}
         self.current = self.materials[""]
 
     def line(self, words: list[str]) -> None:
@@ -54,7 +54,7 @@ class _Reading:
             case ["f", *corners] if len(corners) >= 3:
                 self._face(corners)
             case ["usemtl", *rest]:
-                self.current = self.materials.setdefault(" ".join(rest), _Material())
+                self.current = self.materials.setdefault(" ".join(rest), _MtlMaterial())
             case ["mtllib", *names]:
                 self._library(" ".join(names))
             case ["v", *_]:
@@ -79,7 +79,7 @@ class _Reading:
         for line in [] if file is None else file.data.decode("latin-1").splitlines():
             words = line.split()
             if words[:1] == ["newmtl"]:
-                self.current = self.materials.setdefault(" ".join(words[1:]), _Material())
+                self.current = self.materials.setdefault(" ".join(words[1:]), _MtlMaterial())
             else:
                 _colour(self.current, words)
 
@@ -92,7 +92,7 @@ def read_obj(file: FileContent) -> tuple[MeshPart, ...]:
     Raises:
         SourceError: A line is malformed, or a face has a vertex that is not there.
     """
-    reading = _Reading(file)
+    reading = _ObjParser(file)
     lines = io.StringIO(file.data.decode("latin-1").replace("\\\n", " "), newline=None)
     for number, line in enumerate(lines, start=1):
         try:
@@ -162,7 +162,7 @@ def _point(numbers: list[float]) -> tuple[float, ...]:
     return (x / weight, y / weight, z / weight)
 
 
-def _colour(material: _Material, words: list[str]) -> None:
+def _colour(material: _MtlMaterial, words: list[str]) -> None:
     try:
         match words:
             case ["Kd", red, green, blue, *_]:
@@ -179,7 +179,7 @@ def _colour(material: _Material, words: list[str]) -> None:
         pass  # a colour that is no number: as if it were not there
 
 
-def _parts(material: _Material, points: Floats, file: FileContent) -> tuple[MeshPart, ...]:
+def _parts(material: _MtlMaterial, points: Floats, file: FileContent) -> tuple[MeshPart, ...]:
     sizes, index = np.array(material.sizes, np.int_), np.array(material.index, np.int_)
     check_size(int((sizes - 2).sum()), file.source)
     check_finite(points[index], file.source)

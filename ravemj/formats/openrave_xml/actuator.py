@@ -50,7 +50,7 @@ ACTUATOR_IGNORED = reasons(
 )
 
 
-class Motor(NamedTuple):
+class GearedMotor(NamedTuple):
     """A motor behind its gear.
 
     Attributes:
@@ -76,7 +76,7 @@ class Motor(NamedTuple):
         )
 
 
-def read_motor(element: Element, context: Context) -> Motor:
+def read_motor(element: Element, context: Context) -> GearedMotor:
     """Read the motor of a joint.
 
     Raises:
@@ -91,10 +91,10 @@ def read_motor(element: Element, context: Context) -> Motor:
     return motor_of(motor.numbers)
 
 
-def motor_of(numbers: Mapping[str, float]) -> Motor:
+def motor_of(numbers: Mapping[str, float]) -> GearedMotor:
     """Return the motor behind its gear; missing numbers are 0."""
     gear_ratio = numbers.get("gear_ratio", 0.0)
     inertia = numbers.get("rotor_inertia", 0.0) * gear_ratio**2
     limits = (numbers.get(name, 0.0) for name in ("max_instantaneous_torque", "nominal_torque"))
     torque = next((limit * gear_ratio for limit in limits if limit > 0), None)
-    return Motor(torque, inertia, numbers.get("coloumb_friction", 0.0), numbers.get("viscous_friction", 0.0))
+    return GearedMotor(torque, inertia, numbers.get("coloumb_friction", 0.0), numbers.get("viscous_friction", 0.0))

@@ -15,7 +15,7 @@ from ravemj.formats.limits import MOST_FILES, MOST_MODEL_TRIANGLES, check_count
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.tags import Tag, Target_contra
 from ravemj.formats.openrave_xml.tree import Document, Element, parse_file
-from ravemj.formats.openrave_xml.values import Placement, is_false, is_true
+from ravemj.formats.openrave_xml.values import ChildTransform, is_false, is_true
 from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
@@ -253,7 +253,7 @@ class Placed:
     """An open element that has a transform of its own."""
 
     context: Context
-    placement: Placement = field(default_factory=Placement)
+    placement: ChildTransform = field(default_factory=ChildTransform)
 
     def translate(self, element: Element) -> None:
         """Read a ``<Translation>``."""

@@ -88,7 +88,7 @@ def read(
     """
     path = os.fspath(path)
     context = Context(access or FileAccess.opened(path))
-    document = _Document(context)
+    document = _FileContents(context)
     failure = None
     try:
         parsed = parse(content_of(path) if content is None else content, path, None, context.documents.budget)
@@ -106,7 +106,7 @@ def read(
     return Reading(scene, context.diagnostics, failure, {path: None} | context.access.files, document.renames)
 
 
-class _Document:
+class _FileContents:
     """The bodies, the sensors and the view read from a file so far."""
 
     def __init__(self, context: Context) -> None:
@@ -202,7 +202,7 @@ class _Document:
 class _EnvironmentScope:
     """An open ``<Environment>``."""
 
-    def __init__(self, document: _Document) -> None:
+    def __init__(self, document: _FileContents) -> None:
         self.document = document
         self.view = View()
 

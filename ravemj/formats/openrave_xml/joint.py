@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, not_subnormal, rotate, scale
 from ravemj.errors import SourceError
-from ravemj.formats.openrave_xml.actuator import Motor, read_motor
+from ravemj.formats.openrave_xml.actuator import GearedMotor, read_motor
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tags import IGNORED, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
@@ -32,7 +32,7 @@ _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1
 
 
 @dataclass(slots=True)
-class _JointReader:
+class _JointElement:
     """An open ``<Joint>``: what its children have set so far."""
 
     context: Context
@@ -46,7 +46,7 @@ class _JointReader:
     anchor: Vec3 = ZERO
     directions: dict[int, Vec3] = field(default_factory=dict[int, Vec3])
     stops: bool = False
-    motor: Motor | None = None
+    motor: GearedMotor | None = None
     negative: dict[str, Element] = field(default_factory=dict[str, Element])
     parameters: Parameters = NO_PARAMETERS
 
@@ -166,34 +166,34 @@ _NUMBERS = {
 }
 _NOT_NEGATIVE = {"max_velocity", "max_acceleration", "max_torque", "max_inertia"}
 
-JOINT_TAGS: dict[str, Tag[_JointReader]] = {
-    "body": Tag(_JointReader.read_body, "twice: the names of the Bodies that it joins"),
-    "offsetfrom": Tag(_JointReader.read_frame, "name of the Body that anchor and axis are relative to", once=True),
-    "anchor": Tag(_JointReader.read_anchor, "a point on the axis [m]", once=True),
-    "axis": Tag(_JointReader.read_direction, "direction x y z, of a hinge or slider", once="axis"),
-    "axis1": Tag(_JointReader.read_direction, "first axis of a hinge2", once="axis1"),
-    "axis2": Tag(_JointReader.read_direction, "second axis of a hinge2", once="axis2"),
-    "limits": Tag(_JointReader.read_limits, "lower and upper [rad, m]", once=True),
-    "limitsrad": Tag(_JointReader.read_limits, "lower and upper [rad, m]", once=True),
-    "limitsdeg": Tag(_JointReader.read_limits, "lower and upper [deg; of a slider m]", once=True),
-    "lostop": Tag(_JointReader.read_stop, "deprecated: lower limit [deg, m]; turns the axis round"),
-    "histop": Tag(_JointReader.read_stop, "deprecated: upper limit [deg, m]; turns the axis round"),
-    "initial": Tag(_JointReader.read_number, "the value at the poses of the file [rad, m]", once="initial"),
-    "parameter": Tag(_JointReader.read_parameter, PARAMETER_MEANING),
-    "weight": Tag(_JointReader.read_number, "in distances between configurations", once="weight"),
-    "resolution": Tag(_JointReader.read_resolution, "step of planners [deg, m]", once=True),
-    "maxvel": Tag(_JointReader.read_number, "[rad/s, m/s]", once="maxvel"),
-    "maxveldeg": Tag(_JointReader.read_number, "[deg/s]", once="maxvel"),
-    "maxaccel": Tag(_JointReader.read_number, "[rad/s², m/s²]", once="maxaccel"),
-    "maxacceldeg": Tag(_JointReader.read_number, "[deg/s²]", once="maxaccel"),
-    "maxtorque": Tag(_JointReader.read_number, "[N m, N]", once="maxtorque"),
-    "maxinertia": Tag(_JointReader.read_number, "[kg m², kg]; 0: unknown", once="maxinertia"),
-    "hardmaxvel": Tag(_JointReader.read_number, "what planners never exceed [rad/s, m/s]; 0: nothing"),
+JOINT_TAGS: dict[str, Tag[_JointElement]] = {
+    "body": Tag(_JointElement.read_body, "twice: the names of the Bodies that it joins"),
+    "offsetfrom": Tag(_JointElement.read_frame, "name of the Body that anchor and axis are relative to", once=True),
+    "anchor": Tag(_JointElement.read_anchor, "a point on the axis [m]", once=True),
+    "axis": Tag(_JointElement.read_direction, "direction x y z, of a hinge or slider", once="axis"),
+    "axis1": Tag(_JointElement.read_direction, "first axis of a hinge2", once="axis1"),
+    "axis2": Tag(_JointElement.read_direction, "second axis of a hinge2", once="axis2"),
+    "limits": Tag(_JointElement.read_limits, "lower and upper [rad, m]", once=True),
+    "limitsrad": Tag(_JointElement.read_limits, "lower and upper [rad, m]", once=True),
+    "limitsdeg": Tag(_JointElement.read_limits, "lower and upper [deg; of a slider m]", once=True),
+    "lostop": Tag(_JointElement.read_stop, "deprecated: lower limit [deg, m]; turns the axis round"),
+    "histop": Tag(_JointElement.read_stop, "deprecated: upper limit [deg, m]; turns the axis round"),
+    "initial": Tag(_JointElement.read_number, "the value at the poses of the file [rad, m]", once="initial"),
+    "parameter": Tag(_JointElement.read_parameter, PARAMETER_MEANING),
+    "weight": Tag(_JointElement.read_number, "in distances between configurations", once="weight"),
+    "resolution": Tag(_JointElement.read_resolution, "step of planners [deg, m]", once=True),
+    "maxvel": Tag(_JointElement.read_number, "[rad/s, m/s]", once="maxvel"),
+    "maxveldeg": Tag(_JointElement.read_number, "[deg/s]", once="maxvel"),
+    "maxaccel": Tag(_JointElement.read_number, "[rad/s², m/s²]", once="maxaccel"),
+    "maxacceldeg": Tag(_JointElement.read_number, "[deg/s²]", once="maxaccel"),
+    "maxtorque": Tag(_JointElement.read_number, "[N m, N]", once="maxtorque"),
+    "maxinertia": Tag(_JointElement.read_number, "[kg m², kg]; 0: unknown", once="maxinertia"),
+    "hardmaxvel": Tag(_JointElement.read_number, "what planners never exceed [rad/s, m/s]; 0: nothing"),
     **dict.fromkeys(
         ("hardmaxaccel", "maxjerk", "hardmaxjerk", "wrapoffset"),
-        Tag(_JointReader.read_number, "ravemj's own, named like OpenRAVE's getter"),
+        Tag(_JointElement.read_number, "ravemj's own, named like OpenRAVE's getter"),
     ),
-    "actuator": Tag(_JointReader.read_actuator, "see below"),
+    "actuator": Tag(_JointElement.read_actuator, "see below"),
 }
 JOINT_IGNORED = {
     **reasons(IGNORED, "maxforce", "mode", "axis3"),
@@ -225,7 +225,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     circular = not is_false(element.attributes.get("circular", "false"))
     spans = [UNLIMITED if circular and index == 0 else _DEFAULT_LIMIT[kind] for index in range(len(AXES[kind]))]
     limits: list[dict[str, float]] = [{"lower": -span, "upper": span} for span in spans]
-    reader = _JointReader(context, body, kind, scale_attribute(element, context.diagnostics), circular, limits)
+    reader = _JointElement(context, body, kind, scale_attribute(element, context.diagnostics), circular, limits)
     context.walk(element, JOINT_TAGS, JOINT_IGNORED, reader)
     for limit in reader.negative.values():
         raise SourceError(f"<{limit.spelled}> is {limit.text.strip()}, and cannot be negative", limit.source)
@@ -265,7 +265,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     )
 
 
-def _direction(reader: _JointReader, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
+def _direction(reader: _JointElement, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
     """Return an axis in the first link's frame; if it is not given, OpenRAVE's default for any order of links.
 
     That is z of the first link (errors-26); a slider without an axis does not move.

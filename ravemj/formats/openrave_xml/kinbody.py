@@ -20,8 +20,8 @@ from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_senso
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
+    ChildTransform,
     Numbers,
-    Placement,
     hadamard,
     is_true,
     leading_numbers,
@@ -43,7 +43,7 @@ class _Scope(Placed):
     """
 
     def __init__(self, body: BodyBuilder, context: Context, scale: Vec3, depth: int, *, skip_geometry: bool) -> None:
-        super().__init__(context, Placement(scale=scale))
+        super().__init__(context, ChildTransform(scale=scale))
         self.body = body
         self.scale = scale
         self.depth = depth

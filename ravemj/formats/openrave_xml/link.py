@@ -10,7 +10,7 @@ from ravemj.formats.openrave_xml.joint import frame_of_link
 from ravemj.formats.openrave_xml.mass import MassRule, link_inertial, read_mass
 from ravemj.formats.openrave_xml.tags import IGNORED, Tag
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import Placement, hadamard, is_false, scale_attribute
+from ravemj.formats.openrave_xml.values import ChildTransform, hadamard, is_false, scale_attribute
 from ravemj.formats.parameters import PARAMETER_MEANING
 from ravemj.model.builder import BodyBuilder, LinkBuilder
 from ravemj.model.scene import OWN_SHAPES
@@ -30,7 +30,7 @@ class _LinkScope(Placed):
         *,
         skip_geometry: bool,
     ) -> None:
-        super().__init__(context, Placement(start, geometry_scope.scale))
+        super().__init__(context, ChildTransform(start, geometry_scope.scale))
         self.body = body
         self.link = link
         self.mass = mass

@@ -97,7 +97,7 @@ def parse(
     if not content.strip():
         raise SourceError("the file is empty", Source(path, 0, included_from))
     (budget or ParsingBudget()).add_document(content, Source(path, 0, included_from))
-    parser = _Parser(path, included_from)
+    parser = _TreeBuilder(path, included_from)
     error = parser.parse(content)
     if parser.root is None:
         raise error or SourceError("there is no element in it", Source(path, 0, included_from))
@@ -121,7 +121,7 @@ _HINTS = {
 """Hints for expat's syntax errors; for others, the open element is more helpful."""
 
 
-class _Parser:
+class _TreeBuilder:
     """Builds the tree from expat's events."""
 
     def __init__(self, path: str, included_from: Source | None) -> None:

@@ -168,7 +168,7 @@ def hadamard(a: Vec3, b: Vec3) -> Vec3:
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
-class Placement:
+class ChildTransform:
     """The transform that the children of an element make, applied in document order.
 
     Translations add up and are never rotated; rotations multiply from the left. The order between the two

@@ -33,7 +33,7 @@ from ravemj.model.scene import (
 
 
 @dataclass(frozen=True)
-class Document:
+class WrittenScene:
     """A written scene.
 
     Attributes:
@@ -45,7 +45,7 @@ class Document:
     meshes: dict[str, bytes]
 
 
-def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") -> Document:
+def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") -> WrittenScene:
     """Write a scene: an ``<Environment>``, or the one body of a scene without a view as the root.
 
     Args:
@@ -70,7 +70,7 @@ def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") ->
                 writer.write_body(body)
             for sensor in scene.sensors:
                 writer.write_sensor(sensor)
-    return Document(out.document(), writer.geoms.files)
+    return WrittenScene(out.document(), writer.geoms.files)
 
 
 class _Writer:

@@ -50,7 +50,7 @@ class Losses:
             diagnostics.warn("not-written", f"{kind}: '{names[0]}'{others}", source)
 
 
-class _Mimic(NamedTuple):
+class _MimicRelation(NamedTuple):
     """A joint that follows a multiple of another one."""
 
     leader: str
@@ -163,7 +163,7 @@ class _UrdfWriter:
             return False
         return index < len(self.body.joints) or joint.equation is not None
 
-    def _mimic(self, index: int, joint: Joint) -> _Mimic | None:
+    def _mimic(self, index: int, joint: Joint) -> _MimicRelation | None:
         """Return the mimic relation of a joint, or None; a relation that URDF cannot represent is reported."""
         equation = joint.equation
         if equation is None:
@@ -174,7 +174,7 @@ class _UrdfWriter:
             return None
         del index
         slope = next(iter(equation.affine.slopes.values()))
-        return _Mimic(self.joints[followed[0]], slope, equation.affine.offset)
+        return _MimicRelation(self.joints[followed[0]], slope, equation.affine.offset)
 
     def _new_link(self, name: str) -> str:
         """Write a link without mass and shapes, and return its name."""
@@ -245,7 +245,7 @@ class _UrdfWriter:
             self._fixed(f"{name}_fixed", ends[-1], child, frame.inverse() @ zero)
 
     def _moving_joint(
-        self, name: str, ends: tuple[str, str], origin: Pose, axis: Axis, mimic: _Mimic | None, *, slides: bool
+        self, name: str, ends: tuple[str, str], origin: Pose, axis: Axis, mimic: _MimicRelation | None, *, slides: bool
     ) -> None:
         out = self._joint_lines if mimic is None else self._follower_lines
         kind = "prismatic" if slides else "continuous" if axis.circular else "revolute"

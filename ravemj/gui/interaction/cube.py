@@ -41,7 +41,7 @@ class Grip(NamedTuple):
     point: Floats
 
 
-class _Edge(NamedTuple):
+class _CubeEdge(NamedTuple):
     axis: int
     ends: Floats  # in the cube, (2, 3)
     faces: tuple[tuple[int, int], tuple[int, int]]  # axis and sign of the two that meet in it
@@ -100,14 +100,14 @@ class Cube:
     def _sees(self, eye: Floats, axis: int, sign: int) -> bool:
         return bool(sign * eye[axis] > self.half[axis])
 
-    def _edges(self) -> Iterator[_Edge]:
+    def _edges(self) -> Iterator[_CubeEdge]:
         for axis in range(3):
             next_axis, other = (axis + 1) % 3, (axis + 2) % 3
             for sign, other_sign in itertools.product((-1, 1), repeat=2):
                 ends = np.zeros((2, 3))
                 ends[:, next_axis], ends[:, other] = sign * self.half[next_axis], other_sign * self.half[other]
                 ends[:, axis] = -self.half[axis], self.half[axis]
-                yield _Edge(axis, ends, ((next_axis, sign), (other, other_sign)))
+                yield _CubeEdge(axis, ends, ((next_axis, sign), (other, other_sign)))
 
     def _in_world(self, points: Floats) -> Floats:
         return points @ self.T_world_cube[:3, :3].T + self.T_world_cube[:3, 3]

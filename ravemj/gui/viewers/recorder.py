@@ -60,8 +60,8 @@ class Recorder:
     It has no reference to the simulation, so that files can be completed after the viewer is gone.
     """
 
-    def __init__(self, notices: Notices) -> None:
-        self._notices = notices
+    def __init__(self, notices: Notices, clock: Callable[[], float] = time.monotonic) -> None:
+        self._notices, self._clock = notices, clock
         self._stop = Flag()
         self._recorder: threading.Thread | None = None
         self._threads: set[threading.Thread] = set()
@@ -153,9 +153,9 @@ class Recorder:
 
     def _frames_of_clock(self) -> Iterator[bool]:
         """Yield for each frame time whether to render; False repeats the last frame, to catch up."""
-        start = time.monotonic()
+        start = self._clock()
         for count in itertools.count():
-            late = time.monotonic() - start - count / _FPS
+            late = self._clock() - start - count / _FPS
             self._stop.wait(max(-late, 0.0))
             yield late < 1 / _FPS
 
@@ -180,8 +180,8 @@ def _frames_of_motion(playback: Playback) -> Iterator[bool]:
         yield True
 
 
-def free_path(suffix: str) -> Path:
+def free_path(suffix: str, clock: Callable[[], float] = time.time) -> Path:
     """Return an unused path in the working folder, with the date and time in its name."""
-    stem = time.strftime("ravemj-%Y%m%d-%H%M%S")
+    stem = time.strftime("ravemj-%Y%m%d-%H%M%S", time.localtime(clock()))
     names = itertools.chain([stem], (f"{stem}-{number}" for number in itertools.count(2)))
     return next(path for name in names if not (path := Path(name + suffix)).exists())

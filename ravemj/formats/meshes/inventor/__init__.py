@@ -9,7 +9,7 @@ from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.inventor import ascii as text_format
 from ravemj.formats.meshes.inventor import binary, old, vrml97
 from ravemj.formats.meshes.inventor.nodes import InventorDocument, InventorNode
-from ravemj.formats.meshes.inventor.traversal import State, Traversal
+from ravemj.formats.meshes.inventor.traversal import Traversal, TraversalState
 from ravemj.formats.meshes.parts import MeshPart, check_finite, weld
 
 
@@ -24,14 +24,14 @@ def read_inventor(file: FileContent) -> tuple[MeshPart, ...]:
     """
     trees: dict[str, list[InventorNode]] = {}
 
-    def draw(traversal: Traversal, opened: FileContent, state: State) -> State:
+    def draw(traversal: Traversal, opened: FileContent, state: TraversalState) -> TraversalState:
         if opened.path not in trees:
             trees[opened.path] = _nodes(opened)
         handlers = vrml97.HANDLERS if opened.data.startswith(b"#VRML V2") else old.HANDLERS
         return traversal.nodes(trees[opened.path], handlers, state)
 
     traversal = Traversal(file, draw)
-    draw(traversal, file, State())
+    draw(traversal, file, TraversalState())
     corners = traversal.corners()
     check_finite(corners, file.source)
     return (MeshPart(weld(corners), *traversal.material),) if len(corners) else ()

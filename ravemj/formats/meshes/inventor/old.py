@@ -9,7 +9,7 @@ from ravemj.core.transforms import Floats, Ints
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import InventorNode
-from ravemj.formats.meshes.inventor.traversal import Handler, State, Traversal, moved, shape, transform
+from ravemj.formats.meshes.inventor.traversal import Handler, Traversal, TraversalState, moved, shape, transform
 from ravemj.formats.meshes.matrices import rotation, translation
 from ravemj.formats.meshes.parts import rgb
 
@@ -32,20 +32,20 @@ _METRES = {
 _AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
 
-def _separator(traversal: Traversal, node: InventorNode, state: State) -> State:
+def _separator(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     traversal.visit(node.children, state)
     return state
 
 
-def _group(traversal: Traversal, node: InventorNode, state: State) -> State:
+def _group(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     return traversal.visit(node.children, state)
 
 
-def _transform_separator(traversal: Traversal, node: InventorNode, state: State) -> State:
+def _transform_separator(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     return replace(traversal.visit(node.children, state), matrix=state.matrix, metres=state.metres)
 
 
-def _switch(traversal: Traversal, node: InventorNode, state: State) -> State:
+def _switch(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     which = node.integer("whichChild", -1)
     if which == -3:  # all
         return traversal.visit(node.children, state)
@@ -53,13 +53,13 @@ def _switch(traversal: Traversal, node: InventorNode, state: State) -> State:
     return traversal.visit(node.children[which : which + 1] if which >= 0 else [], state)
 
 
-def _first_child(traversal: Traversal, node: InventorNode, state: State) -> State:
+def _first_child(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     after = traversal.visit(node.children[:1], state)
     traversal.collect_materials(node.children[1:], state)
     return after
 
 
-def _include(traversal: Traversal, node: InventorNode, state: State) -> State:
+def _include(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     return traversal.include(node.words("name", ()), node, state, with_materials=False)
 
 
@@ -79,11 +79,11 @@ def _matrix(node: InventorNode) -> Floats:
     return node.floats("matrix", 16, tuple(np.eye(4).ravel().tolist())).reshape(4, 4).T  # written for row vectors
 
 
-def _reset_transform(_traversal: Traversal, _node: InventorNode, state: State) -> State:
+def _reset_transform(_traversal: Traversal, _node: InventorNode, state: TraversalState) -> TraversalState:
     return replace(state, matrix=np.eye(4), metres=1.0)
 
 
-def _units(_traversal: Traversal, node: InventorNode, state: State) -> State:
+def _units(_traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     metres = _METRES.get(node.word("units", "METERS"))
     if metres is None:
         node.fail(f"unknown unit of length {node.word('units', '')[:40]!r}")
@@ -91,23 +91,23 @@ def _units(_traversal: Traversal, node: InventorNode, state: State) -> State:
     return replace(moved(state, np.diag([factor, factor, factor, 1.0])), metres=metres)
 
 
-def _complexity(_traversal: Traversal, node: InventorNode, state: State) -> State:
+def _complexity(_traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     return replace(state, complexity=min(max(node.number("value", primitives.DEFAULT_COMPLEXITY), 0.0), 1.0))
 
 
-def _shape_hints(_traversal: Traversal, node: InventorNode, state: State) -> State:
+def _shape_hints(_traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     return replace(state, concave=node.word("faceType", "CONVEX") == "UNKNOWN_FACE_TYPE")
 
 
-def _coordinate3(_traversal: Traversal, node: InventorNode, state: State) -> State:
+def _coordinate3(_traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     return replace(state, points=node.vectors("point"))
 
 
-def _vertex_property(_traversal: Traversal, node: InventorNode, state: State) -> State:
+def _vertex_property(_traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     return replace(state, points=node.vectors("vertex")) if "vertex" in node.fields else state
 
 
-def _material(traversal: Traversal, node: InventorNode, state: State) -> State:
+def _material(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
     diffuse = node.floats("diffuseColor", 3, (0.8, 0.8, 0.8))
     ambient = node.floats("ambientColor", 3, (0.2, 0.2, 0.2))
     traversal.set_material((rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
@@ -117,7 +117,7 @@ def _material(traversal: Traversal, node: InventorNode, state: State) -> State:
 def _faces(polygons: Callable[[InventorNode, int], tuple[Ints, Ints]], are_strips: bool = False) -> Handler:
     """Return the handler of a shape of polygons or strips, given their sizes and corners for a number of points."""
 
-    def add(traversal: Traversal, node: InventorNode, state: State) -> State:
+    def add(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
         own = node.node("vertexProperty")
         state_of_shape = state if own is None else _vertex_property(traversal, own, state)
         sizes, index = polygons(node, len(state_of_shape.points))
@@ -156,20 +156,20 @@ def _quad_mesh(node: InventorNode, count: int) -> tuple[Ints, Ints]:
     return np.full(quads.size // 4, 4), quads.ravel()
 
 
-def _cube(node: InventorNode, _state: State) -> Floats:
+def _cube(node: InventorNode, _state: TraversalState) -> Floats:
     return primitives.box(np.array([node.number(name, 2.0) for name in ("width", "height", "depth")]))
 
 
-def _sphere(node: InventorNode, state: State) -> Floats:
+def _sphere(node: InventorNode, state: TraversalState) -> Floats:
     return primitives.sphere(node.number("radius", 1.0), state.complexity)
 
 
-def _cylinder(node: InventorNode, state: State) -> Floats:
+def _cylinder(node: InventorNode, state: TraversalState) -> Floats:
     radius, height = node.number("radius", 1.0), node.number("height", 2.0)
     return primitives.cylinder(radius, height, _parts(node), state.complexity)
 
 
-def _cone(node: InventorNode, state: State) -> Floats:
+def _cone(node: InventorNode, state: TraversalState) -> Floats:
     radius, height = node.number("bottomRadius", 1.0), node.number("height", 2.0)
     return primitives.cone(radius, height, _parts(node), state.complexity)
 

@@ -23,7 +23,7 @@ _MAX_LEVELS = 200  # of nodes and of files that files include
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class TraversalState:
     """The traversal state, as set by the nodes before a shape.
 
     Attributes:
@@ -45,10 +45,10 @@ Material = tuple[Rgb, Rgb, float]
 """Diffuse and ambient colour and transparency; of several for several faces the first, as OpenRAVE does it."""
 
 
-Handler = Callable[["Traversal", InventorNode, State], State]
+Handler = Callable[["Traversal", InventorNode, TraversalState], TraversalState]
 """Handles a node; returns the state of the nodes after it."""
 
-Opener = Callable[["Traversal", FileContent, State], State]
+Opener = Callable[["Traversal", FileContent, TraversalState], TraversalState]
 """Traverses a file that another one includes; returns the state at its end."""
 
 
@@ -77,12 +77,14 @@ class Traversal:
         """Return all triangles, shape (n, 3, 3)."""
         return np.concatenate([np.zeros((0, 3, 3)), *self._pieces])
 
-    def nodes(self, nodes: Iterable[InventorNode], handlers: dict[str, Handler], state: State) -> State:
+    def nodes(
+        self, nodes: Iterable[InventorNode], handlers: dict[str, Handler], state: TraversalState
+    ) -> TraversalState:
         """Traverse the nodes of a file, in the dialect of ``handlers``."""
         self._handlers = handlers
         return self.visit(nodes, state)
 
-    def visit(self, nodes: Iterable[InventorNode], state: State) -> State:
+    def visit(self, nodes: Iterable[InventorNode], state: TraversalState) -> TraversalState:
         """Traverse nodes in order; an unknown one is skipped, but not its children."""
         self._levels += 1
         for node in nodes:
@@ -94,13 +96,13 @@ class Traversal:
         self._levels -= 1
         return state
 
-    def collect_materials(self, nodes: Iterable[InventorNode], state: State) -> None:
+    def collect_materials(self, nodes: Iterable[InventorNode], state: TraversalState) -> None:
         """Traverse nodes for their materials alone: in OpenRAVE, those of hidden levels of detail count."""
         before, self._shapes_count = self._shapes_count, False
         self.visit(nodes, state)
         self._shapes_count = before
 
-    def add(self, corners: Floats, node: InventorNode, state: State) -> State:
+    def add(self, corners: Floats, node: InventorNode, state: TraversalState) -> TraversalState:
         """Add triangles given in the shape's frame."""
         if not self._shapes_count:
             return state
@@ -110,14 +112,16 @@ class Traversal:
         self._pieces.append(corners @ state.matrix[:3, :3].T + state.matrix[:3, 3])
         return state
 
-    def add_polygons(self, sizes: Ints, index: Ints, node: InventorNode, state: State) -> State:
+    def add_polygons(self, sizes: Ints, index: Ints, node: InventorNode, state: TraversalState) -> TraversalState:
         """Add the polygons of a shape, given their sizes and the indices of their corners in ``state.points``."""
         self._corners_left -= len(index)
         if self._corners_left < 0:
             node.fail("the mesh has too many corners of polygons")
         return self.add(triangulation.triangles(state.points, sizes, index, state.concave), node, state)
 
-    def include(self, names: Iterable[str], node: InventorNode, state: State, with_materials: bool) -> State:
+    def include(
+        self, names: Iterable[str], node: InventorNode, state: TraversalState, with_materials: bool
+    ) -> TraversalState:
         """Traverse the first of the files that a node names that can be read; none is no error, as in OpenRAVE.
 
         Its materials count only ``with_materials``. Return the state at its end.
@@ -146,12 +150,12 @@ class Traversal:
             self.material = material
 
 
-def shape(corners: Callable[[InventorNode, State], Floats]) -> Handler:
+def shape(corners: Callable[[InventorNode, TraversalState], Floats]) -> Handler:
     """Return the handler of a shape, given its triangles in its frame, shape (n, 3, 3)."""
     return lambda traversal, node, state: traversal.add(corners(node, state), node, state)
 
 
-def moved(state: State, step: Floats) -> State:
+def moved(state: TraversalState, step: Floats) -> TraversalState:
     """Return the state below one more transform, a 4x4 matrix."""
     return replace(state, matrix=state.matrix @ step)
 

@@ -5,7 +5,7 @@ import json
 import logging
 import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from typing import NamedTuple, Protocol
 
@@ -82,9 +82,15 @@ class Client:
     """
 
     def __init__(
-        self, simulation: Simulation, renderer: SimulationRenderer, interaction: Interaction, scenes: Scenes
+        self,
+        simulation: Simulation,
+        renderer: SimulationRenderer,
+        interaction: Interaction,
+        scenes: Scenes,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.interaction = interaction
+        self._clock = clock
         self.updates = 0
         self._simulation = simulation
         self._renderer = renderer
@@ -92,11 +98,11 @@ class Client:
         self._feed: Feed | None = None  # only for pages that render the scene themselves
         self._stage: Stage | None = None
         self._acknowledged = 0
-        self._pacing = ConnectionPacing()
+        self._pacing = ConnectionPacing(clock)
         self._sharpness = Sharpness()
         self._overlay: Overlay | None = None
         self._tree: object = None
-        self._free_at = time.monotonic()
+        self._free_at = self._clock()
         self._sees_bodies = False
         self._has_moved = False
         self._ratio = 1.0
@@ -113,7 +119,7 @@ class Client:
     @property
     def patience(self) -> float:
         """Time to wait for messages [s]; 0 if messages are pending."""
-        return 0.0 if len(self._waiting) > _MOST_AT_ONCE else period(time.monotonic() - self._changed_at)
+        return 0.0 if len(self._waiting) > _MOST_AT_ONCE else period(self._clock() - self._changed_at)
 
     @property
     def is_stalled(self) -> bool:
@@ -182,7 +188,7 @@ class Client:
 
     def _update_if_due(self, style: PageStyle) -> _Update | None:
         """Handle the queued events; return the update to send, if one is due."""
-        now = time.monotonic()
+        now = self._clock()
         # A short timeout, since the thread that holds the lock may be waiting for this one to end.
         with self._simulation.lock.attempt(_PERIOD) as self._sees_bodies:
             self._simulation.published.is_wanted = not self._sees_bodies
@@ -264,10 +270,10 @@ class Client:
         return level._replace(scale=min(level.scale, _HALF)) if self._pacing.is_halved else level
 
     def _picture(self, overlay: Overlay, style: PageStyle, level: Level = CRISP) -> Frame:
-        begin = time.monotonic()
+        begin = self._clock()
         camera, form = self.interaction.drawn_view.camera, self._form(level, style)
         picture = self._renderer.render(camera, style.look, form, gizmos=overlay.primitives, style=overlay.style)
-        self._sharpness.add_measurement(level, time.monotonic() - begin)
+        self._sharpness.add_measurement(level, self._clock() - begin)
         return picture
 
     def _form(self, level: Level, style: PageStyle) -> Format:

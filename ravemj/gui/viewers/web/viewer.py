@@ -75,6 +75,7 @@ class WebViewer(Viewer):
             ArgumentError: the token is too short, or has invalid characters.
         """
         super().__init__(simulation, renderer, name)
+        self._new_client = Client
         self._clients: dict[ServerConnection, Client] = {}
         self._uploads: dict[ServerConnection, PageUploads] = {}
         self._quota = UploadQuota()
@@ -168,7 +169,7 @@ class WebViewer(Viewer):
             self._views[tab] = view
             for oldest in [name for name in self._views if name not in open_tabs][:-_MOST_TABS]:
                 del self._views[oldest]
-            client = self._clients[connection] = Client(self._simulation, self._renderer, view, self._scenes)
+            client = self._clients[connection] = self._new_client(self._simulation, self._renderer, view, self._scenes)
             client.tab = tab
             self._uploads[connection] = PageUploads(self._quota)
 
