@@ -51,9 +51,10 @@ class Polynomial:
             duration *= LONGER
         return np.inf
 
-    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows:
-        """Return the single row of a segment."""
-        del limits
+    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
+        """Return the single row of a segment; None if the limits do not allow its velocities."""
+        if not segment.is_from_rest_to_rest and (duration <= 0 or not self._keeps_limits(segment, duration, limits)):
+            return None
         rest = np.zeros_like(segment.step)[None]
         rows = (segment.step[None], segment.end_velocity[None], *[rest] * (self.order - 1))
         return SegmentRows(np.array([duration]), rows)
@@ -252,6 +253,8 @@ class JerkLimited:
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: one for each change of jerk, and its end."""
+        if not segment.is_from_rest_to_rest:
+            return None
         joints = _joints(segment.step, limits)
         changes = [_changes(_double_s(*joint), duration) for joint in joints]
         inner = np.unique(np.concatenate([np.zeros(1), *changes]))
