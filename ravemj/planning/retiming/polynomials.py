@@ -256,7 +256,10 @@ class JerkLimited:
         if not segment.is_from_rest_to_rest:
             return None
         joints = _joints(segment.step, limits)
-        changes = [_changes(_double_s(*joint), duration) for joint in joints]
+        profiles = [_double_s(*joint) for joint in joints]
+        if not all(profile[-1] > 0 for profile in profiles):  # so short that its time is rounded to 0
+            return None
+        changes = [_changes(profile, duration) for profile in profiles]
         inner = np.unique(np.concatenate([np.zeros(1), *changes]))
         inner = inner[(inner > _SAME_TIME) & (inner < duration - _SAME_TIME)]
         times = np.append(inner[np.diff(inner, prepend=0.0) > _SAME_TIME], duration)

@@ -188,7 +188,9 @@ def _duration(needed: float, given: float | None, time_step: float) -> float:
         if not given >= needed - ENOUGH:
             raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
         return max(given, needed)
-    return max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
+    if not (time_step > 0 and math.isfinite(needed / time_step)):
+        return needed
+    return max(1, math.ceil(needed / time_step - ENOUGH)) * time_step
 
 
 def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: float, attempts: int) -> SegmentRows:
