@@ -206,7 +206,7 @@ def test_mujoco_loads_needles_or_they_are_left_out(width):
         assert collision_form(mesh) == "none"
     if collision_form(mesh) != "none":
         text = '<mujoco><asset><mesh name="a" file="a.obj" inertia="shell"/></asset><worldbody/></mujoco>'
-        mujoco.MjModel.from_xml_string(text, {"a.obj": write_obj(mesh)})
+        mujoco.MjModel.from_xml_string(text, {"a.obj": write_obj(mesh).encode()})
 
 
 def test_flat_meshes_are_not_cut(monkeypatch):
