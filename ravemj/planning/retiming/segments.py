@@ -18,6 +18,9 @@ LONGER = 1.05
 
 MOST_ATTEMPTS = 500
 
+_LONGEST = 1e100
+"""Duration [s] whose square is a number."""
+
 
 class RetimingError(Exception):
     """The path cannot be timed; the text gives the reason."""
@@ -182,8 +185,8 @@ def retime(
 
 def _duration(needed: float, given: float | None, time_step: float) -> float:
     """Return the duration of a segment [s] from the minimum and the given one."""
-    if not math.isfinite(needed):
-        raise RetimingError("a joint moves whose velocity or acceleration limit is 0")
+    if not needed < _LONGEST:
+        raise RetimingError("a joint moves whose velocity or acceleration limit is 0, or nearly so")
     if given is not None:
         if not given >= needed - ENOUGH:
             raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")

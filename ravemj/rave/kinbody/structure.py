@@ -176,14 +176,23 @@ class BodyPart(ApiObject):
         return np.zeros(0), np.zeros(0)
 
     def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown."""
-        return self._of_axes("max_torque", indices)
+        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown.
 
-    GetDOFMaxTorque = GetDOFTorqueLimits
+        Motors do not count; see ``GetDOFMaxTorque``.
+        """
+        return self._of_axes("own_torque", indices)
+
+    def GetDOFMaxTorque(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the torque limits [N m or N], likewise, with those of motors at the present speeds."""
+        limits = [joint.GetMaxTorque() for joint in self.GetJoints() for _ in range(joint.GetDOF())]
+        return np.array(limits)[checked_indices(indices, self.GetDOF())]
 
     def SetDOFTorqueLimits(self, limits: ArrayLike) -> None:
-        """Set the torque limits [N m, for sliders N], shape (dof,)."""
-        self._set_axes("SetDOFTorqueLimits", {"max_torque": limits})
+        """Set the torque limits [N m, for sliders N], shape (dof,). Motors keep theirs."""
+        motors = [index for index, axis in enumerate(self._state.scene.dof_axes) if axis.speed_torques]
+        kept = self._of_axes("max_torque", motors)
+        self._set_axes("SetDOFTorqueLimits", {"max_torque": limits, "joint_torque": limits})
+        self._set_axes("SetDOFTorqueLimits", {"max_torque": kept}, motors)
 
     def GetDOFWeights(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the weights in distances between configurations, shape (dof,), or those of the DOFs ``indices``."""
