@@ -495,9 +495,9 @@ class BodyPart(ApiObject):
         return self.GetLinks(chains.rigidly_attached(self._state.scene, linkindex))
 
     def GetKinematicsGeometryHash(self) -> str:
-        """Return a hash of the body's links, geometries and joints, 32 hexadecimal digits.
+        """Return a hash of the body's links, geometries, masses and joints, 32 hexadecimal digits.
 
-        Pose, joint values, limits and names do not matter.
+        Pose, joint values, limits, colours and names do not matter.
         """
         return self._state.made_once(hashes.of_body, self._state.scene)
 
