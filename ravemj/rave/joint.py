@@ -412,7 +412,7 @@ class Joint(Member):
 
     def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:
         """Set ``maxlimits``, the torque or force limits [N m or N], shape (axes,)."""
-        has_motor = bool(self._scene.axes[0].speed_torques)
+        has_motor = bool(self._scene.axes[0].speed_torques) or self._scene.axes[0].joint_torque is not None
         self._set_axes("SetTorqueLimits", **{"joint_torque" if has_motor else "max_torque": maxlimits})
 
     def GetMaxVel(self, axis: int = 0) -> float:
@@ -447,7 +447,7 @@ class Joint(Member):
         limited = self._axis(axis)
         if not limited.speed_torques:
             return limited.max_torque
-        speed = abs(float(self.GetVelocities()[axis])) if len(limited.speed_torques) > 1 else 0.0
+        speed = abs(float(self.GetVelocities()[axis]))
         return float(np.interp(speed, *zip(*limited.speed_torques, strict=True)))
 
     def GetWeights(self) -> Floats:

@@ -72,9 +72,11 @@ def test_limits_that_are_set_are_those_of_the_joint(setter):
     assert free.GetDOFTorqueLimits().tolist() == free.GetDOFMaxTorque().tolist() == [7]
 
 
-def test_a_motor_without_numbers_has_no_torque():
-    assert body("hinge", MOTOR.format(gear=2, rest="")).GetDOFMaxTorque().tolist() == [0]
-    assert body("hinge", MOTOR.format(gear=2, rest="<nominal_torque>3</nominal_torque>")).GetDOFMaxTorque() == [0]
+def test_a_motor_without_a_peak_torque():
+    assert body("hinge", MOTOR.format(gear=2, rest="")).GetDOFMaxTorque().tolist() == [10]
+    nominal = body("hinge", MOTOR.format(gear=2, rest="<nominal_torque>3</nominal_torque>"))
+    assert nominal.GetDOFMaxTorque().tolist() == [6]
+    assert nominal.GetDOFTorqueLimits().tolist() == [10]
 
 
 def test_infos_keep_the_motor():

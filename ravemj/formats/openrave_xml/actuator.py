@@ -61,8 +61,8 @@ class Motor(NamedTuple):
 
     Attributes:
         torque: Torque limit [N m], or None where the data say nothing.
-        points: Turns of the joint per second (metres for sliders) and the torque limits [N m] there, as OpenRAVE has
-            them.
+        points: Turns of the joint per second (metres for sliders) and the torque limits [N m] there; none if the limit
+            is the same at any speed.
         inertia: Inertia of the rotor [kg m^2].
         coulomb_friction: Friction at any speed of the joint [N m]; OpenRAVE does not look at the gear there.
         viscous_friction: Friction per speed of the joint [N m s/rad].
@@ -77,11 +77,12 @@ class Motor(NamedTuple):
     def driven(self, axis: Axis, *, turns: bool) -> Axis:
         """Return an axis, which turns or slides, with the data of this motor, which win over ``<maxtorque>``."""
         turn = 2 * math.pi if turns else 1.0
+        torque = axis.max_torque if self.torque is None else self.torque
         return replace(
             axis,
-            max_torque=axis.max_torque if self.torque is None else self.torque,
-            joint_torque=axis.max_torque,
-            speed_torques=tuple((speed * turn, torque) for speed, torque in self.points),
+            max_torque=torque,
+            joint_torque=None if axis.max_torque == torque else axis.max_torque,
+            speed_torques=tuple((speed * turn, limit) for speed, limit in self.points),
             armature=self.inertia,
             coulomb_friction=self.coulomb_friction,
             viscous_friction=self.viscous_friction,
@@ -115,8 +116,12 @@ def motor_of(data: Mapping[str, float], points: Sequence[tuple[float, float]]) -
     limits = (data.get(name, 0.0) for name in ("max_instantaneous_torque", "nominal_torque"))
     torque = next((limit * gear_ratio for limit in limits if limit > 0), None)
     slow = gear_ratio if gear_ratio > 0 else 1.0
-    given = points or [(0.0, data.get("max_instantaneous_torque", 0.0))]
-    behind = tuple((float(speed) / slow, float(limit) * gear_ratio) for speed, limit in given)
-    if points:
-        torque = behind[0][1]
-    return Motor(torque, behind, inertia, data.get("coloumb_friction", 0.0), data.get("viscous_friction", 0.0))
+    behind = tuple((float(speed) / slow, float(limit) * gear_ratio) for speed, limit in points)
+    torque = behind[0][1] if behind else torque
+    return Motor(
+        torque,
+        behind if len(behind) > 1 else (),
+        inertia,
+        data.get("coloumb_friction", 0.0),
+        data.get("viscous_friction", 0.0),
+    )

@@ -110,7 +110,7 @@ class Axis(Record):
         max_jerk: Jerk limit [rad/s^3 or m/s^3].
         max_torque: Torque or force limit [N m or N], that of the motor at rest if there is one; 0 if unknown.
         joint_torque: The limit of the joint itself if its motor has another one; None means ``max_torque``.
-        speed_torques: Speeds [rad/s or m/s] and the motor's torque limits at them; none without a motor.
+        speed_torques: Speeds [rad/s or m/s] and the motor's torque limits at them; none means ``max_torque``.
         max_inertia: Limit of the inertia that it moves [kg m^2 or kg]; 0 if unknown.
         hard_max_velocity: Velocity that planners never exceed [rad/s or m/s]; 0 if unknown.
         hard_max_acceleration: Acceleration that they never exceed.
@@ -147,7 +147,7 @@ class Axis(Record):
     @property
     def own_torque(self) -> float:
         """Torque or force limit without regard to a motor [N m or N]; 0 if unknown."""
-        return self.joint_torque if self.speed_torques and self.joint_torque is not None else self.max_torque
+        return self.max_torque if self.joint_torque is None else self.joint_torque
 
 
 RARE_NUMBERS = (

@@ -412,14 +412,14 @@ _REPORTED = {"max_torque": "own_torque"}
 
 def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:
     """Return a motor with gear ratio 1 that acts as that of an axis; None if it has none."""
-    if not (axis.armature or axis.speed_torques):
+    if not (axis.armature or axis.speed_torques or axis.joint_torque is not None):
         return None
     turn = 1.0 if is_slider else 2 * math.pi
     points = [(speed / turn, torque) for speed, torque in axis.speed_torques]
     return ElectricMotorActuatorInfo(
         gear_ratio=1.0,
-        max_instantaneous_torque=points[0][1] if points else axis.max_torque,
-        max_speed_torque_points=points if len(points) > 1 else [],
+        max_instantaneous_torque=axis.max_torque,
+        max_speed_torque_points=points,
         rotor_inertia=axis.armature,
         coloumb_friction=axis.coulomb_friction,
         viscous_friction=axis.viscous_friction,

@@ -189,10 +189,13 @@ class BodyPart(ApiObject):
 
     def SetDOFTorqueLimits(self, limits: ArrayLike) -> None:
         """Set the torque limits [N m, for sliders N], shape (dof,). Motors keep theirs."""
-        motors = [index for index, axis in enumerate(self._state.scene.dof_axes) if axis.speed_torques]
+        axes = self._state.scene.dof_axes
+        motors = [dof for dof, axis in enumerate(axes) if axis.speed_torques or axis.joint_torque is not None]
         kept = self._of_axes("max_torque", motors)
-        self._set_axes("SetDOFTorqueLimits", {"max_torque": limits, "joint_torque": limits})
-        self._set_axes("SetDOFTorqueLimits", {"max_torque": kept}, motors)
+        self._set_axes("SetDOFTorqueLimits", {"max_torque": limits})
+        if motors:
+            given = self._of_axes("max_torque", motors)
+            self._set_axes("SetDOFTorqueLimits", {"max_torque": kept, "joint_torque": given}, motors)
 
     def GetDOFWeights(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the weights in distances between configurations, shape (dof,), or those of the DOFs ``indices``."""
