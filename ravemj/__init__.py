@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 from ravemj import geometry_functions, rave
 from ravemj.compat import names
 from ravemj.compat.names import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
-from ravemj.core.signatures import show_as_written
+from ravemj.core.api_object import published
 from ravemj.core.version import __version__
 from ravemj.errors import (
     ArgumentError,
@@ -42,12 +42,12 @@ from ravemj.errors import (
     SourceError,
     UnsupportedError,
 )
-from ravemj.formats.shipped import model_path
 from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists them
 
 if TYPE_CHECKING:
     from ravemj.compat import databases, interfaces, misc, planningutils
     from ravemj.core.threads import set_batch_threads
+    from ravemj.formats.shipped import model_path
     from ravemj.gui.viewers import Viewer
     from ravemj.manipulation.grasping.search import Grasp, Grasps
     from ravemj.planning.certificates import Certificate, CertifiedSpan
@@ -114,6 +114,7 @@ _LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
     "grasps": "ravemj.rave.grasping",
     "read_joint_trajectory": "ravemj.trajectories.joint_trajectory_files",
     "read_motion": "ravemj.trajectories.motion_reading",
+    "model_path": "ravemj.formats.shipped",
     "record": "ravemj.rave.recording",
     "set_batch_threads": "ravemj.core.threads",
     "sweep": "ravemj.sweeps",
@@ -128,8 +129,7 @@ def __getattr__(name: str) -> object:
         return importlib.import_module(f"ravemj.{name}")
     if name not in _LATE:
         raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
-    value = getattr(importlib.import_module(_LATE[name]), name)
-    show_as_written(value)
+    value = published(getattr(importlib.import_module(_LATE[name]), name), "ravemj")
     globals()[name] = value
     return value
 

@@ -1,12 +1,14 @@
 """The base class of API objects: their display at interactive prompts, and their argument errors."""
 
 from collections.abc import Iterable
-from inspect import CO_VARARGS, CO_VARKEYWORDS
+from enum import Enum
 from types import FunctionType
-from typing import ClassVar
+from typing import ClassVar, TypeVar, cast
 
-from ravemj.core.argument_errors import explained
+from ravemj.core.argument_errors import explain_methods, explained
 from ravemj.core.signatures import show_as_written
+
+Thing = TypeVar("Thing")
 
 
 class _ApiType(type):
@@ -29,24 +31,13 @@ class ApiObject(metaclass=_ApiType):
     """Performance-critical methods, and ``__init__`` of classes with many objects. They check their arguments, since a
     wrapper would cost 0.1 µs per call."""
 
-    _names_wrong_arguments: ClassVar[bool] = True
-
     def __init_subclass__(cls, **kwargs: object) -> None:
         """Wrap public methods and the constructor for argument errors, and set their displayed signatures.
 
         See ``argument_errors`` and ``signatures``.
         """
         super().__init_subclass__(**kwargs)
-        if cls._names_wrong_arguments:
-            skipped = _all_of(cls, "_internal") | _all_of(cls, "_often_called")
-            for name, method in tuple(vars(cls).items()):
-                is_public = name[0] != "_" or name == "__init__"
-                if not is_public or name in skipped:
-                    continue
-                if isinstance(method, FunctionType) and _takes(method):
-                    setattr(cls, name, explained(method))
-                elif isinstance(method, staticmethod) and isinstance(method.__func__, FunctionType):
-                    setattr(cls, name, staticmethod(explained(method.__func__)))
+        explain_methods(cls, _all_of(cls, "_internal") | _all_of(cls, "_often_called"))
         show_as_written(cls)
 
     def __dir__(self) -> list[str]:
@@ -56,10 +47,15 @@ class ApiObject(metaclass=_ApiType):
         return f"<{type(self).__name__}>"
 
 
-def _takes(method: FunctionType) -> bool:
-    """Return whether a method has arguments besides ``self``."""
-    code = method.__code__
-    return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
+def published(thing: Thing, module: str) -> Thing:
+    """Return a function or class of a module as users get it: errors name its arguments, signatures are as written."""
+    if isinstance(thing, FunctionType):
+        thing = cast("Thing", explained(thing))
+        thing.__module__ = module  # where pickle finds it
+    elif isinstance(thing, type) and not issubclass(thing, Enum | Exception | ApiObject):
+        explain_methods(thing)
+    show_as_written(thing)
+    return thing
 
 
 def _listed(kind: type, names: Iterable[str]) -> list[str]:

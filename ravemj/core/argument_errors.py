@@ -7,11 +7,10 @@ functions of the API compare their arguments with the annotations. Successful ca
 import os
 import re
 import reprlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from enum import Enum
 from functools import cache, wraps
-from inspect import Parameter, formatannotation, signature
-from pathlib import Path
+from inspect import CO_VARARGS, CO_VARKEYWORDS, Parameter, formatannotation, signature
 from traceback import walk_tb
 from types import EllipsisType, FunctionType, MappingProxyType, NoneType
 from typing import Any, cast
@@ -22,10 +21,14 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError, RavemjError
 
-_PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, KeyError, IndexError, OverflowError)
-_NAMELESS = {TypeError, ValueError, IndexError, OverflowError}
-_OURS = (str(Path(__file__).resolve().parents[1]), os.path.dirname(os.__file__), "<frozen")
-"""Path prefixes of the code of ravemj and Python; errors from other code, such as users' functions, are unchanged."""
+_PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, LookupError, ArithmeticError, MemoryError)
+_OURS = (*map(os.path.dirname, (os.path.dirname(__file__), os.__file__, np.__file__)), "<frozen", "<__array_function__")
+"""Path prefixes of the code of ravemj, Python and numpy. Errors from other code, such as users' functions, stay as is.
+
+File names of numpy's compiled code end in ``.pyx``.
+"""
+
+_MARK = "__names_arguments__"
 
 
 def _are_numbers(value: object) -> bool:
@@ -72,6 +75,8 @@ def explained(function: FunctionType) -> Callable[..., Any]:
 
     OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31).
     """
+    if hasattr(function, _MARK):
+        return function
 
     @wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:  # noqa: ANN401 - those of the function
@@ -86,7 +91,25 @@ def explained(function: FunctionType) -> Callable[..., Any]:
                 raise
             raise named from error
 
+    setattr(call, _MARK, True)
     return call
+
+
+def explain_methods(kind: type, skipped: Collection[str] = ()) -> None:
+    """Wrap the constructor and public methods of a class with ``explained``, except those with names in ``skipped``."""
+    for name, method in tuple(vars(kind).items()):
+        if (name[0] == "_" and name != "__init__") or name in skipped:
+            continue
+        if isinstance(method, FunctionType) and _takes(method):
+            setattr(kind, name, explained(method))
+        elif isinstance(method, staticmethod | classmethod) and isinstance(method.__func__, FunctionType):
+            setattr(kind, name, type(method)(explained(method.__func__)))
+
+
+def _takes(method: FunctionType) -> bool:
+    """Return whether a method has arguments besides ``self``."""
+    code = method.__code__
+    return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
 
 
 def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str | None:
@@ -97,7 +120,7 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
         return None
     for name, value in given.arguments.items():
         parameter = given.signature.parameters[name]
-        if name == "self" or parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
+        if name in {"self", "cls"} or parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
             continue
         if value is None and parameter.default is None:  # an alias of types may hold None
             continue
@@ -112,18 +135,19 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
 
 def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Exception | None:
     """Return an error of Python with the arguments that caused it; None if it names one, or comes from user code."""
-    files = (frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__))
-    if type(error) not in _NAMELESS or not all(file.startswith(_OURS) for file in files):
+    files = [frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__)]
+    if isinstance(error, RavemjError) or not all(file.startswith(_OURS) or file.endswith(".pyx") for file in files):
         return None
     try:
         given = signature(function).bind(*args, **kwargs).arguments
     except TypeError:
         return None
-    given = {name: value for name, value in given.items() if name != "self"}
+    given = {name: value for name, value in given.items() if name not in {"self", "cls"}}
     if not given or any(name in str(error) for name in given):
         return None
     values = ", ".join(f"{name}={reprlib.repr(value)}" for name, value in given.items())
-    return type(error)(f"{function.__name__}: {error}; given {values}")
+    kind = next(base for base in type(error).__mro__ if base.__module__ == "builtins")  # numpy's take other arguments
+    return kind(f"{function.__name__}: {error}; given {values}")
 
 
 def _kinds(annotation: object) -> list[str]:

@@ -4,10 +4,7 @@ Quaternions are (w, x, y, z), poses (qw, qx, qy, qz, x, y, z), angles radians. A
 of any number type; results are new float64 arrays. Names and meaning are OpenRAVE's, including older names.
 """
 
-from types import FunctionType
-
-from ravemj.core.argument_errors import explained
-from ravemj.core.signatures import show_as_written
+from ravemj.core.api_object import published
 from ravemj.geometry_functions.affine import (
     DOFAffine,
     RaveGetAffineDOF,
@@ -155,7 +152,4 @@ __all__ = [
 ]
 
 for _name in __all__:
-    if isinstance(globals()[_name], FunctionType):
-        globals()[_name] = explained(globals()[_name])
-        globals()[_name].__module__ = __name__  # where pickle finds it
-    show_as_written(globals()[_name])
+    globals()[_name] = published(globals()[_name], __name__)

@@ -8,12 +8,16 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Ints
+from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 
 _BOX_TRIANGLES = (
     (0, 1, 2), (1, 2, 3), (4, 5, 6), (5, 6, 7), (0, 1, 4), (1, 4, 5),
     (2, 3, 6), (3, 6, 7), (0, 2, 4), (2, 4, 6), (1, 3, 5), (3, 5, 7),
 )  # fmt: skip
+
+_FINEST = 10
+"""Most subdivisions of a sphere's triangles: 20 million triangles."""
 
 _GOLDEN = (1 + 5**0.5) / 2
 _ICOSAHEDRON = [
@@ -55,11 +59,13 @@ def ComputeGeodesicSphereMesh(radius: float = 1.0, level: int = 2) -> tuple[Floa
 
     Args:
         radius: Radius [m].
-        level: Number of subdivisions of an icosahedron's triangles into four.
+        level: Number of subdivisions of an icosahedron's triangles into four, 10 at most.
 
     Returns:
         Points, shape (2 + 10 * 4**level, 3), and triangles, shape (20 * 4**level, 3).
     """
+    if level > _FINEST:
+        raise ArgumentError(f"level: is {level}, and should be {_FINEST} at most")
     points = np.array(_ICOSAHEDRON)
     points /= np.linalg.norm(points[0])
     triangles = np.array(_faces(points))

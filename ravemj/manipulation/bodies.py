@@ -17,7 +17,7 @@ from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.engine.simulation.body import SavedConfiguration
 from ravemj.errors import ArgumentError
-from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, affine_values, pose_with_values
+from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, RaveGetAffineDOF, affine_values, pose_with_values
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
 from ravemj.planning.edges import Allowed, Edges, Proof
@@ -131,7 +131,9 @@ class Bodies:
 
     def described(self, column: int) -> str:
         """Return the name of one value of a configuration, for error messages."""
-        part = next(part for part in self.parts if column in range(self.dof)[part.columns])
+        part = next((part for part in self.parts if column in range(self.dof)[part.columns]), None)
+        if part is None:  # a goal of inverse kinematics, or a pose of no body
+            return f"value {column}"
         index, scene = range(self.dof)[part.columns].index(column), part.body.scene
         if part.dofs:
             return f"joint '{scene.joint_of_dof(part.dofs[index]).name}'"
@@ -285,6 +287,8 @@ def _part(simulation: Simulation, group: Group) -> Part:
             raise ArgumentError(f"group '{group.name}': '{group.body}' has {body.dof} DOFs")
         return Part(body, group.columns, dofs, 0, Z_AXIS)
     parts, axis = affine_parts(group)
+    if RaveGetAffineDOF(parts) != group.dof:
+        raise ArgumentError(f"group '{group.name}': has {group.dof} values, and should have {RaveGetAffineDOF(parts)}")
     return Part(body, group.columns, (), parts, axis)
 
 

@@ -55,6 +55,19 @@ RETIMERS: Mapping[str, Callable[[Mapping[str, str]], Profile | ToppRa | Spline]]
 }
 """Velocity profiles of the retimers, by lower-case name."""
 
+
+def profile_of(name: str, options: Mapping[str, str]) -> Profile | ToppRa | Spline:
+    """Return the velocity profile of a retimer.
+
+    Raises:
+        RetimingError: the options ask for another interpolation.
+    """
+    profile, wanted = RETIMERS[name.lower()](options), options.get("interpolation", "")
+    if wanted not in {"", profile.interpolation}:
+        raise RetimingError(f"the interpolation is '{profile.interpolation}', and should be '{wanted}'")
+    return profile
+
+
 SMOOTHERS: Mapping[str, Callable[[], Profile]] = {
     "linearsmoother": Linear,
     "shortcut_linear": Linear,
@@ -116,10 +129,7 @@ class Processor:
 
     def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> Waypoints:
         """Time waypoints within the velocity and acceleration limits. Collisions are ignored."""
-        profile, options, coordinates = RETIMERS[self.name](self.options), self.options, self.limits.coordinates
-        wanted = options.get("interpolation", "")
-        if wanted not in {"", profile.interpolation}:
-            raise RetimingError(f"the interpolation is '{profile.interpolation}', and should be '{wanted}'")
+        profile, options, coordinates = profile_of(self.name, self.options), self.options, self.limits.coordinates
         is_base = bool(coordinates.translation or coordinates.rotation) and not self._is_of_goals()
         if is_base and profile.interpolation != "linear":
             raise RetimingError("poses of bodies can be retimed by the LinearTrajectoryRetimer only")
@@ -130,7 +140,13 @@ class Processor:
             if group is None:
                 raise RetimingError("the times should be kept, and there are none")
             deltas = path.data[:, group.offset]
-        velocities = rows(derived(self.groups, 1)) if flag(options, "hasvelocities") else None
+        velocities = None
+        if flag(options, "hasvelocities") and profile.interpolation != "linear":  # OpenRAVE's linear one has its own
+            rates = derived(self.groups, 1)
+            for group in rates:
+                if find_compatible(path.groups, group.name, exact=True) is None:
+                    raise RetimingError(f"the velocities should be kept, and there is no group '{group.name}'")
+            velocities = rows(rates)
         return self._written(profile, self._timed(profile, rows(self.groups), deltas, velocities))
 
     def _timed(

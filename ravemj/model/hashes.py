@@ -1,4 +1,4 @@
-"""Hashes of body structures, independent of names, world poses and limits."""
+"""Hashes of body structures, independent of world poses, limits and names except those of joints of grippers."""
 
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
@@ -9,28 +9,34 @@ from ravemj.model.joints import directions_at, relative_pose
 from ravemj.model.manipulators import chain
 from ravemj.model.scene import Geometry, Joint, KinBody, Manipulator, Mesh
 
-DIGITS = 8
-"""Number of decimals in hashes, so that rounding errors have no effect."""
+DIGITS = 4
+"""Number of decimals in hashes, which is OpenRAVE's."""
 
 
 def of_body(body: KinBody) -> str:
-    """Return the hash of the links, their shapes and the joints: 32 hexadecimal digits."""
-    return _digest(*_structure(body))
+    """Return the hash of the links, their shapes and masses, and the joints: 32 hexadecimal digits."""
+    return _digest(_structure(body), _masses(body))
 
 
 def text_of_body(body: KinBody) -> str:
     """Return the text that ``of_body`` hashes."""
-    return repr(_plain(_structure(body)))
+    return repr(_plain((_structure(body), _masses(body))))
 
 
 def _structure(body: KinBody) -> tuple[object, ...]:
     return _links(body), [_joint(joint) for joint in body.all_joints]
 
 
-def of_robot(body: KinBody, structure: str) -> str:
-    """Return the hash of a robot with its manipulators and sensors; ``structure`` is ``of_body`` of it."""
-    tools = [_tool(arm) for arm in body.manipulators]
-    return _digest(structure, tools, [(sensor.link, sensor.T_link_sensor, sensor.type) for sensor in body.sensors])
+def _masses(body: KinBody) -> list[object]:
+    return [(link.inertial.mass, link.inertial.com, link.inertial.inertia) for link in body.links]
+
+
+def of_robot(body: KinBody) -> str:
+    """Return the hash of a robot with its manipulators and sensors; masses do not matter there, as in OpenRAVE."""
+    tools = [(_tool(arm), _gripper(body, arm)) for arm in body.manipulators]
+    return _digest(
+        _structure(body), tools, [(sensor.link, sensor.T_link_sensor, sensor.type) for sensor in body.sensors]
+    )
 
 
 def of_arm(body: KinBody, arm: Manipulator) -> str:
@@ -49,7 +55,12 @@ def of_inverse_kinematics(body: KinBody, arm: Manipulator, kind: str, *, tool: b
 
 def of_manipulator(body: KinBody, arm: Manipulator) -> str:
     """Return the hash of a manipulator, including the gripper."""
-    return _digest(of_arm(body, arm), [body.joints[index].kind for index in arm.gripper_joints], arm.chucking_direction)
+    return _digest(of_arm(body, arm), _gripper(body, arm))
+
+
+def _gripper(body: KinBody, arm: Manipulator) -> tuple[object, ...]:
+    """Return the joints of a gripper by their names, as OpenRAVE does for no other joint, and how they close."""
+    return [body.joints[index].name for index in arm.gripper_joints], arm.chucking_direction
 
 
 def _way(body: KinBody, arm: Manipulator) -> list[object]:

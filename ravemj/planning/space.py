@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
 
 ON_LIMIT = 1e-12
 """Relative rounding tolerance of limits [rad or m]."""
@@ -47,6 +48,10 @@ class Coordinates:
         slack = tolerance * np.maximum(1.0, np.abs(values))
         beyond = (values < lower - slack) | (values > upper + slack)
         return beyond & ~self.circular | ~np.isfinite(values)
+
+
+_MOST_STEPS = 1_000_000
+"""Most tests of a line; each takes about 10 µs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +96,16 @@ class Space:
         return int(wrong.argmax()) if wrong.any() else None
 
     def steps(self, difference: Floats) -> int:
-        """Return the number of steps of a line that do not exceed the resolution; at least 1."""
-        return max(1, int(np.ceil(np.abs(difference / self.resolution).max(initial=0.0) - 1e-9)))
+        """Return the number of steps of a line that do not exceed the resolution; at least 1.
+
+        Raises:
+            ArgumentError: there are more than anybody waits for.
+        """
+        steps = np.abs(difference / self.resolution).max(initial=0.0)
+        if not steps <= _MOST_STEPS:
+            message = f"resolution: a line has {steps:.3g} steps of it, and should have {_MOST_STEPS} at most"
+            raise ArgumentError(message)
+        return max(1, int(np.ceil(steps - 1e-9)))
 
     def sample(self, random: np.random.Generator) -> Floats:
         """Return a random configuration within the limits."""

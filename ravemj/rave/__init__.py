@@ -7,11 +7,9 @@ objects is ravemj's own.
 import importlib
 import re
 from pathlib import Path
-from types import FunctionType
 
-from ravemj.core.argument_errors import explained
+from ravemj.core.api_object import published
 from ravemj.core.handles import Handle as UserData
-from ravemj.core.signatures import show_as_written
 from ravemj.errors import RavemjError
 
 _LINES = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
@@ -32,9 +30,5 @@ def __getattr__(name: str) -> object:
     """Import the module of a name on first access."""
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'ravemj.rave' has no attribute '{name}'")
-    value = getattr(importlib.import_module(_MODULE_OF[name]), name)
-    if isinstance(value, FunctionType):
-        value = explained(value)
-        value.__module__ = __name__  # where pickle finds it
-    show_as_written(value)
+    value = published(getattr(importlib.import_module(_MODULE_OF[name]), name), __name__)
     return globals().setdefault(name, value)

@@ -291,9 +291,13 @@ class IdealController(Controller):
             raise RavemjError("SetPath: traj is None; Reset() stops a path")
         if not checked_kind(traj, Trajectory, "SetPath: traj").GetNumWaypoints():
             raise ArgumentError("SetPath: traj has no waypoints")
+        if not (np.isfinite(traj.GetAllWaypoints2D()).all() and traj.GetDuration() >= 0):
+            raise ArgumentError("SetPath: traj should have finite values and a duration of 0 s or more")
         with self._robot.simulation_state.simulation.lock:
+            start = traj.Sample(0.0)  # raises for a trajectory without times, before anything has changed
             path = self._prepared(traj)
-            path.trajectory.Sample(0.0)  # raises for a trajectory without times, before anything has changed
+            if path.moves_base:  # raises for poses that are none
+                traj.GetConfigurationSpecification().ExtractTransform(None, start, self._robot)
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
             self._last_timestep, self._has_problem = 0.0, False

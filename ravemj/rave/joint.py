@@ -407,12 +407,13 @@ class Joint(Member):
         self._set_axes("SetHardJerkLimits", hard_max_jerk=maxlimits)
 
     def GetTorqueLimits(self) -> Floats:
-        """Return the torque or force limits [N m or N], shape (axes,); 0 if the file has none."""
-        return self._of_axes("max_torque")
+        """Return the torque or force limits [N m or N], shape (axes,); 0 if the file has none. Motors do not count."""
+        return self._of_axes("own_torque")
 
     def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:
         """Set ``maxlimits``, the torque or force limits [N m or N], shape (axes,)."""
-        self._set_axes("SetTorqueLimits", max_torque=maxlimits)
+        has_motor = bool(self._scene.axes[0].speed_torques) or self._scene.axes[0].joint_torque is not None
+        self._set_axes("SetTorqueLimits", **{"joint_torque" if has_motor else "max_torque": maxlimits})
 
     def GetMaxVel(self, axis: int = 0) -> float:
         """Return the velocity limit of ``axis`` [rad/s or m/s]."""
@@ -439,8 +440,15 @@ class Joint(Member):
         return self._axis(axis).hard_max_jerk
 
     def GetMaxTorque(self, axis: int = 0) -> float:
-        """Return the torque or force limit of ``axis`` [N m or N]; 0 if the file has none."""
-        return self._axis(axis).max_torque
+        """Return the torque or force limit of ``axis`` [N m or N]; 0 if the file has none.
+
+        If the joint has a motor, the limit is that of the motor at the present speed.
+        """
+        limited = self._axis(axis)
+        if not limited.speed_torques:
+            return limited.max_torque
+        speed = abs(float(self.GetVelocities()[axis]))
+        return float(np.interp(speed, *zip(*limited.speed_torques, strict=True)))
 
     def GetWeights(self) -> Floats:
         """Return the weights in distances between configurations, shape (axes,)."""

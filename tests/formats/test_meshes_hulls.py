@@ -196,6 +196,20 @@ def test_a_concave_mesh_becomes_convex_pieces(tmp_path, monkeypatch):
     assert decompose(ell, max_pieces=2) == pieces  # from the cache
 
 
+@pytest.mark.parametrize("width", [1e-3, 0.3, 30.0, 3e3, 3e5, 3e7])
+def test_mujoco_loads_needles_or_they_are_left_out(width):
+    far = 4294967295.0
+    mesh = Mesh(
+        np.array([[0.0, 0, 0], [0.4, 0, 0], [far, width, far], [0, 0, width]]),
+        np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]),
+    )
+    if width < 100:
+        assert collision_form(mesh) == "none"
+    if collision_form(mesh) != "none":
+        text = '<mujoco><asset><mesh name="a" file="a.obj" inertia="shell"/></asset><worldbody/></mujoco>'
+        mujoco.MjModel.from_xml_string(text, {"a.obj": write_obj(mesh).encode()})
+
+
 def test_flat_meshes_are_not_cut(monkeypatch):
     monkeypatch.setattr(decomposition, "_pieces", None)
     assert decompose(SQUARE) == (SQUARE,)

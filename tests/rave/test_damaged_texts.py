@@ -5,34 +5,12 @@ import warnings
 import zipfile
 
 import pytest
+from text_fuzzing import PARAMETERS, TextFuzzer, TextTrial, damaged, damaged_bytes
 
 import ravemj
 from ravemj import Planner, RaveCreateTrajectory, planningutils
 
 SEEDS = [91101, 91102, 91103]
-PIECES = (
-    "0 -1 1e400 nan inf 1e21 " + "9" * 400 + " \0 \u00e9 <group/> </data> <data> <configuration> dof='0' offset='7' "
-    'deltatime iswaypoint "linear" affine_transform ikparam_values ]]> <!-- &amp; &x; _nmaxiterations _fsteplength'
-).split(" ")
-PARAMETERS = (
-    "<_nmaxiterations>10</_nmaxiterations><_fsteplength>0.1</_fsteplength><hastimestamps>0</hastimestamps>"
-    "<interpolation>linear</interpolation><pointtolerance>0.2</pointtolerance><multidofinterp>2</multidofinterp>"
-)
-
-
-def damaged(text: str, chance: random.Random) -> str:
-    for _ in range(chance.randint(1, 4)):
-        place, end = sorted(chance.randrange(len(text) + 1) for _ in range(2))
-        match chance.randrange(4):
-            case 0:
-                text = text[:place] + text[min(end, place + 12) :]
-            case 1:
-                text = text[:place] + chance.choice(PIECES) + text[place:]
-            case 2:
-                text = text[:place] + text[place:end] * 2 + text[end:]
-            case _:
-                text = text[:place] + chr(chance.randrange(1, 0x250)) + text[place + 1 :]
-    return text
 
 
 @pytest.fixture
@@ -56,10 +34,7 @@ def read_trajectories(path, chance, count):
         other = RaveCreateTrajectory(made.GetEnv(), "")
         content = damaged(text, chance)
         if chance.random() < 0.5:
-            content = bytearray(data[: chance.randrange(len(data) + 1)] if chance.random() < 0.3 else data)
-            for _ in range(chance.randint(1, 4) if content else 0):
-                content[chance.randrange(len(content))] = chance.randrange(256)
-            content = bytes(content)
+            content = damaged_bytes(data, chance)
         try:
             other.deserialize(content)
             taken += 1
@@ -128,6 +103,16 @@ def run(seed, path, folder, count):
         assert read_trajectories(path, chance, count) < count
         assert read_parameters(path, chance, count) < count
         read_archives(folder, chance, count // 4)
+
+
+@pytest.mark.parametrize("seed", [4211, *(pytest.param(seed, marks=pytest.mark.stress) for seed in range(4212, 4242))])
+def test_random_trajectories_and_parameters(seed):
+    fuzzer, taken = TextFuzzer(seed), 0
+    for number in range(300 if seed == 4211 else 3000):
+        files = fuzzer.make(number)
+        assert fuzzer.make(number) == files
+        taken += TextTrial().run(files).links
+    assert taken > 100
 
 
 @pytest.mark.parametrize("name", ["_nmaxiterations", "_nmaxplanningtime", "_fsteplength", "_nrandomgeneratorseed"])

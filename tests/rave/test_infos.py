@@ -183,9 +183,10 @@ def test_a_follower_and_a_circular_joint(env):
 
 
 def test_a_motor_limits_the_torque(made):
-    motor = ravemj.ElectricMotorActuatorInfo(gear_ratio=100, nominal_torque=0.5)
+    motor = ravemj.ElectricMotorActuatorInfo(gear_ratio=100, max_instantaneous_torque=0.5)
     body = made(joint_info(ravemj.JointType.Hinge, _infoElectricMotor=motor, _vmaxtorque=[3]))
-    assert body.GetDOFTorqueLimits() == 50
+    assert body.GetDOFTorqueLimits() == 3
+    assert body.GetDOFMaxTorque() == 50
 
 
 def test_masses_about_turned_axes(made):

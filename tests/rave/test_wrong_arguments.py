@@ -1,5 +1,6 @@
 """Mistakes that scripts make: each error says what was found, and what was expected."""
 
+import inspect
 import math
 
 import numpy as np
@@ -189,3 +190,69 @@ def test_pythons_own_errors_name_one_of_several_arguments(name, tmp_path, monkey
                 named = any(word in str(error) for word in (*arguments, function))
                 assert named or "pose:" in str(error), (function, row, error)  # noqa: PT017 - of many calls
     env.Destroy()
+
+
+def of_helpers(env, robot):
+    pose = ravemj.IkParameterizationType.Transform6D
+    return {
+        "ik model": ravemj.databases.inversekinematics.InverseKinematicsModel(robot, pose),
+        "statistics": ravemj.databases.linkstatistics.LinkStatisticsModel(robot),
+        "retimer": ravemj.planningutils.ActiveDOFTrajectoryRetimer(robot, "LinearTrajectoryRetimer"),
+        "fingers": ravemj.interfaces.TaskManipulation(robot),
+        "motions": ravemj.interfaces.BaseManipulation(robot),
+        "parameters": ravemj.Planner.PlannerParameters(),
+        "goal": ravemj.IkParameterization(np.eye(4), pose),
+    } | {module.__name__: module for module in (ravemj.planningutils, ravemj.misc, ravemj.interfaces, ravemj.databases)}
+
+
+OTHERS = {
+    "Environment": lambda env, robot: env,
+    "Robot": lambda env, robot: robot,
+    "KinBody": lambda env, robot: robot,
+    "Manipulator": lambda env, robot: robot.GetActiveManipulator(),
+    "Trajectory": trajectory,
+    "ConfigurationSpecification": lambda env, robot: robot.GetActiveConfigurationSpecification(),
+    "int": lambda env, robot: 0,
+    "float": lambda env, robot: 0.5,
+    "str": lambda env, robot: "x",
+    "ArrayLike": lambda env, robot: np.zeros(6),
+}
+"""What stands beside a wrong argument, by the annotation."""
+SLOW = {"SetViewerUserThread", "InitOpenRAVELogging", "autogenerate", "generate", "testik", "perftiming"}
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("wrong", [*WRONG[:5], *(pytest.param(one, marks=pytest.mark.stress) for one in WRONG[5:])])
+def test_functions_and_helpers_of_submodules_name_an_argument(wrong, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    env = ravemj.Environment()
+    env.Load(ravemj.model_path("puma560"))
+    robot, calls = env.GetRobots()[0], 0
+    for thing in of_helpers(env, robot).values():
+        for name in sorted({*getattr(thing, "__all__", dir(thing))} - SLOW):
+            function = getattr(thing, name)
+            if name[0] == "_" or not callable(function):
+                continue
+            for argument, given in rows_of(function, env, robot, wrong):
+                calls += 1
+                try:
+                    function(**given)
+                except (ravemj.openrave_exception, ravemj.PlanningError, NotImplementedError, AssertionError):
+                    pass
+                except (TypeError, AttributeError, ValueError, LookupError, ArithmeticError) as error:
+                    named = any(word in str(error) for word in (*given, name))
+                    assert named, (name, argument, wrong, error)  # noqa: PT017 - of many calls
+    assert calls > 150
+    env.Destroy()
+
+
+def rows_of(function, env, robot, wrong):
+    """Return the arguments of calls with a wrong one: its name, and all of them."""
+    known = [one for one in inspect.signature(function).parameters.values() if one.kind not in (2, 4)]
+    beside = {one.name: stand_in(str(one.annotation), env, robot) for one in known if one.default is one.empty}
+    return [(one.name, beside | {one.name: wrong}) for one in known]
+
+
+def stand_in(annotation, env, robot):
+    words = [word for word in OTHERS if word in annotation]
+    return OTHERS[words[0]](env, robot) if words else None

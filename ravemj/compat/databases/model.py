@@ -3,7 +3,7 @@
 from typing import ClassVar, NoReturn
 
 from ravemj.compat.refusal import lacking
-from ravemj.core.signatures import show_as_written
+from ravemj.core.api_object import published
 from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.rave.environment import Environment
 from ravemj.rave.robot import Robot
@@ -34,7 +34,7 @@ class DatabaseGenerator:
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        show_as_written(cls)
+        published(cls, __name__)
 
     def __init__(self, robot: Robot, *arguments: object, **named: object) -> None:
         del arguments, named
@@ -82,3 +82,6 @@ class DatabaseGenerator:
         if name.startswith("_"):
             raise AttributeError(name)
         raise UnsupportedError(f"{type(self).__name__}.{name}", self.capability)
+
+
+published(DatabaseGenerator, __name__)

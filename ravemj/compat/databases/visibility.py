@@ -2,6 +2,7 @@
 
 from typing import Self
 
+from ravemj.core.api_object import published
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
@@ -61,3 +62,7 @@ class ArmVisibility(GripperVisibility):
         if base is None or effector is None:
             return []
         return self.manip.GetRobot().GetChain(base.GetIndex(), effector.GetIndex(), returnjoints=False)
+
+
+for _kind in (GripperVisibility, ArmVisibility):
+    published(_kind, __name__)

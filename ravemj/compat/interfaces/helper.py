@@ -26,8 +26,6 @@ class Helper(ApiObject):
         args: Arguments of the module.
     """
 
-    _names_wrong_arguments = False  # scripts inspect the arguments with inspect.getfullargspec, which wrappers hide
-
     def __init__(
         self,
         robot: Robot,

@@ -12,7 +12,7 @@ from ravemj.compat.misc.scripts import (
     mkdir_recursive,
     myproduct,
 )
-from ravemj.core.signatures import show_as_written
+from ravemj.core.api_object import published
 from ravemj.geometry_functions.solids import TSP, ComputeBoxMesh, ComputeCylinderYMesh, ComputeGeodesicSphereMesh
 
 __all__ = [
@@ -39,4 +39,4 @@ __all__ = [
 ]
 
 for _name in __all__:
-    show_as_written(globals()[_name])
+    globals()[_name] = published(globals()[_name], __name__)

@@ -34,7 +34,7 @@ from ravemj.compat.planningutils.retiming import (
     SmoothAffineTrajectory,
     SmoothTrajectory,
 )
-from ravemj.core.signatures import show_as_written
+from ravemj.core.api_object import published
 
 __all__ = [
     "ActiveDOFTrajectoryRetimer",
@@ -67,4 +67,4 @@ __all__ = [
 ]
 
 for _name in __all__:
-    show_as_written(globals()[_name])
+    globals()[_name] = published(globals()[_name], __name__)

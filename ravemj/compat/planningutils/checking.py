@@ -27,6 +27,9 @@ from ravemj.rave.trajectory import Trajectory
 _CHECK = "DynamicsCollisionConstraint"
 _LINES = "constraints of accelerations, torques and perturbations along lines"
 
+_MOST_SAMPLES = 10_000_000
+"""Most samples of a trajectory; ten times as many would fill the memory."""
+
 
 def VerifyTrajectory(
     parameters: PlannerParameters | None, trajectory: Trajectory, samplingstep: float = 0.002, releasegil: bool = True
@@ -65,6 +68,9 @@ def VerifyTrajectory(
 
 def _samples(traj: Trajectory, spec: ConfigurationSpecification, step: float) -> Samples:
     own, end = traj.GetConfigurationSpecification(), traj.GetDuration()
+    if not abs(end) / step <= _MOST_SAMPLES:
+        least = abs(end) / _MOST_SAMPLES
+        raise ArgumentError(f"samplingstep: is {step:g} s for {end:g} s, and should be {least:g} s or more")
     stops = np.cumsum([own.ExtractDeltaTime(row) or 0.0 for row in traj.GetAllWaypoints2D()])
     times = np.unique(np.concatenate([np.arange(0.0, end, step), stops]))
     rates: list[Floats | None] = []

@@ -15,8 +15,6 @@ from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import DELTATIME
 from ravemj.trajectories.interpolation import HELD
 
-_ODD_DERIVATIVES, _DERIVATIVES = ("velocities", "jerks"), ("velocities", "accelerations", "jerks")
-
 
 def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSpecification) -> None:
     """Change the layout of a trajectory in place; the bodies' present state supplies missing values.
@@ -34,8 +32,8 @@ def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSp
 def ReverseTrajectory(traj: Trajectory) -> Trajectory:
     """Return the reversed trajectory.
 
-    The times between waypoints are kept, and velocities change their sign. Derivatives with the interpolation ``next``
-    move to the other end of their segment.
+    The times between waypoints are kept, and velocities change their sign. Velocities with the interpolation ``next``
+    move to the other end of their segment. All other groups are those of the waypoint, as in OpenRAVE.
 
     Example:
         >>> back = planningutils.ReverseTrajectory(traj)
@@ -43,13 +41,16 @@ def ReverseTrajectory(traj: Trajectory) -> Trajectory:
     spec = traj.GetConfigurationSpecification()
     rows = traj.GetAllWaypoints2D()[::-1]
     for group in spec.GetGroups():
-        of_segments = group.kind.endswith(_DERIVATIVES) and group.interpolation == "next"
-        if group.kind == DELTATIME or of_segments:  # they belong to the segment that ends at their waypoint
+        is_velocity = "_velocities" in group.name
+        if group.kind == DELTATIME or (is_velocity and group.interpolation == "next"):
+            # it belongs to the segment that ends at its waypoint
             rows[:, group.columns] = np.roll(rows[:, group.columns], 1, axis=0)
             rows[:1, group.columns] = 0
-        if group.kind.endswith(_ODD_DERIVATIVES):
+        if is_velocity:
             rows[:, group.columns] *= -1
-    return _made(traj, spec, rows)
+    back = _made(traj, spec, rows)
+    back.SetDescription(traj.GetDescription())
+    return back
 
 
 def MergeTrajectories(trajectories: Sequence[Trajectory]) -> Trajectory | None:

@@ -1,20 +1,21 @@
 """Retiming and smoothing of trajectories."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from numpy.typing import ArrayLike
 
+from ravemj.compat.planningutils.editing import ConvertTrajectorySpecification
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.planning import PlannerParameters, PlannerStatus
 from ravemj.rave.planning.names import alone, needed_planner, of_bodies, run_planner, scaled
+from ravemj.rave.planning.planner import PlannerStatusCode
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 
-_RETIMER = "LinearTrajectoryRetimer"
 _SMOOTHER = "ParabolicSmoother"
 
 
@@ -29,13 +30,16 @@ def RetimeActiveDOFTrajectory(
 ) -> PlannerStatus:
     """Time a trajectory of the active DOFs within their limits; collisions are ignored.
 
+    A single waypoint keeps all its groups and gets the time 0, whatever the retimer, as in OpenRAVE.
+
     Args:
         trajectory: Changed in place; inactive DOFs are removed.
         robot: The robot of the active DOFs and limits.
         hastimestamps: Whether to keep existing times if the limits allow.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer, ``ParabolicTrajectoryRetimer`` for instance; empty for ``LinearTrajectoryRetimer``.
+        plannername: The retimer, ``ParabolicTrajectoryRetimer`` for instance; empty for this one if the trajectory is
+            quadratic, else for ``LinearTrajectoryRetimer``.
         plannerparameters: Its parameters as XML text.
 
     Returns:
@@ -54,10 +58,10 @@ def RetimeActiveDOFTrajectory(
         >>> trajectory.GetDuration()
         0.1
     """
-    checked_kind(trajectory, Trajectory, "RetimeActiveDOFTrajectory: trajectory")
     extra = stamped(hastimestamps, plannerparameters)
-    params = _active(robot, extra, maxvelmult, maxaccelmult)
-    return run_planner(trajectory, params, plannername or _RETIMER)
+    return _planned(
+        trajectory, lambda: _active(robot, extra, maxvelmult, maxaccelmult), plannername or _retimer(trajectory)
+    )
 
 
 def RetimeTrajectory(
@@ -75,12 +79,15 @@ def RetimeTrajectory(
         hastimestamps: Whether to keep existing times if the limits allow.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer; empty for ``LinearTrajectoryRetimer``.
+        plannername: The retimer; empty for the same as there.
         plannerparameters: Its parameters as XML text.
     """
-    checked_kind(trajectory, Trajectory, "RetimeTrajectory: trajectory")
-    params = of_bodies(trajectory, stamped(hastimestamps, plannerparameters), maxvelmult, maxaccelmult)
-    return run_planner(trajectory, params, plannername or _RETIMER)
+    extra = stamped(hastimestamps, plannerparameters)
+    return _planned(
+        trajectory,
+        lambda: of_bodies(trajectory, extra, maxvelmult, maxaccelmult),
+        plannername or _retimer(trajectory),
+    )
 
 
 def RetimeAffineTrajectory(
@@ -106,9 +113,12 @@ def RetimeAffineTrajectory(
     Raises:
         openrave_exception: the number of limits is wrong (``InvalidArguments``).
     """
-    checked_kind(trajectory, Trajectory, "RetimeAffineTrajectory: trajectory")
-    params = _affine(trajectory, maxvelocities, maxaccelerations, stamped(hastimestamps, plannerparameters))
-    return run_planner(trajectory, params, plannername or _RETIMER)
+    extra = stamped(hastimestamps, plannerparameters)
+    return _planned(
+        trajectory,
+        lambda: _affine(trajectory, maxvelocities, maxaccelerations, extra),
+        plannername or _retimer(trajectory),
+    )
 
 
 def SmoothActiveDOFTrajectory(
@@ -132,9 +142,8 @@ def SmoothActiveDOFTrajectory(
     Returns:
         The status; after a failure the trajectory is unchanged.
     """
-    checked_kind(trajectory, Trajectory, "SmoothActiveDOFTrajectory: trajectory")
-    return run_planner(
-        trajectory, _active(robot, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER
+    return _planned(
+        trajectory, lambda: _active(robot, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER
     )
 
 
@@ -154,9 +163,10 @@ def SmoothTrajectory(
         plannername: The smoother; empty for ``ParabolicSmoother``.
         plannerparameters: Its parameters as XML text.
     """
-    checked_kind(trajectory, Trajectory, "SmoothTrajectory: trajectory")
-    return run_planner(
-        trajectory, of_bodies(trajectory, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER
+    return _planned(
+        trajectory,
+        lambda: of_bodies(trajectory, plannerparameters, maxvelmult, maxaccelmult),
+        plannername or _SMOOTHER,
     )
 
 
@@ -176,9 +186,11 @@ def SmoothAffineTrajectory(
         plannername: The smoother; empty for ``LinearSmoother``, the only one for poses.
         plannerparameters: Its parameters as XML text.
     """
-    checked_kind(trajectory, Trajectory, "SmoothAffineTrajectory: trajectory")
-    params = _affine(trajectory, maxvelocities, maxaccelerations, plannerparameters)
-    return run_planner(trajectory, params, plannername or "LinearSmoother")
+    return _planned(
+        trajectory,
+        lambda: _affine(trajectory, maxvelocities, maxaccelerations, plannerparameters),
+        plannername or "LinearSmoother",
+    )
 
 
 class ActiveDOFTrajectoryRetimer(ApiObject):
@@ -190,7 +202,7 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
         plannerparameters: Its parameters as XML text.
 
     Raises:
-        openrave_exception: the retimer is unknown (``Assert``).
+        openrave_exception: the retimer is unknown (``Assert``), or does not take the parameters (``InvalidArguments``).
     """
 
     _default: ClassVar[str] = ""
@@ -201,6 +213,8 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
         name = plannername or self._default
         self._planner = needed_planner(robot.GetEnv(), name) if name else None
         self._extra = plannerparameters
+        if self._planner is not None and not self._planner.InitPlan(robot, self._parameters(plannerparameters)):
+            raise ArgumentError(f"plannerparameters: {name} does not take '{plannerparameters}'")
 
     def PlanPath(self, traj: Trajectory, hastimestamps: bool = False, releasegil: bool = True) -> PlannerStatus:
         """Retime a trajectory in place; see ``RetimeActiveDOFTrajectory``.
@@ -214,14 +228,19 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
         return self._run(traj, stamped(hastimestamps, self._extra))
 
     def _run(self, traj: Trajectory, extra: str) -> PlannerStatus:
+        if traj.GetNumWaypoints() == 1:
+            return _of_one_waypoint(traj)
         if self._planner is None:
             message = "ActiveDOFTrajectoryRetimer: plannername is empty; name one, such as ParabolicTrajectoryRetimer"
             raise RavemjError(message, ErrorCode.Assert)
+        self._planner.InitPlan(self._robot, self._parameters(extra))
+        return self._planner.PlanPath(traj)
+
+    def _parameters(self, extra: str) -> PlannerParameters:
         params = PlannerParameters()
         params.SetConfigurationSpecification(self._robot.GetEnv(), self._spec)
         params.SetExtraParameters(alone(extra))
-        self._planner.InitPlan(self._robot, params)
-        return self._planner.PlanPath(traj)
+        return params
 
 
 class ActiveDOFTrajectorySmoother(ActiveDOFTrajectoryRetimer):
@@ -280,6 +299,29 @@ class AffineTrajectoryRetimer(ApiObject):
         del releasegil
         keeps = maxjerks if isinstance(maxjerks, bool) else hastimestamps
         return RetimeAffineTrajectory(traj, maxvelocities, maxaccelerations, keeps, self._name, self._extra)
+
+
+def _planned(traj: Trajectory, params: Callable[[], PlannerParameters], name: str) -> PlannerStatus:
+    return _of_one_waypoint(traj) if traj.GetNumWaypoints() == 1 else run_planner(traj, params(), name)
+
+
+def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
+    """Add the time to a trajectory of one waypoint, as OpenRAVE does whatever the planner."""
+    spec = traj.GetConfigurationSpecification()
+    spec.AddDeltaTimeGroup()
+    ConvertTrajectorySpecification(traj, spec)
+    return PlannerStatus("there is nothing to do with one waypoint", PlannerStatusCode.HasSolution)
+
+
+def _retimer(traj: Trajectory) -> str:
+    """Return OpenRAVE's retimer of a trajectory, by the interpolation of its joint values, or else of its poses."""
+    groups = checked_kind(traj, Trajectory, "trajectory").GetConfigurationSpecification().GetGroups()
+    of_joints = [group.interpolation for group in groups if group.name.startswith("joint_values")]
+    of_poses = [
+        group.interpolation for group in groups if group.name.startswith(("affine_transform", "ikparam_values"))
+    ]
+    is_quadratic = [*of_joints[:1], *of_poses[-1:]][:1] == ["quadratic"]
+    return "ParabolicTrajectoryRetimer" if is_quadratic else "LinearTrajectoryRetimer"
 
 
 def _active(robot: Robot, extra: str, maxvelmult: float, maxaccelmult: float) -> PlannerParameters:

@@ -18,7 +18,12 @@ from ravemj.model.scene.mechanism import RARE_NUMBERS
 
 _Part = TypeVar("_Part", LinkBuilder, JointBuilder)
 
-_NUMBERS = {"values": "reference", "torques": "max_torque", **{name: name for name in RARE_NUMBERS}}
+_NUMBERS = {
+    "values": "reference",
+    "torques": "max_torque",
+    "own_torques": "joint_torque",
+    **{name: name for name in RARE_NUMBERS},
+}
 
 
 @dataclass(frozen=True, slots=True)

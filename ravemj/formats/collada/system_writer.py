@@ -209,7 +209,13 @@ class SystemWriter:
             attributes = {
                 "values": values if any(values) else None,
                 "torques": torques if len(set(torques)) > 1 else None,
+                "own_torques": None,
             }
+            if any(axis.joint_torque is not None for axis in joint.axes):
+                attributes["own_torques"] = [axis.own_torque for axis in joint.axes]
+            if any(axis.speed_torques for axis in joint.axes):
+                message = f"the motor of joint '{joint.name}' has torque limits that depend on its speed; they are lost"
+                self._diagnostics.warn("not-written", message, joint.source)
             for name in RARE_NUMBERS:
                 numbers = [getattr(axis, name) for axis in joint.axes]
                 attributes[name] = numbers if numbers != [getattr(_PLAIN, name)] * len(numbers) else None

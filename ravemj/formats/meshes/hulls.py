@@ -21,14 +21,17 @@ _SAMPLE = 64  # triangles
 _forms: WeakKeyDictionary[Mesh, CollisionForm] = WeakKeyDictionary()
 """Cache of forms, while their meshes are in use. A lookup hashes the mesh, whose digest all callers need anyway."""
 
+_NEEDLE = 1e-7
+"""Width of a mesh relative to its length below which its inertia about its axis is lost in rounding."""
+
 
 def collision_form(mesh: Mesh) -> CollisionForm:
     """Classify how MuJoCo can use a mesh.
 
     Returns:
         ``hull`` if the mesh has a convex hull with volume, and so can collide; ``visual`` if it is flat, and so can
-        only be drawn; ``none`` if it has no area or is so large that MuJoCo would not load it. MuJoCo loads all
-        meshes of the first two kinds only with ``inertia="shell"``.
+        only be drawn; ``none`` if it has no area, is a line, or is so large that MuJoCo would not load it. MuJoCo loads
+        all meshes of the first two kinds only with ``inertia="shell"``.
     """
     form = _forms.get(mesh)
     if form is None:
@@ -53,6 +56,8 @@ def _form(mesh: Mesh) -> CollisionForm:
     points = mesh.vertices[used]
     _, axes = np.linalg.eigh(_covariance(points))
     extents = np.ptp(points @ axes, axis=0)
+    if np.median(extents) <= _NEEDLE * extents.max():
+        return "none"
     noise = _ROUNDING * float(np.abs(points).max())
     return "hull" if len(points) >= 4 and extents.min() > max(_FLAT * extents.max(), noise) else "visual"
 

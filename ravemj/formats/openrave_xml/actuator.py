@@ -1,6 +1,7 @@
 """``<actuator>``: the motor of a joint, which gives the torque limit, the armature and friction."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -8,7 +9,7 @@ from ravemj.errors import SourceError
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tags import Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import number
+from ravemj.formats.openrave_xml.values import number, numbers
 from ravemj.model.scene import Axis
 
 
@@ -18,15 +19,21 @@ class _Data:
 
     context: Context
     numbers: dict[str, float] = field(default_factory=dict[str, float])
+    points: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
 
     def read(self, element: Element) -> None:
         self.numbers[element.tag] = number(element, self.context.diagnostics)
+
+    def add_point(self, element: Element) -> None:
+        speed, torque = numbers(element, 2, self.context.diagnostics)
+        self.points.append((speed, torque))
 
 
 ACTUATOR_TAGS: dict[str, Tag[_Data]] = {
     "gear_ratio": Tag(_Data.read, "motor turns for each of the joint"),
     "nominal_torque": Tag(_Data.read, "limit of the torque [N m], where there is no other"),
     "max_instantaneous_torque": Tag(_Data.read, "limit of the torque [N m]"),
+    "max_speed_torque_point": Tag(_Data.add_point, "turns of the motor per second and limit of the torque [N m] there"),
     "rotor_inertia": Tag(_Data.read, "[kg m²]; in inverse dynamics, and armature of actuators in MJCF"),
     "coloumb_friction": Tag(_Data.read, "[N m] at the joint, in inverse dynamics"),
     "viscous_friction": Tag(_Data.read, "[N m s/rad] at the joint, in inverse dynamics"),
@@ -39,7 +46,6 @@ ACTUATOR_IGNORED = reasons(
     "no_load_speed",
     "stall_torque",
     "nominal_speed_torque_point",
-    "max_speed_torque_point",
     "nominal_voltage",
     "torque_constant",
     "speed_constant",
@@ -55,21 +61,28 @@ class GearedMotor(NamedTuple):
 
     Attributes:
         torque: Torque limit [N m], or None where the data say nothing.
+        points: Turns of the joint per second (metres for sliders) and the torque limits [N m] there; none if the limit
+            is the same at any speed.
         inertia: Inertia of the rotor [kg m^2].
         coulomb_friction: Friction at any speed of the joint [N m]; OpenRAVE does not look at the gear there.
         viscous_friction: Friction per speed of the joint [N m s/rad].
     """
 
     torque: float | None
+    points: tuple[tuple[float, float], ...]
     inertia: float
     coulomb_friction: float
     viscous_friction: float
 
-    def driven(self, axis: Axis) -> Axis:
-        """Return an axis with the data of this motor, which win over ``<maxtorque>``."""
+    def driven(self, axis: Axis, *, turns: bool) -> Axis:
+        """Return an axis, which turns or slides, with the data of this motor, which win over ``<maxtorque>``."""
+        turn = 2 * math.pi if turns else 1.0
+        torque = axis.max_torque if self.torque is None else self.torque
         return replace(
             axis,
-            max_torque=axis.max_torque if self.torque is None else self.torque,
+            max_torque=torque,
+            joint_torque=None if axis.max_torque == torque else axis.max_torque,
+            speed_torques=tuple((speed * turn, limit) for speed, limit in self.points),
             armature=self.inertia,
             coulomb_friction=self.coulomb_friction,
             viscous_friction=self.viscous_friction,
@@ -88,13 +101,27 @@ def read_motor(element: Element, context: Context) -> GearedMotor:
         raise SourceError(f"OpenRAVE knows no actuator of type '{kind}'", element.source, "write electric_motor")
     motor = _Data(context)
     context.walk(element, ACTUATOR_TAGS, ACTUATOR_IGNORED, motor)
-    return motor_of(motor.numbers)
+    return motor_of(motor.numbers, motor.points)
 
 
-def motor_of(numbers: Mapping[str, float]) -> GearedMotor:
-    """Return the motor behind its gear; missing numbers are 0."""
-    gear_ratio = numbers.get("gear_ratio", 0.0)
-    inertia = numbers.get("rotor_inertia", 0.0) * gear_ratio**2
-    limits = (numbers.get(name, 0.0) for name in ("max_instantaneous_torque", "nominal_torque"))
+def motor_of(data: Mapping[str, float], points: Sequence[tuple[float, float]]) -> GearedMotor:
+    """Return the motor behind its gear; missing numbers are 0.
+
+    Args:
+        data: Numbers by tag.
+        points: Turns of the motor per second, and torque limits [N m] there; none means the same at any speed.
+    """
+    gear_ratio = data.get("gear_ratio", 0.0)
+    inertia = data.get("rotor_inertia", 0.0) * gear_ratio**2
+    limits = (data.get(name, 0.0) for name in ("max_instantaneous_torque", "nominal_torque"))
     torque = next((limit * gear_ratio for limit in limits if limit > 0), None)
-    return GearedMotor(torque, inertia, numbers.get("coloumb_friction", 0.0), numbers.get("viscous_friction", 0.0))
+    slow = gear_ratio if gear_ratio > 0 else 1.0
+    behind = tuple((float(speed) / slow, float(limit) * gear_ratio) for speed, limit in points)
+    torque = behind[0][1] if behind else torque
+    return GearedMotor(
+        torque,
+        behind if len(behind) > 1 else (),
+        inertia,
+        data.get("coloumb_friction", 0.0),
+        data.get("viscous_friction", 0.0),
+    )

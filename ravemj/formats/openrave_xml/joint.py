@@ -248,7 +248,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
         for index, numbers in enumerate(reader.axes)
     )
     if reader.motor is not None:
-        axes = tuple(reader.motor.driven(axis) for axis in axes)
+        axes = tuple(reader.motor.driven(axis, turns=kind != "slider") for axis in axes)
     body.joints.append(
         JointBuilder(
             name=element.attributes.get("name", ""),

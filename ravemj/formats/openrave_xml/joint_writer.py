@@ -134,18 +134,27 @@ class JointWriter:
         self._out.element("resolution", [settled.number(axis.resolution * factor) for axis in axes])
         self._out.element("maxvel", [axis.max_velocity for axis in axes])
         self._out.element("maxaccel", [axis.max_acceleration for axis in axes])
-        if any(axis.max_torque for axis in axes):
-            self._out.element("maxtorque", [axis.max_torque for axis in axes])
+        if any(axis.own_torque for axis in axes):
+            self._out.element("maxtorque", [axis.own_torque for axis in axes])
         for tag, name in {"maxinertia": "max_inertia", **OTHER_NUMBERS}.items():
             values = [getattr(axis, name) for axis in axes]
             if any(value != getattr(_PLAIN, name) for value in values):
                 self._out.element(tag, values)
-        if first.armature or first.coulomb_friction or first.viscous_friction:
-            with self._out.inside("actuator", type="electric_motor"):
-                self._out.element("gear_ratio", 1.0)
-                self._out.element("rotor_inertia", first.armature)
-                self._out.element("coloumb_friction", first.coulomb_friction)
-                self._out.element("viscous_friction", first.viscous_friction)
+        if any((first.armature, first.coulomb_friction, first.viscous_friction, first.speed_torques)) or (
+            first.joint_torque is not None
+        ):
+            self._write_motor(first, 1.0 if joint.kind == "slider" else 2 * math.pi)
+
+    def _write_motor(self, axis: Axis, turn: float) -> None:
+        with self._out.inside("actuator", type="electric_motor"):
+            self._out.element("gear_ratio", 1.0)
+            if not axis.speed_torques:
+                self._out.element("max_instantaneous_torque", axis.max_torque)
+            for speed, torque in axis.speed_torques:
+                self._out.element("max_speed_torque_point", [speed / turn, torque])
+            self._out.element("rotor_inertia", axis.armature)
+            self._out.element("coloumb_friction", axis.coulomb_friction)
+            self._out.element("viscous_friction", axis.viscous_friction)
 
 
 def _equations(mimic: Mimic | None, names: PartNames) -> dict[str, str]:

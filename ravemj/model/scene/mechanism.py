@@ -108,7 +108,9 @@ class Axis(Record):
         max_velocity: Velocity limit [rad/s or m/s].
         max_acceleration: Acceleration limit [rad/s^2 or m/s^2].
         max_jerk: Jerk limit [rad/s^3 or m/s^3].
-        max_torque: Torque or force limit [N m or N]; 0 if unknown.
+        max_torque: Torque or force limit [N m or N], that of the motor at rest if there is one; 0 if unknown.
+        joint_torque: The limit of the joint itself if its motor has another one; None means ``max_torque``.
+        speed_torques: Speeds [rad/s or m/s] and the motor's torque limits at them; none means ``max_torque``.
         max_inertia: Limit of the inertia that it moves [kg m^2 or kg]; 0 if unknown.
         hard_max_velocity: Velocity that planners never exceed [rad/s or m/s]; 0 if unknown.
         hard_max_acceleration: Acceleration that they never exceed.
@@ -131,6 +133,8 @@ class Axis(Record):
     max_acceleration: float = 50.0
     max_jerk: float = 50000.0
     max_torque: float = 0.0
+    joint_torque: float | None = None
+    speed_torques: tuple[tuple[float, float], ...] = ()
     max_inertia: float = 0.0
     hard_max_velocity: float = 0.0
     hard_max_acceleration: float = 0.0
@@ -139,6 +143,11 @@ class Axis(Record):
     coulomb_friction: float = 0.0
     viscous_friction: float = 0.0
     wrap_offset: float = 0.0
+
+    @property
+    def own_torque(self) -> float:
+        """Torque or force limit without regard to a motor [N m or N]; 0 if unknown."""
+        return self.max_torque if self.joint_torque is None else self.joint_torque
 
 
 RARE_NUMBERS = (

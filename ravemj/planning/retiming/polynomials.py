@@ -51,9 +51,10 @@ class Polynomial:
             duration *= LONGER
         return np.inf
 
-    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows:
-        """Return the single row of a segment."""
-        del limits
+    def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
+        """Return the single row of a segment; None if the limits do not allow its velocities."""
+        if not segment.is_from_rest_to_rest and (duration <= 0 or not self._keeps_limits(segment, duration, limits)):
+            return None
         rest = np.zeros_like(segment.step)[None]
         rows = (segment.step[None], segment.end_velocity[None], *[rest] * (self.order - 1))
         return SegmentRows(np.array([duration]), rows)
@@ -255,8 +256,13 @@ class JerkLimited:
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: one for each change of jerk, and its end."""
+        if not segment.is_from_rest_to_rest:
+            return None
         joints = _joints(segment.step, limits)
-        changes = [_changes(_double_s(*joint), duration) for joint in joints]
+        profiles = [_double_s(*joint) for joint in joints]
+        if not all(profile[-1] > 0 for profile in profiles):  # so short that its time is rounded to 0
+            return None
+        changes = [_changes(profile, duration) for profile in profiles]
         inner = np.unique(np.concatenate([np.zeros(1), *changes]))
         inner = inner[(inner > _SAME_TIME) & (inner < duration - _SAME_TIME)]
         times = np.append(inner[np.diff(inner, prepend=0.0) > _SAME_TIME], duration)

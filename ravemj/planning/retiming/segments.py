@@ -18,6 +18,9 @@ LONGER = 1.05
 
 MOST_ATTEMPTS = 500
 
+_LONGEST = 1e100
+"""Duration [s] whose square is a number."""
+
 
 class RetimingError(Exception):
     """The path cannot be timed; the text gives the reason."""
@@ -78,9 +81,9 @@ class Segment(NamedTuple):
         return not self.start_velocity.any() and not self.end_velocity.any()
 
     @property
-    def from_rest(self) -> "Segment":
-        """The same segment with zero start velocity."""
-        return Segment(self.step, np.zeros_like(self.step), self.end_velocity)
+    def to_rest(self) -> "Segment":
+        """The same segment with zero end velocity."""
+        return Segment(self.step, self.start_velocity, np.zeros_like(self.step))
 
 
 class SegmentRows(NamedTuple):
@@ -175,37 +178,41 @@ def retime(
         segment = Segment(step, ends[0], ends[1])
         given = None if deltas is None else float(deltas[index])
         try:
-            rows = _driven(profile, segment, limits, given, time_step)
+            if given is not None and not segment.is_from_rest_to_rest:
+                duration = given
+            else:  # OpenRAVE uses the times of a stop at each waypoint, whatever the given velocities are
+                asked = segment if index == len(points) - 1 else segment.to_rest
+                duration = _duration(profile.shortest(asked, limits), given, time_step)
+            rows = _driven(profile, segment, limits, duration, MOST_ATTEMPTS if given is None else 1)
         except RetimingError as error:
             raise RetimingError(f"from waypoint {index - 1} to {index}: {error}") from None
         path.append(rows, points[index - 1], points[index])
     return path.timed()
 
 
-def _driven(
-    profile: Profile, segment: Segment, limits: PathLimits, given: float | None, time_step: float
-) -> SegmentRows:
-    needed = profile.shortest(segment, limits)
-    if not segment.is_from_rest_to_rest:
-        # OpenRAVE uses the times of a start at rest.
-        needed = max(needed, profile.shortest(segment.from_rest, limits))
-    if not math.isfinite(needed):
-        raise RetimingError("a joint moves whose velocity or acceleration limit is 0")
-    if given is not None and not given >= needed - ENOUGH:
-        raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
+def _duration(needed: float, given: float | None, time_step: float) -> float:
+    """Return the duration of a segment [s] from the minimum and the given one."""
+    if not needed < _LONGEST:
+        raise RetimingError("a joint moves whose velocity or acceleration limit is 0, or nearly so")
     if given is not None:
-        duration = max(given, needed)
-    else:
-        duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
+        if not given >= needed - ENOUGH:
+            raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
+        return max(given, needed)
+    if not (time_step > 0 and math.isfinite(needed / time_step)):
+        return needed
+    return max(1, math.ceil(needed / time_step - ENOUGH)) * time_step
+
+
+def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: float, attempts: int) -> SegmentRows:
+    """Return the rows of a segment; given end velocities allow no longer duration, as in OpenRAVE."""
     if duration <= 0 and profile.merges:
         return SegmentRows(np.zeros(1), ())
-    for _ in range(MOST_ATTEMPTS if given is None else 1):
+    for _ in range(attempts if segment.is_from_rest_to_rest else 1):
         rows = profile.drive(segment, duration, limits)
         if rows is not None:
             return rows
         duration *= LONGER
-    tried = duration if given is None else given
-    raise RetimingError(f"no motion of {tried:.6g} s keeps the limits with the velocities at the waypoints")
+    raise RetimingError(f"no motion of {duration:.6g} s keeps the limits with the velocities at the waypoints")
 
 
 class _TimedRows:

@@ -59,7 +59,9 @@ class ElectricMotorActuatorInfo(Info):
     Attributes:
         gear_ratio: Motor turns per joint turn.
         max_instantaneous_torque: The peak torque of the motor [N m].
-        nominal_torque: The continuous torque of the motor [N m], used if the peak torque is 0.
+        max_speed_torque_points: Turns of the motor per second and its torque limits there [N m]; none means
+            ``max_instantaneous_torque`` at any speed.
+        nominal_torque: The continuous torque of the motor [N m], used in physics if the peak torque is 0.
         rotor_inertia: The inertia of the rotor [kg m^2].
         coloumb_friction: The Coulomb friction at the joint [N m]; the spelling is OpenRAVE's.
         viscous_friction: The viscous friction at the joint [N m s/rad].
@@ -88,7 +90,8 @@ class ElectricMotorActuatorInfo(Info):
         """Return the motor's torque limit, inertia and friction at the joint."""
         from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS, motor_of  # noqa: PLC0415 - rarely wanted
 
-        return motor_of({name: float(getattr(self, name)) for name in ACTUATOR_TAGS})
+        names = ACTUATOR_TAGS.keys() - {"max_speed_torque_point"}
+        return motor_of({name: float(getattr(self, name)) for name in names}, self.max_speed_torque_points)
 
 
 @info_class
@@ -268,7 +271,7 @@ class JointInfo(ParameterFields):
         joint = body.all_joints[index]
         mimic = joint.mimic
         of_axes: dict[str, Any] = {
-            entry.field: np.array([getattr(axis, entry.of) for axis in joint.axes])
+            entry.field: np.array([getattr(axis, _REPORTED.get(entry.of, entry.of)) for axis in joint.axes])
             for entry in cls._entries
             if entry.of
         }
@@ -281,7 +284,7 @@ class JointInfo(ParameterFields):
             _vaxes=[np.array(direction) for direction in _directions(body, joint, values)],
             _vcurrentvalues=np.array(values),
             _bIsActive=index < len(body.joints) or all(follower.mimic for follower in body.all_joints[index:]),
-            _infoElectricMotor=_motor_of(joint.axes[0]),
+            _infoElectricMotor=_motor_of(joint.axes[0], is_slider=joint.kind == "slider"),
             _vmimic=[] if mimic is None else [[mimic.position, mimic.velocity, mimic.acceleration]],
             **of_axes,
         ).with_parameters(joint.parameters)
@@ -377,7 +380,7 @@ class JointInfo(ParameterFields):
             if fields["circular"]:
                 fields.update(lower=-scene.UNLIMITED, upper=scene.UNLIMITED)
             axis = scene.Axis(**fields)
-            axes.append(axis if motor is None else motor.driven(axis))
+            axes.append(axis if motor is None else motor.driven(axis, turns=kind != "slider"))
         return tuple(axes)
 
     def _per_axis(self, field: str, count: int) -> list[float]:
@@ -403,9 +406,24 @@ _DEFAULTS = {
 """Default values of new infos for each axis."""
 
 
-def _motor_of(axis: scene.Axis) -> ElectricMotorActuatorInfo | None:
-    """Return a motor with the armature inertia of an axis and gear ratio 1; None without inertia."""
-    return ElectricMotorActuatorInfo(gear_ratio=1.0, rotor_inertia=axis.armature) if axis.armature else None
+_REPORTED = {"max_torque": "own_torque"}
+"""Fields of axes that infos report in place of those that they set: the motor has its own info."""
+
+
+def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:
+    """Return a motor with gear ratio 1 that acts as that of an axis; None if it has none."""
+    if not (axis.armature or axis.speed_torques or axis.joint_torque is not None):
+        return None
+    turn = 1.0 if is_slider else 2 * math.pi
+    points = [(speed / turn, torque) for speed, torque in axis.speed_torques]
+    return ElectricMotorActuatorInfo(
+        gear_ratio=1.0,
+        max_instantaneous_torque=axis.max_torque,
+        max_speed_torque_points=points,
+        rotor_inertia=axis.armature,
+        coloumb_friction=axis.coulomb_friction,
+        viscous_friction=axis.viscous_friction,
+    )
 
 
 def type_of(kind: scene.JointKind) -> JointType:

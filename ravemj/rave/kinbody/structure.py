@@ -176,14 +176,26 @@ class BodyPart(ApiObject):
         return np.zeros(0), np.zeros(0)
 
     def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown."""
-        return self._of_axes("max_torque", indices)
+        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown.
 
-    GetDOFMaxTorque = GetDOFTorqueLimits
+        Motors do not count; see ``GetDOFMaxTorque``.
+        """
+        return self._of_axes("own_torque", indices)
+
+    def GetDOFMaxTorque(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the torque limits [N m or N], likewise, with those of motors at the present speeds."""
+        limits = [joint.GetMaxTorque() for joint in self.GetJoints() for _ in range(joint.GetDOF())]
+        return np.array(limits)[checked_indices(indices, self.GetDOF())]
 
     def SetDOFTorqueLimits(self, limits: ArrayLike) -> None:
-        """Set the torque limits [N m, for sliders N], shape (dof,)."""
+        """Set the torque limits [N m, for sliders N], shape (dof,). Motors keep theirs."""
+        axes = self._state.scene.dof_axes
+        motors = [dof for dof, axis in enumerate(axes) if axis.speed_torques or axis.joint_torque is not None]
+        kept = self._of_axes("max_torque", motors)
         self._set_axes("SetDOFTorqueLimits", {"max_torque": limits})
+        if motors:
+            given = self._of_axes("max_torque", motors)
+            self._set_axes("SetDOFTorqueLimits", {"max_torque": kept, "joint_torque": given}, motors)
 
     def GetDOFWeights(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the weights in distances between configurations, shape (dof,), or those of the DOFs ``indices``."""
@@ -486,9 +498,9 @@ class BodyPart(ApiObject):
         return self.GetLinks(chains.rigidly_attached(self._state.scene, linkindex))
 
     def GetKinematicsGeometryHash(self) -> str:
-        """Return a hash of the body's links, geometries and joints, 32 hexadecimal digits.
+        """Return a hash of the body's links, geometries, masses and joints, 32 hexadecimal digits.
 
-        Pose, joint values, limits and names do not matter.
+        Pose, joint values, limits, colours and names do not matter.
         """
         return self._state.made_once(hashes.of_body, self._state.scene)
 

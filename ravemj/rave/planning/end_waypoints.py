@@ -11,6 +11,7 @@ from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.extension import Extension
 
 _RETIMERS = {  # by the interpolation of the trajectory, so that the new segment continues it in the same way
+    "": "ParabolicTrajectoryRetimer",
     "linear": "LinearTrajectoryRetimer",
     "quadratic": "ParabolicTrajectoryRetimer",
     "cubic": "CubicTrajectoryRetimer",

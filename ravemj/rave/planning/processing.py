@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ravemj.errors import ArgumentError, ErrorCode
-from ravemj.manipulation.processing import RETIMERS, SMOOTHERS, SPLINE, Processor
+from ravemj.manipulation.processing import RETIMERS, SMOOTHERS, SPLINE, Processor, profile_of
 from ravemj.planning.retiming.segments import OutsideLimitsError, RetimingError
 from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.values import CHAIN, Values
@@ -59,6 +59,14 @@ class Retimer(Planner):
     _takes_text: ClassVar[bool] = True
     _defaults: ClassVar[Mapping[str, str]] = TIMING
 
+    def _prepare(self, values: Values) -> PlannerStatus | None:
+        """Return the status if the interpolation is not the retimer's, else None."""
+        try:
+            profile_of(self._xmlid, values.tags)
+        except RetimingError as error:
+            return self._failed(str(error))
+        return None
+
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Process a trajectory in place."""
         try:
@@ -73,6 +81,9 @@ class Smoother(Retimer):
     """Planner that replaces parts of a path by collision-free shortcuts, and times the result."""
 
     _defaults: ClassVar[Mapping[str, str]] = {**TIMING, **_CONSTRAINTS}
+
+    def _prepare(self, values: Values) -> None:
+        """Accept all parameters."""
 
 
 TRAJECTORY_PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {

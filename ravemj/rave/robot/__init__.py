@@ -372,7 +372,7 @@ class Robot(ActiveDofs):
 
     def GetRobotStructureHash(self) -> str:
         """Return a hash of the robot's structure, manipulators and sensors, 32 hexadecimal digits."""
-        return hashes.of_robot(self._state.scene, self.GetKinematicsGeometryHash())
+        return hashes.of_robot(self._state.scene)
 
     def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> RobotBaseInfo:
         """Return the description of the robot in its current state.

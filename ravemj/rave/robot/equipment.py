@@ -68,7 +68,9 @@ class AttachedSensor(ApiObject):
     def GetStructureHash(self) -> str:
         """Return a hash of the sensor type and its pose on the link: 32 hexadecimal digits."""
         sensor = self.description
-        return hashes.of_text(repr((sensor.link, sensor.T_link_sensor.numbers().round(8).tolist(), sensor.type)))
+        return hashes.of_text(
+            repr((sensor.link, sensor.T_link_sensor.numbers().round(hashes.DIGITS).tolist(), sensor.type))
+        )
 
     def GetName(self) -> str:
         """Return the attached sensor's name."""
