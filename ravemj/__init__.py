@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 from ravemj import geometry_functions, rave
 from ravemj.compat import names
 from ravemj.compat.names import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
-from ravemj.core.api_object import published
+from ravemj.core.api_object import published as _published
 from ravemj.core.version import __version__
 from ravemj.errors import (
     ArgumentError,
@@ -129,7 +129,7 @@ def __getattr__(name: str) -> object:
         return importlib.import_module(f"ravemj.{name}")
     if name not in _LATE:
         raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
-    value = published(getattr(importlib.import_module(_LATE[name]), name), "ravemj")
+    value = _published(getattr(importlib.import_module(_LATE[name]), name), "ravemj")
     globals()[name] = value
     return value
 

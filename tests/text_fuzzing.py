@@ -18,7 +18,7 @@ from fuzzing import Files, Outcome
 from waiting import PATIENCE, time_limit
 
 import ravemj
-from ravemj import Planner, RaveCreateTrajectory, planningutils
+from ravemj import Planner, Trajectory, planningutils
 
 PIECES = (
     "0 -1 1e400 nan inf 1e21 " + "9" * 400 + " \0 \u00e9 <group/> </data> <data> <configuration> dof='0' offset='7' "
@@ -132,7 +132,7 @@ CALLS = {
     "verify": lambda t, robot, chance: planningutils.VerifyTrajectory(problem(robot, chance), t, 0.01),
     "remove": lambda t, robot, chance: t.Remove(0, chance.choice([0, 1, 9])),
     "path": lambda t, robot, chance: robot.GetController().SetPath(t),
-    "again": lambda t, robot, chance: RaveCreateTrajectory(t.GetEnv(), "").deserialize(t.serialize(0)),
+    "again": lambda t, robot, chance: Trajectory(t.GetEnv(), "").deserialize(t.serialize(0)),
 }  # fmt: skip
 
 
@@ -205,7 +205,7 @@ class TextTrial:
         robot.SetDOFValues(np.zeros(2))
         with time_limit(self.seconds), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            made = RaveCreateTrajectory(robot.GetEnv(), "")
+            made = Trajectory(robot.GetEnv(), "")
             for name in ["read", *known["calls"]]:
                 try:
                     if name == "read":

@@ -52,10 +52,12 @@ def published(thing: Thing, module: str) -> Thing:
     if isinstance(thing, FunctionType):
         thing = cast("Thing", explained(thing))
         thing.__module__ = module  # where pickle finds it
-    elif isinstance(thing, type) and not issubclass(thing, Enum | Exception | ApiObject):
-        explain_methods(thing)
+    elif isinstance(thing, type):
+        kind = cast("type[object]", thing)
+        if not issubclass(kind, Enum | Exception | ApiObject):
+            explain_methods(kind)
     show_as_written(thing)
-    return thing
+    return cast("Thing", thing)
 
 
 def _listed(kind: type, names: Iterable[str]) -> list[str]:

@@ -448,7 +448,8 @@ class Joint(Member):
         if not limited.speed_torques:
             return limited.max_torque
         speed = abs(float(self.GetVelocities()[axis]))
-        return float(np.interp(speed, *zip(*limited.speed_torques, strict=True)))
+        speeds, torques = zip(*limited.speed_torques, strict=True)
+        return float(np.interp(speed, list(speeds), list(torques)))
 
     def GetWeights(self) -> Floats:
         """Return the weights in distances between configurations, shape (axes,)."""

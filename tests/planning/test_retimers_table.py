@@ -176,3 +176,20 @@ def test_backwards_only_velocities_are_negated_and_moved(kind, interpolation):
     assert back.GetAllWaypoints2D()[:, column].tolist() == expected
     assert back.GetAllWaypoints2D()[:, times].tolist() == [0, 0.25, 0.5]
     assert back.GetDescription() == "there"
+
+
+EXTREME = ["0", "1e-320", "1e-200", "1e300"]
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("name", RETIMERS)
+def test_extreme_limits_and_values_end(robot, name):
+    for velocity, acceleration, jerk, value in itertools.product(EXTREME, EXTREME, EXTREME[::3], (1e-320, 0.5)):
+        made = path(robot, 2)
+        made.Insert(1, [value, 0], True)
+        text = (
+            f"<_vconfigvelocitylimit>{velocity} {velocity}</_vconfigvelocitylimit><_vconfigjerklimit>{jerk} {jerk}"
+            f"</_vconfigjerklimit><_vconfigaccelerationlimit>{acceleration} {acceleration}</_vconfigaccelerationlimit>"
+        )
+        status = planningutils.RetimeActiveDOFTrajectory(made, robot, False, 1, 1, name, text)
+        assert status.statusCode in {0, 1}

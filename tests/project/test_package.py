@@ -204,7 +204,7 @@ def test_everything_imported_into_the_package_is_exported():
     tree = ast.parse((PACKAGE / "__init__.py").read_text())
     froms = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module.startswith("ravemj.")]
     imported = {alias.asname or alias.name for node in froms for alias in node.names}
-    imported -= {"*", "names", "load_ipython_extension", "show_as_written"}
+    imported -= {"*", "names", "load_ipython_extension", "_published"}
     parts = {*ravemj.rave.__all__, *ravemj.geometry_functions.__all__}
     assert {"__version__", *imported, *parts} <= set(ravemj.__all__)
     assert len(set(ravemj.__all__)) == len(ravemj.__all__)

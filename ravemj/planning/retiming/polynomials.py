@@ -42,6 +42,8 @@ class Polynomial:
         duration = max(self._first_time(np.abs(segment.step), limits), float((fastest / limits.acceleration).max()) / 8)
         if segment.is_from_rest_to_rest:
             needed = self._from_rest_to_rest(np.abs(segment.step), limits) * (1 - _SLACK)
+            if not (duration > 0 and np.isfinite(needed)):  # a limit is infinite, or 0
+                return needed
             while duration < needed:
                 duration *= LONGER
             return duration
@@ -252,7 +254,10 @@ class JerkLimited:
         """Return the duration of a segment [s]."""
         if not segment.is_from_rest_to_rest:
             return np.inf
-        return max((_double_s(*joint)[3] for joint in _joints(segment.step, limits)), default=0.0)
+        try:
+            return max((_double_s(*joint)[3] for joint in _joints(segment.step, limits)), default=0.0)
+        except ArithmeticError:  # of numbers near the largest or smallest
+            return np.inf
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: one for each change of jerk, and its end."""

@@ -18,8 +18,8 @@ LONGER = 1.05
 
 MOST_ATTEMPTS = 500
 
-_LONGEST = 1e100
-"""Duration [s] whose square is a number."""
+_SHORTEST, _LONGEST = 1e-100, 1e100
+"""Durations [s] whose squares are numbers other than 0."""
 
 
 class RetimingError(Exception):
@@ -205,7 +205,7 @@ def _duration(needed: float, given: float | None, time_step: float) -> float:
 
 def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: float, attempts: int) -> SegmentRows:
     """Return the rows of a segment; given end velocities allow no longer duration, as in OpenRAVE."""
-    if duration <= 0 and profile.merges:
+    if duration < _SHORTEST and profile.merges:
         return SegmentRows(np.zeros(1), ())
     for _ in range(attempts if segment.is_from_rest_to_rest else 1):
         rows = profile.drive(segment, duration, limits)

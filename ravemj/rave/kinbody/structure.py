@@ -183,7 +183,10 @@ class BodyPart(ApiObject):
         return self._of_axes("own_torque", indices)
 
     def GetDOFMaxTorque(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the torque limits [N m or N], likewise, with those of motors at the present speeds."""
+        """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown.
+
+        Motors have the limits of their present speeds.
+        """
         limits = [joint.GetMaxTorque() for joint in self.GetJoints() for _ in range(joint.GetDOF())]
         return np.array(limits)[checked_indices(indices, self.GetDOF())]
 
