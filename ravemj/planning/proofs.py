@@ -315,10 +315,11 @@ def _examined(
         rest = np.zeros(asked.shape, dtype=bool)
         rest[:, tested.pairs] = open_still
         shares = np.where(open_still, tested.travel / np.maximum(tested.gaps, _NOTHING), 0.0).max(axis=1, initial=0.0)
-        are_lost, numbers = lost.any(axis=1).tolist(), np.ceil(np.clip(_RESERVE * shares, 2, _PARTS)).astype(int)
+        lost_rows = set(np.flatnonzero(lost.any(axis=1)).tolist())
+        numbers = np.ceil(np.clip(_RESERVE * shares, 2, _PARTS)).astype(int)
         for row, (curve, number) in enumerate(zip(curves, numbers.tolist(), strict=True)):
             yield _Proved(least[row], curve, tested.pairs, bounds[row])
-            if are_lost[row]:
+            if row in lost_rows:
                 yield from (Span(curve.start, curve.end, pair) for pair in tested.pairs[lost[row]].tolist())
             if shares[row] > 0:
                 pending += [(part, rest[row]) for part in curve.parts(number)]
@@ -327,10 +328,10 @@ def _examined(
 def _reach(curves: Sequence[Curve]) -> tuple[Floats, Floats]:
     """Return the middle of each segment, and the largest difference of its configurations from it; shape (m, n)."""
     middles, spreads = np.empty((2, len(curves), curves[0].control.shape[1]))
-    numbers = np.array([len(curve.control) for curve in curves])
-    for number in set(numbers.tolist()):
-        rows = np.flatnonzero(numbers == number)
-        control = np.array([curves[row].control for row in rows.tolist()])
+    numbers = [len(curve.control) for curve in curves]
+    for number in set(numbers):
+        rows = [row for row, its in enumerate(numbers) if its == number]
+        control = np.array([curves[row].control for row in rows])
         middles[rows] = at = _middle(number) @ control
         spreads[rows] = np.abs(control - at[:, None]).max(axis=1)
     return middles, spreads
