@@ -10,7 +10,7 @@ from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats, Vec3
 from ravemj.engine.affine import translation_columns
 from ravemj.engine.collision.findings import Checker, Findings
-from ravemj.engine.collision.moving import moving_test
+from ravemj.engine.collision.moving import moved_world, moving_test
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself, touching_region
 from ravemj.engine.collision.world import CollisionWorld
@@ -200,13 +200,29 @@ class Bodies:
         """Return the collision world at the present poses; None if a user's checker decides about collisions."""
         return self._simulation.collisions() if self._checker().is_plain else None
 
+    def placement(self) -> Callable[[Floats], object]:
+        """Return a function that moves the shapes of the collision world to a configuration.
+
+        Use it within ``kept``, without other changes of the world; the bodies themselves may stay.
+        """
+        fast = moved_world(self.parts[0].body, self.parts[0].dofs) if self._are_joints_of_one else None
+        return fast or self._move_world
+
+    def _move_world(self, values: Floats) -> None:
+        self.move(values)
+        self.world()
+
+    @property
+    def _are_joints_of_one(self) -> bool:
+        return len(self.parts) == 1 and bool(self.parts[0].dofs)
+
     def fast_test(self) -> Callable[[Floats], bool] | None:
         """Return a fast collision test of configurations, or None if only ``move`` and ``collision`` can decide.
 
         Use it within ``kept``, without other changes of the world.
         """
         # User checkers and callbacks inspect the bodies, so these must be moved.
-        if not self._checker().is_plain or len(self.parts) != 1 or not self.parts[0].dofs:
+        if not self._checker().is_plain or not self._are_joints_of_one:
             return None
         return moving_test(self.parts[0].body, self.parts[0].dofs)
 

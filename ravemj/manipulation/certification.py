@@ -51,11 +51,11 @@ class Certifier:
         finally:
             self._spaces.put_back()
 
-    def certificate(self, curves: Sequence[Curve]) -> Certificate:
-        """Return the certificate of a motion."""
+    def certificate(self, curves: Sequence[Curve], *, whole: bool = True) -> Certificate:
+        """Return the certificate of a motion; unless ``whole``, the first undecided span is the only one."""
         try:
             exempt = exempt_spans(self._spaces, curves, self._touching)
-            proof = prove(self._spaces, curves, exempt)
+            proof = prove(self._spaces, curves, exempt, whole=whole)
             distance, time, pair = proof.nearest
             is_near = pair >= 0 and np.isfinite(distance)
             points = self._spaces.nearest_points(configuration_at(curves, time), pair) if is_near else None
@@ -71,8 +71,10 @@ class Certifier:
         return CertifiedSpan(span.start, span.end, self._spaces.names(span.pair))
 
 
-def certified(simulation: Simulation, path: Waypoints, checker: Callable[[], Checker]) -> Certificate:
-    """Return the certificate of a timed motion in the present world."""
+def certified(
+    simulation: Simulation, path: Waypoints, checker: Callable[[], Checker], *, whole: bool = True
+) -> Certificate:
+    """Return the certificate of a timed motion in the present world; see ``Certifier.certificate``."""
     groups = [group for group in path.groups if group.kind in {JOINTS[0], AFFINE[0]}]
     try:
         if not groups or not len(path):
@@ -84,7 +86,8 @@ def certified(simulation: Simulation, path: Waypoints, checker: Callable[[], Che
             start = np.concatenate([path.data[0, group.columns] for group in groups])
             curves = [Curve(0.0, 0.0, start[None])]
         with bodies.kept():
-            return Certifier(bodies, [curves[0].control[0], curves[-1].control[-1]]).certificate(curves)
+            certifier = Certifier(bodies, [curves[0].control[0], curves[-1].control[-1]])
+            return certifier.certificate(curves, whole=whole)
     except (UncertifiableError, ArgumentError) as error:
         return Certificate(certified=False, reason=str(error))
 
@@ -124,13 +127,13 @@ class BodySpaces:
         chains = {geom: chain for body in bodies.bodies for geom, chain in _chains(world, body, numbers)}
         self._clearances = Clearances(model, world.model.data, world.shapes, self.pairs, chains, ids)
 
-    def test(self, middles: Sequence[Floats], spreads: Sequence[Floats], asked: Bools, apart: float = 0.0) -> Tested:
+    def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> Tested:
         """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles."""
+        place = self._bodies.placement()
         for slot, values in enumerate(middles):
-            self._bodies.move(values)
-            self._bodies.world()  # which sets the shapes to the bodies' poses
+            place(values)
             self._clearances.take(slot)
-        return self._clearances.test(np.array(spreads) @ self._rates, asked, apart)
+        return self._clearances.test(spreads @ self._rates, asked, apart)
 
     def nearest_points(self, values: Floats, pair: int) -> tuple[Vec3, Vec3]:
         """Return the nearest points of both shapes of a pair in a configuration [m]."""

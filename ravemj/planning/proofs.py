@@ -63,10 +63,9 @@ class Curve(NamedTuple):
 
     def parts(self, number: int) -> list[Self]:
         """Divide the segment into equal durations."""
-        times = [self.start + (self.end - self.start) * part / number for part in range(number)] + [self.end]
-        controls = _subdivision(len(self.control), number) @ self.control
-        spans = zip(pairwise(times), controls, strict=True)
-        return [self._replace(start=start, end=end, control=control) for (start, end), control in spans]
+        start, end, kind = self.start, self.end, type(self)
+        times = [start + (end - start) * part / number for part in range(number)] + [end]
+        return list(map(kind, times, times[1:], _subdivision(len(self.control), number) @ self.control))
 
     def at(self, part: float) -> Floats:
         """Return the configuration at a fraction of the duration, shape (n,)."""
@@ -155,7 +154,7 @@ class Spaces(Protocol):
         """Whether each pair contributes to the smallest gap, shape (pair_count,)."""
         ...
 
-    def test(self, middles: Sequence[Floats], spreads: Sequence[Floats], asked: Bools, apart: float = 0.0) -> PairTests:
+    def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> PairTests:
         """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles."""
         ...
 
@@ -203,12 +202,17 @@ def is_proved(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = 
     return not any(isinstance(result, Span) for result in _examined(spaces, _asked(spaces, curves, exempt)))
 
 
-def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = ()) -> Proof:
-    """Prove what can be proven of a motion; ``exempt`` are the spans on which pairs are ignored."""
+def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = (), *, whole: bool = True) -> Proof:
+    """Prove what can be proven of a motion; ``exempt`` are the spans on which pairs are ignored.
+
+    Unless ``whole``, the first undecided span ends the proof.
+    """
     proof, proved = Proof(), list[_Proved]()
     for result in _examined(spaces, _asked(spaces, curves, exempt), proof):
         if isinstance(result, Span):
             proof.undecided.append(result)
+            if not whole:
+                return proof
         else:
             proved.append(result)
     proof.undecided = _joined(proof.undecided)
@@ -240,10 +244,10 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
     """Return the distances of some pairs [m], shape (configurations, pairs); large ones may be underestimated."""
     table = np.zeros((len(configurations), len(pairs)))
     for first in range(0, len(configurations), spaces.most):
-        some = configurations[first : first + spaces.most]
+        some = np.array(configurations[first : first + spaces.most])
         asked = np.zeros((len(some), spaces.pair_count), dtype=bool)
         asked[:, pairs] = True
-        tested = spaces.test(some, [np.zeros_like(values) for values in some], asked, 2 * APART)
+        tested = spaces.test(some, np.zeros_like(some), asked, 2 * APART)
         near = np.where(np.isfinite(tested.measured), tested.measured, tested.gaps)
         table[first : first + len(some)] = near[:, np.searchsorted(tested.pairs, pairs)]
     return table
@@ -297,12 +301,11 @@ def _examined(
     """Test intervals; yield undecided spans and proven intervals."""
     while pending:
         batch, pending = pending[: spaces.most], pending[spaces.most :]
-        middles, spreads = _reach([curve for curve, _ in batch])
-        asked = np.array([asked for _, asked in batch])
-        tested = spaces.test(middles, spreads, asked)
+        curves, asked = [curve for curve, _ in batch], np.array([asked for _, asked in batch])
+        tested = spaces.test(*_reach(curves), asked)
         counted = spaces.counted[tested.pairs]
         if proof is not None:
-            _note_nearest(proof, tested, [curve for curve, _ in batch], counted)
+            _note_nearest(proof, tested, curves, counted)
         free = asked[:, tested.pairs] & ~tested.is_open & counted
         bounds = np.where(free, tested.gaps - tested.travel, np.inf)
         least = bounds.min(axis=1, initial=np.inf).tolist()
@@ -312,19 +315,26 @@ def _examined(
         rest = np.zeros(asked.shape, dtype=bool)
         rest[:, tested.pairs] = open_still
         shares = np.where(open_still, tested.travel / np.maximum(tested.gaps, _NOTHING), 0.0).max(axis=1, initial=0.0)
-        for row, (curve, _) in enumerate(batch):
+        lost_rows = set(np.flatnonzero(lost.any(axis=1)).tolist())
+        numbers = np.ceil(np.clip(_RESERVE * shares, 2, _PARTS)).astype(int)
+        for row, (curve, number) in enumerate(zip(curves, numbers.tolist(), strict=True)):
             yield _Proved(least[row], curve, tested.pairs, bounds[row])
-            if lost[row].any():
+            if row in lost_rows:
                 yield from (Span(curve.start, curve.end, pair) for pair in tested.pairs[lost[row]].tolist())
             if shares[row] > 0:
-                number = math.ceil(min(_RESERVE * float(shares[row]), _PARTS))
-                pending += [(part, rest[row]) for part in curve.parts(max(2, number))]
+                pending += [(part, rest[row]) for part in curve.parts(number)]
 
 
-def _reach(curves: Sequence[Curve]) -> tuple[list[Floats], list[Floats]]:
-    """Return the middle of each segment, and the largest difference of its configurations from it."""
-    middles = [_middle(len(curve.control)) @ curve.control for curve in curves]
-    return middles, [np.abs(curve.control - at).max(axis=0) for curve, at in zip(curves, middles, strict=True)]
+def _reach(curves: Sequence[Curve]) -> tuple[Floats, Floats]:
+    """Return the middle of each segment, and the largest difference of its configurations from it; shape (m, n)."""
+    middles, spreads = np.empty((2, len(curves), curves[0].control.shape[1]))
+    numbers = [len(curve.control) for curve in curves]
+    for number in set(numbers):
+        rows = [row for row, its in enumerate(numbers) if its == number]
+        control = np.array([curves[row].control for row in rows])
+        middles[rows] = at = _middle(number) @ control
+        spreads[rows] = np.abs(control - at[:, None]).max(axis=1)
+    return middles, spreads
 
 
 def _note_nearest(proof: Proof, tested: PairTests, curves: Sequence[Curve], counted: Bools) -> None:

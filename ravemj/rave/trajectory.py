@@ -44,7 +44,7 @@ class Trajectory(Interface):
     """
 
     _interface_type = InterfaceType.trajectory
-    _internal = ("set_waypoints", "take", "waypoints")
+    _internal = ("is_certified", "set_waypoints", "take", "waypoints")
 
     start_index: int = -1
     """Index of the start of ``BaseManipulation`` at which a planned motion begins; -1 if unknown."""
@@ -77,12 +77,23 @@ class Trajectory(Interface):
             >>> print(trajectory.certify())
             certified: there are no other bodies
         """
+        self._certificate = self.waypoints, self._proved(whole=True)
+        return self._certificate[1]
+
+    def is_certified(self) -> bool:
+        """Certify the motion if it can be certified as a whole; return whether it was.
+
+        If a part of it is undecided, there is no certificate: the first undecided part is found in less time than all.
+        """
+        certificate = self._proved(whole=False)
+        self._certificate = None if certificate.undecided else (self.waypoints, certificate)
+        return certificate.certified
+
+    def _proved(self, *, whole: bool) -> Certificate:
         from ravemj.manipulation.certification import certified  # noqa: PLC0415 - rarely wanted
 
         env = self.GetEnv()
-        certificate = certified(env.simulation, self.waypoints, env.GetCollisionChecker)
-        self._certificate = self.waypoints, certificate
-        return certificate
+        return certified(env.simulation, self.waypoints, env.GetCollisionChecker, whole=whole)
 
     @also_named(group="spec")
     def Init(self, spec: Spec) -> None:

@@ -194,6 +194,40 @@ class TestCertificates:
         env.GetKinBody("post").SetTransform(robot.GetLink("link").GetTransform())
         assert env.CheckCollision(robot)
 
+    @pytest.mark.parametrize("radius", [0.05, 0.2])
+    def test_what_a_moving_link_holds_counts_and_stays_in_the_hand(self, radius):
+        robot = swing(1.5)
+        env = robot.GetEnv()
+        ball = ravemj.RaveCreateKinBody(env, "")
+        ball.InitFromSpheres([[0, 0, 0, radius]])
+        ball.SetName("ball")
+        env.Add(ball)
+        ball.SetTransform([1, 0, 0, 0, 1.3, 0, 0])
+        robot.Grab(ball, robot.GetLink("link"))
+        robot.SetDOFValues([0.2])
+        before = ball.GetTransform()
+        certificate = timed(robot, [[0.0], [1.0]]).certify()
+        gap = 0.2 - 0.01 - radius
+        assert certificate.certified == (gap > 0)
+        if gap > 0:
+            assert gap - max(1.1e-3, 0.06 * gap) <= certificate.smallest_gap <= gap + 1e-5
+        np.testing.assert_array_equal(ball.GetTransform(), before)
+        robot.SetDOFValues([ANGLE])
+        assert env.CheckCollision(robot) == (gap < 0)
+
+    def test_a_motion_with_an_undecided_part_is_not_certified_as_a_whole(self):
+        traj = timed(swing(), [[0.0], [1.0]])
+        assert traj.certify() is traj.certificate
+        assert not traj.is_certified()
+        assert traj.certificate is None
+        free = timed(swing(1.2), [[0.0], [1.0]])
+        assert free.is_certified()
+        assert free.certificate == free.certify()
+        jumping = ravemj.RaveCreateTrajectory(free.GetEnv(), "")
+        jumping.Init(free.GetConfigurationSpecification())
+        assert not jumping.is_certified()
+        assert jumping.certificate.reason == "nothing moves"
+
     @pytest.mark.parametrize("seed", range(6))
     def test_certified_motions_touch_nothing_and_keep_the_gap(self, seed):
         env = ravemj.Environment()

@@ -162,7 +162,7 @@ class Clearances:
         is_hopeless = is_near & (needed > centers)  # no distance of theirs would be enough
         is_open = is_near & ~is_hopeless
         if is_open.any():
-            rows, columns = np.nonzero(is_open)
+            rows, columns = np.nonzero(is_open & ~np.isnan(self._directions[pairs, 0]))
             self._separate(known, rows, columns)
             is_open &= gaps <= needed
             self._measure(known, *_middles(is_open))  # whose directions may do for the others
@@ -184,9 +184,9 @@ class Clearances:
         count, which = len(changes), self._rows[:, pairs]
         used, which = np.unique(which, return_inverse=True)
         geoms, joints = self._moving[used], self._joints[used]  # -1, in place of what does not move, is the last one
-        away = self._positions[:count, geoms, None] - self._anchors[:count, joints]
-        along = (away * self._axes[:count, joints]) @ _ONES
-        square = (away * away) @ _ONES - along * along
+        away = self._positions[:count, geoms, None] - np.take(self._anchors[:count], joints, axis=1)
+        along = np.einsum("cgjk,cgjk->cgj", away, np.take(self._axes[:count], joints, axis=1))
+        square = np.einsum("cgjk,cgjk->cgj", away, away) - along * along
         lever = np.sqrt(np.maximum(square, 0.0)) + self._model.geom_rbound[geoms, None]
         change = np.column_stack([changes, np.zeros(count)])[:, joints]  # the joint -1 is none
         grows = ~self._slides[joints]
@@ -221,17 +221,17 @@ class Clearances:
 
     def _measure(self, known: _Bounds, rows: Ints, columns: Ints) -> None:
         """Measure the distances of some pairs in some configurations, and raise the bounds of their gaps."""
-        model, data, segment = self._model, self._data, np.zeros(6)
+        model, data = self._model, self._data
         pairs = known.pairs[columns]
         first, second = self._first[pairs].tolist(), self._second[pairs].tolist()
         ways, present = np.zeros((len(rows), 6)), -1
-        far = np.zeros(len(rows))
-        for number, row in enumerate(rows.tolist()):
+        distances: list[float] = []
+        for row, geom, other, way in zip(rows.tolist(), first, second, ways, strict=True):
             if row != present:
                 self._place(row)
                 present = row
-            far[number] = mujoco.mj_geomDistance(model, data, first[number], second[number], _FAR, segment)
-            ways[number] = segment
+            distances.append(mujoco.mj_geomDistance(model, data, geom, other, _FAR, way))
+        far = np.array(distances)
         ways = ways[:, 3:] - ways[:, :3]
         lengths = np.sqrt((ways * ways).sum(axis=1))
         lengths[~((far > 0) & (lengths > 0))] = np.nan
@@ -291,7 +291,7 @@ class _Supports:
 
         Unless ``exactly``, meshes are replaced by their bounding boxes.
         """
-        local = (directions[:, None] @ rotations)[:, 0]
+        local = np.einsum("ki,kij->kj", directions, rotations)
         size = np.abs(local)
         reach = self._round[geoms] + self._disc[geoms] * np.hypot(size[:, 0], size[:, 1])
         reach += (size * self._flat[geoms] + local * self._middle[geoms]) @ _ONES

@@ -101,6 +101,12 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     return _MovingTest(world, body, Placement(world, body, dofs), _Chosen.of(world, body, dofs, _KINDS))
 
 
+def moved_world(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None] | None:
+    """Return a function that moves some joints and grabbed bodies in the world's model; see ``moving_test``."""
+    world = body.simulation.collisions()
+    return None if body.kinematics.displaced else _Mover(world, body, dofs)
+
+
 class Among(NamedTuple):
     """Selected geom pairs of a batch of configurations.
 
@@ -266,6 +272,24 @@ class Placement:
         for column, multiple, index in self._followers:
             qpos[:, index] = multiple.follow_many(values[:, column])
         return qpos
+
+
+class _Mover:
+    """Implementation of ``moved_world``."""
+
+    def __init__(self, world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> None:
+        self._world, self._model, self._data = world, world.model.model, world.model.data
+        self._place, self._held = Placement(world, body, dofs), HeldRoots(world, body) if body.grabs else None
+
+    def __call__(self, values: Floats) -> None:
+        self._place(values)
+        if self._held is None:
+            mujoco.mj_kinematics(self._model, self._data)
+            return
+        with self._held.on_carriers():
+            for _ in range(1 + self._held.are_late):
+                mujoco.mj_kinematics(self._model, self._data)
+        self._world.model.pose_stamp += 1
 
 
 class _MovingTest:

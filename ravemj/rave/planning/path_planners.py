@@ -153,17 +153,19 @@ class PathPlanner(Planner):
 
     def _certified(self, values: Values, traj: Trajectory, status: PlannerStatus) -> PlannerStatus:
         """Certify a motion; if that fails, search for one that can be certified."""
-        search, certificate = self._search_made, traj.certify()
-        for alternative, others in self._alternatives(values, search):
-            if certificate.certified or certificate.reason:
-                break
+        search = self._search_made
+        if traj.is_certified():
+            return status
+        for alternative, others in self._alternatives(values, search) if traj.certificate is None else ():
             other = Trajectory(self._env, "")
             done = self._completed(others, other, alternative)
-            if done and other.certify().certified:
+            if done and other.is_certified():
                 traj.take(other)
-                search, certificate, status = alternative, traj.certificate or certificate, done
+                self._search_made = alternative
+                return done
         self._search_made = search
-        return status if certificate.certified or values.certify != "required" else self._failed(str(certificate))
+        certificate = traj.certificate or traj.certify()
+        return self._failed(str(certificate)) if values.certify == "required" else status
 
     def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
         """Yield alternative paths with their post-processing parameters, the quick ones first.
