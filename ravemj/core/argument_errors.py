@@ -102,8 +102,11 @@ def explain_methods(kind: type, skipped: Collection[str] = ()) -> None:
             continue
         if isinstance(method, FunctionType) and _takes(method):
             setattr(kind, name, explained(method))
-        elif isinstance(method, staticmethod | classmethod) and isinstance(method.__func__, FunctionType):
-            setattr(kind, name, type(method)(explained(method.__func__)))
+        if isinstance(method, staticmethod | classmethod):
+            inner: object = getattr(method, "__func__", None)
+            wrapper = staticmethod if isinstance(method, staticmethod) else classmethod
+            if isinstance(inner, FunctionType):
+                setattr(kind, name, wrapper(explained(inner)))
 
 
 def _takes(method: FunctionType) -> bool:

@@ -448,8 +448,8 @@ class Joint(Member):
         if not limited.speed_torques:
             return limited.max_torque
         speed = abs(float(self.GetVelocities()[axis]))
-        speeds, torques = zip(*limited.speed_torques, strict=True)
-        return float(np.interp(speed, list(speeds), list(torques)))
+        curve = np.array(limited.speed_torques, dtype=float)
+        return float(np.interp(speed, curve[:, 0], curve[:, 1]))
 
     def GetWeights(self) -> Floats:
         """Return the weights in distances between configurations, shape (axes,)."""

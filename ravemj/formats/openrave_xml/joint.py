@@ -1,7 +1,7 @@
 """``<Joint>``: two links, a frame, and the numbers of its axes."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, not_subnormal, rotate, scale
 from ravemj.errors import SourceError
@@ -244,7 +244,10 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     T_first_scope = body.links[first].pose.inverse()
     T_first_frame = T_first_scope @ reader.T_scope_frame
     axes = tuple(
-        Axis(_direction(reader, index, T_first_frame, exchanged=exchanged), circular=circular and index == 0, **numbers)
+        replace(
+            Axis(_direction(reader, index, T_first_frame, exchanged=exchanged), circular=circular and index == 0),
+            **numbers,
+        )
         for index, numbers in enumerate(reader.axes)
     )
     if reader.motor is not None:

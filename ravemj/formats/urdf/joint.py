@@ -107,7 +107,7 @@ def _axis(joint: UrdfJoint, context: Context) -> Axis:
         "viscous_friction": number_of(dynamics, "damping", 0.0),
         "coulomb_friction": number_of(dynamics, "friction", 0.0),
     }  # fmt: skip
-    return Axis(_direction(joint, context), circular=joint.type == "continuous", **limits, **numbers)
+    return replace(Axis(_direction(joint, context), circular=joint.type == "continuous"), **limits, **numbers)
 
 
 def _direction(joint: UrdfJoint, context: Context) -> Vec3:
