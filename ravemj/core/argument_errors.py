@@ -102,11 +102,10 @@ def explain_methods(kind: type, skipped: Collection[str] = ()) -> None:
             continue
         if isinstance(method, FunctionType) and _takes(method):
             setattr(kind, name, explained(method))
-        if isinstance(method, staticmethod | classmethod):
-            inner: object = getattr(method, "__func__", None)
-            wrapper = staticmethod if isinstance(method, staticmethod) else classmethod
-            if isinstance(inner, FunctionType):
-                setattr(kind, name, wrapper(explained(inner)))
+        inner: object = getattr(method, "__func__", None)
+        is_static = isinstance(method, staticmethod)
+        if isinstance(inner, FunctionType) and (is_static or isinstance(method, classmethod)):
+            setattr(kind, name, (staticmethod if is_static else classmethod)(explained(inner)))
 
 
 def _takes(method: FunctionType) -> bool:
