@@ -41,10 +41,12 @@ class _Worker:
 
     def kill(self) -> None:
         """Kill the process immediately."""
-        self.pool.shutdown(wait=False, cancel_futures=True)
+        has_begun = self.process.done() and not self.process.cancelled()
         with contextlib.suppress(ProcessLookupError, BrokenProcessPool):
-            if self.process.done() and not self.process.cancelled():
+            if has_begun:
                 os.kill(self.process.result(), signal.SIGKILL if os.name == "posix" else signal.SIGTERM)
+        # Without waiting for the pool's thread, Python's end could meet it while it closes its pipe.
+        self.pool.shutdown(wait=has_begun, cancel_futures=True)
 
 
 class Workers(Executor):
