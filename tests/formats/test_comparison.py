@@ -132,6 +132,8 @@ OTHERS = {
     ("Joint", "kind"): "slider",
     ("Joint", "parent"): 3,
     ("Joint", "child"): 3,
+    ("Axis", "joint_torque"): 7.0,
+    ("Axis", "speed_torques"): ((0.0, 5.0), (10.0, 1.0)),
     ("Joint", "mimic"): parts.Mimic("first", "", "", parse("joint0", {"joint0"}), (0,)),
     ("Mimic", "position"): "3*first",
     ("Mimic", "velocity"): "|first 3",
