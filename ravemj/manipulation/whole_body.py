@@ -153,18 +153,22 @@ class Moving:
 
     def values(self) -> Floats:
         """Return the values of the active joints, and 0 for each variable of the base, shape (n,)."""
-        values = np.zeros(self.count)
-        values[: len(self.dofs)] = self._kinematics.values()[self.dofs]
+        values, present = np.zeros(self.count), self._kinematics.values()
+        values[: len(self.dofs)] = present if self._all_dofs is None else present[self.dofs]
         return values
 
     def move(self, displacement: Floats) -> None:
         """Move by a displacement, shape (n,): joints, then a twist of the base for a unit of time."""
         joints, pose = len(self.dofs), self.body.pose()  # before the joints move, since that updates all links
         values = self._kinematics.values()
-        before = values[self.dofs]
+        before = values if self._all_dofs is None else values[self.dofs]
         # Prevent rounding errors from exceeding a limit that held before.
         lowest, highest = np.minimum(self._lower, before), np.maximum(self._upper, before)
-        values[self.dofs] = np.minimum(np.maximum(before + displacement[:joints], lowest), highest)
+        ahead = np.minimum(np.maximum(before + displacement[:joints], lowest), highest)
+        if self._all_dofs is None:
+            values = ahead
+        else:
+            values[self.dofs] = ahead
         self.body.set_values(values, clamp_mimic=True)
         if self._base.shape[1]:
             twist = self._base.dot(displacement[joints:])

@@ -29,12 +29,12 @@ class BoxProblem:
         lower, upper = bounds
         room = upper - lower
         self._has_fixed = len(room) > 0 and float(room.min()) <= _SNAP
-        self._fixed = room <= _SNAP
         self._lower, self._upper = lower, upper
         self._hessian = hessian
         if self._has_fixed:
-            self._free = np.flatnonzero(~self._fixed)
-            self._rest = np.where(self._fixed, lower, 0.0)
+            is_fixed = room <= _SNAP
+            self._free = np.flatnonzero(~is_fixed)
+            self._rest = np.where(is_fixed, lower, 0.0)
             self._hessian = hessian[np.ix_(self._free, self._free)]
             self._coupling = hessian[self._free] @ self._rest
             self._lower, self._upper = lower[self._free], upper[self._free]
@@ -54,7 +54,7 @@ class BoxProblem:
 
     def _minimise_free(self, gradient: Floats) -> Floats:
         lower, upper = self._lower, self._upper
-        x = np.minimum(np.maximum(np.zeros(len(lower)), lower), upper)
+        x = np.minimum(np.maximum(lower, 0.0), upper)
         greatest = float(np.abs(gradient).max(initial=0.0))
         if not greatest:
             return x
@@ -70,11 +70,12 @@ class BoxProblem:
 def is_optimal(hessian: Floats, gradient: Floats, lower: Floats, upper: Floats, x: Floats) -> bool:
     """Return whether the gradient at x is zero for free variables, and points out of the box for those at a bound."""
     slope = hessian.dot(x)
-    rounding = 1e-13 * float(np.abs(slope).max())
+    most = _ACCURATE * float(np.abs(gradient).max()) + 1e-13 * float(np.abs(slope).max())
     slope += gradient
+    if float(np.abs(slope).max()) <= most:
+        return True
     inward = np.minimum(slope, 0.0) * (x < upper), np.maximum(slope, 0.0) * (x > lower)
-    greatest = max(float(inward[1].max()), -float(inward[0].min()))
-    return greatest <= _ACCURATE * float(np.abs(gradient).max()) + rounding
+    return max(float(inward[1].max()), -float(inward[0].min())) <= most
 
 
 def active_set(hessian: Floats, gradient: Floats, lower: Floats, upper: Floats) -> Floats:

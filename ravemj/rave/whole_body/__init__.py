@@ -356,9 +356,10 @@ class WholeBodyIK(ApiObject):
         """
         if not axes or len(set(axes)) != len(axes) or set(axes) - set("xyz"):
             raise ArgumentError(f"add_com: axes are '{axes}', and should be some of x, y and z")
-        rows = ["xyz".index(axis) for axis in axes]
+        rows = slice(None) if axes == "xyz" else ["xyz".index(axis) for axis in axes]
         with self._state.simulation.lock:
-            wanted = self._moving.com()[0][rows] if target is None else checked_vector(target, len(rows), "target")
+            present = self._moving.com()[0][rows].copy()
+            wanted = present if target is None else checked_vector(target, len(axes), "target")
 
         def measure() -> TaskRows:
             com, jacobian = self._moving.com()
@@ -366,7 +367,7 @@ class WholeBodyIK(ApiObject):
 
         def retarget(target: ArrayLike) -> None:
             nonlocal wanted
-            wanted = checked_vector(target, len(rows), "target")
+            wanted = checked_vector(target, len(axes), "target")
 
         return self._plain(
             "centre of mass",
