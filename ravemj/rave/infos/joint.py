@@ -39,7 +39,7 @@ from ravemj.rave.infos.base import (
 )
 
 if TYPE_CHECKING:
-    from ravemj.formats.openrave_xml.actuator import Motor
+    from ravemj.formats.openrave_xml.actuator import GearedMotor
     from ravemj.model.builder import JointBuilder, LinkBuilder
 
 
@@ -84,7 +84,7 @@ class ElectricMotorActuatorInfo(Info):
     coloumb_friction: float = 0.0
     viscous_friction: float = 0.0
 
-    def motor(self) -> "Motor":
+    def motor(self) -> "GearedMotor":
         """Return the motor's torque limit, inertia and friction at the joint."""
         from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS, motor_of  # noqa: PLC0415 - rarely wanted
 
