@@ -23,7 +23,7 @@ _DEPTH = 1.7  # distance of the rows, in distances of the columns
 _TRANSPARENCY = 0.5  # of hands, so that contacts show
 
 
-class _Hand(NamedTuple):
+class _DrawnHand(NamedTuple):
     """A copy of the robot, and its grasp."""
 
     robot: Robot
@@ -41,7 +41,7 @@ def write_grasps(path: str, arm: Manipulator, target: KinBody, grasps: Sequence[
     spacing, rows = 1.3 * _reach(arm, target), -(-len(grasps) // _COLUMNS)
     camera = three_quarter_view(np.zeros(3), spacing * max(1.0, min(len(grasps), _COLUMNS) / 2.2), 4 / 3)
     right, nearer = camera.rotation[:, 0], np.cross(camera.rotation[:, 0], [0, 0, 1])
-    hands, drawn = list[_Hand](), list[GraphHandle]()
+    hands, drawn = list[_DrawnHand](), list[GraphHandle]()
     for number, grasp in enumerate(grasps):
         row, column = divmod(number, _COLUMNS)
         T = target.GetTransform()
@@ -85,7 +85,7 @@ def _copied(env: Environment, body: KinBody, number: int) -> KinBody:
     return copied
 
 
-def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, number: int) -> _Hand:
+def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, number: int) -> _DrawnHand:
     """Add a copy of the robot of which only the hand shows."""
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)
@@ -101,12 +101,12 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
     robot.SetDOFValues(grasp.preshape, gripper, checklimits=0)
     T_base_tool = inverse(robot.GetTransform()) @ copied.GetTransform()
     T_world_target = target.GetTransform()
-    return _Hand(
+    return _DrawnHand(
         robot, gripper, T_world_target @ grasp.pose, T_base_tool, grasp, T_world_target[:3, :3] @ grasp.approach
     )
 
 
-def _motion(hands: Sequence[_Hand]) -> BodyMotion:
+def _motion(hands: Sequence[_DrawnHand]) -> BodyMotion:
     """Return the motion of all hands: to the target along a straight line, then the fingers close."""
 
     def place(time: float) -> None:

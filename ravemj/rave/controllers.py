@@ -481,7 +481,7 @@ class VelocityController(Controller):
     _commands: ClassVar = {"setvelocity": _set_velocity}
 
 
-class _Part(NamedTuple):
+class _PathPart(NamedTuple):
     """Controller of a ``MultiController``, and the indices of its values in those of the whole."""
 
     controller: Controller
@@ -501,7 +501,7 @@ class MultiController(Controller):
         True
     """
 
-    _parts: tuple[_Part, ...] = ()
+    _parts: tuple[_PathPart, ...] = ()
 
     def AttachController(self, controller: Controller, dofindices: ArrayLike, controltransform: int) -> bool:
         """Assign DOFs to a controller.
@@ -530,7 +530,7 @@ class MultiController(Controller):
             raise ArgumentError("AttachController: controltransform: the base has a controller already")
         with robot.simulation_state.simulation.lock:
             controller.Init(robot, dofs, controltransform)
-            self._parts = (*self._parts, _Part(controller, np.array([own.index(dof) for dof in dofs], dtype=int)))
+            self._parts = (*self._parts, _PathPart(controller, np.array([own.index(dof) for dof in dofs], dtype=int)))
         return True
 
     def RemoveController(self, controller: Controller) -> None:

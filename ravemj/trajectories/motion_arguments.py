@@ -22,14 +22,14 @@ _EXPECTED = (
 )
 
 
-class _Trajectory(Protocol):
+class _SampledTrajectory(Protocol):
     """Protocol of the API's trajectories, which are in a higher layer."""
 
     @property
     def waypoints(self) -> Waypoints: ...
 
 
-MotionLike: TypeAlias = Motion | BodyMotion | _Trajectory | str | os.PathLike[str] | Iterable[Any]
+MotionLike: TypeAlias = Motion | BodyMotion | _SampledTrajectory | str | os.PathLike[str] | Iterable[Any]
 """The forms of a motion that ``body_motion`` accepts."""
 
 

@@ -69,7 +69,7 @@ class Tested(NamedTuple):
     measured: Floats
 
 
-class _Bounds(NamedTuple):
+class _GapBounds(NamedTuple):
     """What is known so far of the pairs of a question: their numbers, and gaps [m] as in `Tested`."""
 
     pairs: Ints
@@ -157,7 +157,7 @@ class Clearances:
         gaps = centers - (self._model.geom_rbound[first] + self._model.geom_rbound[second])
         travel = self._travel(changes, pairs)
         needed = travel + (apart + SLACK)
-        known = _Bounds(pairs, needed, gaps, np.full(gaps.shape, np.inf))
+        known = _GapBounds(pairs, needed, gaps, np.full(gaps.shape, np.inf))
         is_near = asked[:, pairs] & (gaps <= needed)
         is_hopeless = is_near & (needed > centers)  # no distance of theirs would be enough
         is_open = is_near & ~is_hopeless
@@ -199,7 +199,7 @@ class Clearances:
         return sums[depths[0], rows, first] + sums[depths[1], rows, second]
 
     def _separate(
-        self, known: _Bounds, rows: Ints, columns: Ints, directions: Floats | None = None, *, exactly: bool = False
+        self, known: _GapBounds, rows: Ints, columns: Ints, directions: Floats | None = None, *, exactly: bool = False
     ) -> None:
         """Raise bounds to what separates pairs in given directions, unit vectors or NaN, shape (k, 3).
 
@@ -219,7 +219,7 @@ class Clearances:
         count = len(rows)
         known.gaps[rows, columns] = np.fmax(known.gaps[rows, columns], -ends[:count] - ends[count:])
 
-    def _measure(self, known: _Bounds, rows: Ints, columns: Ints) -> None:
+    def _measure(self, known: _GapBounds, rows: Ints, columns: Ints) -> None:
         """Measure the distances of some pairs in some configurations, and raise the bounds of their gaps."""
         model, data = self._model, self._data
         pairs = known.pairs[columns]
@@ -248,7 +248,7 @@ class Clearances:
         self._data.geom_xpos[...] = self._positions[row]
         self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
 
-    def _measure_triangles(self, known: _Bounds, rows: Ints, columns: Ints) -> None:
+    def _measure_triangles(self, known: _GapBounds, rows: Ints, columns: Ints) -> None:
         """Do the same for meshes that are not convex, whose hulls are too near."""
         pairs = known.pairs[columns]
         for row, column, pair in zip(rows.tolist(), columns.tolist(), pairs.tolist(), strict=True):

@@ -42,7 +42,7 @@ class SensorElement(NamedTuple):
     name: str = ""
 
 
-class _Sensor(Placed):
+class _SensorScope(Placed):
     """An open ``<Sensor>``."""
 
     def __init__(self, context: Context, device: Device) -> None:
@@ -67,9 +67,9 @@ class _Sensor(Placed):
         self.color = vector(element, self.context.diagnostics, self.color)
 
 
-COMMON_TAGS: dict[str, Tag[_Sensor]] = {
-    "power": Tag(_Sensor.switch, "1: it measures from the start"),
-    "color": Tag(_Sensor.paint, "of what viewers draw: red, green, blue from 0 to 1"),
+COMMON_TAGS: dict[str, Tag[_SensorScope]] = {
+    "power": Tag(_SensorScope.switch, "1: it measures from the start"),
+    "color": Tag(_SensorScope.paint, "of what viewers draw: red, green, blue from 0 to 1"),
 }
 DEVICE_ATTRIBUTES = {
     "type": ", ".join(kind.name for kind in SENSOR_KINDS.values()),
@@ -91,10 +91,10 @@ _IN_FILE = dict.fromkeys(
 )
 
 
-def device_tags(kind: SensorKind) -> Mapping[str, Tag[_Sensor]]:
+def device_tags(kind: SensorKind) -> Mapping[str, Tag[_SensorScope]]:
     """Return the tags specific to a kind of sensor."""
     shared = sensor_tags(kind.device).items()
-    return {name.lower(): Tag(partial(_Sensor.describe, tag=tag), tag.meaning) for name, tag in shared}
+    return {name.lower(): Tag(partial(_SensorScope.describe, tag=tag), tag.meaning) for name, tag in shared}
 
 
 def device_ignored(kind: SensorKind) -> Mapping[str, str]:
@@ -132,7 +132,7 @@ def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
 
 
 def _read(
-    element: Element, context: Context, placement: Mapping[str, Tag[_Sensor]], ignored: Mapping[str, str]
+    element: Element, context: Context, placement: Mapping[str, Tag[_SensorScope]], ignored: Mapping[str, str]
 ) -> SensorElement:
     """Read a ``<Sensor>``; with ``file`` and without a type, that of the file, in the pose of the element."""
     context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
@@ -140,7 +140,7 @@ def _read(
     from_file = SensorElement() if root is None or root.tag != "sensor" else _read(root, context, placement, ignored)
     type_name, name = element.attributes.get("type"), element.attributes.get("name", from_file.name)
     if type_name is None:
-        place = _Sensor(context, Intrinsics())
+        place = _SensorScope(context, Intrinsics())
         context.walk(element, placement, {**ignored, **_IN_FILE}, place)
         return from_file._replace(pose=place.placement.pose, name=name)
     kind = SENSOR_KINDS.get(next(iter(type_name.split()), "").lower())
@@ -150,7 +150,7 @@ def _read(
             "unknown-interface", f"there is no sensor of type '{type_name}'", element.source, hint
         )
         return SensorElement()
-    sensor = _Sensor(context, kind.device)
+    sensor = _SensorScope(context, kind.device)
     tags = {**device_tags(kind), **COMMON_TAGS, **placement}
     context.walk(element, tags, {**device_ignored(kind), **COMMON_IGNORED, **ignored}, sensor)
     problem = sensor.device.problem() if sensor.is_on else None

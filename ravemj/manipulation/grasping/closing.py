@@ -253,10 +253,10 @@ def close(hand: Hand, target: Target | None, approach: Approach, touches: Touche
         >>> str(closed.reason)
         "flies past the target"
     """
-    return _Simulation(hand, approach, touches, steps).run(target)
+    return _ClosingSimulation(hand, approach, touches, steps).run(target)
 
 
-class _Simulation:
+class _ClosingSimulation:
     """State of a simulated grasp: configuration of the robot, and its collision tests."""
 
     def __init__(self, hand: Hand, approach: Approach, touches: Touches, steps: Steps) -> None:

@@ -63,7 +63,7 @@ def hull(points: Floats) -> Hull | None:
     """
     points, order = _sorted(points)
     for noise in (0.0, *_NOISE):
-        growth = _Growth.start(_joggled(points, noise))
+        growth = _HullGrowth.start(_joggled(points, noise))
         if growth is None:
             return None
         try:
@@ -92,7 +92,7 @@ def nearest_facet(points: Floats) -> Facet | None:
 
 
 def _nearest(points: Floats, noise: float) -> Facet | None:
-    growth = _Growth.start(points)
+    growth = _HullGrowth.start(points)
     if growth is None:
         return None
     while True:
@@ -129,7 +129,7 @@ def _sorted(points: Floats) -> tuple[Floats, Ints]:
     return points[order], order
 
 
-class _Growth:
+class _HullGrowth:
     """Convex hull of some of the points, made of simplices, that takes in one more point at a time."""
 
     def __init__(self, points: Floats, simplex: Ints, tolerance: float) -> None:
@@ -144,7 +144,7 @@ class _Growth:
         self._taken = set(simplex.tolist())
 
     @classmethod
-    def start(cls, points: Floats) -> "_Growth | None":
+    def start(cls, points: Floats) -> "_HullGrowth | None":
         """Begin with a large simplex; None if the points are flat."""
         if len(points) <= points.shape[1]:
             return None

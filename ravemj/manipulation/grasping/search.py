@@ -197,7 +197,7 @@ def search(
     saved = robot.configuration()
     try:
         _open(robot, arm)
-        return Grasps(_Search(robot, arm, target, choices).run(reach), choices.friction)
+        return Grasps(_CandidateSearch(robot, arm, target, choices).run(reach), choices.friction)
     finally:
         robot.restore(saved)
 
@@ -241,7 +241,7 @@ class _Candidate(NamedTuple):
     reason: str
 
 
-class _Search:
+class _CandidateSearch:
     """Candidates of one robot, one object and one choice."""
 
     def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> None:

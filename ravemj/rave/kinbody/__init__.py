@@ -91,7 +91,7 @@ class KinBody(BodyConfiguration, Interface):
         self._simulation = state.simulation
         self.annotations = Annotations()
         self.annotations.description = state.scene.description
-        self.innermost_block: _Saving | None = None
+        self.innermost_block: _SavedBody | None = None
 
     def SetName(self, name: str) -> None:
         """Set the ``name``.
@@ -361,7 +361,7 @@ class KinBody(BodyConfiguration, Interface):
             ...     robot.SetDOFValues([0.5, 0.5])
             ...     hits = env.CheckCollision(robot)
         """
-        saving = _Saving(self)
+        saving = _SavedBody(self)
         try:
             saving.__enter__()
             return self
@@ -687,7 +687,7 @@ class KinBody(BodyConfiguration, Interface):
         return enclosing_box(bounds, poses[0] if len(poses) else np.eye(4))
 
 
-class _Saving(Block["KinBody"]):
+class _SavedBody(Block["KinBody"]):
     """Context manager behind ``with body:``."""
 
     def __init__(self, body: KinBody) -> None:

@@ -40,7 +40,7 @@ class _WithKinds(Protocol):
     affine_kinds: dict[str, AffineKind]
 
 
-class _Kind(NamedTuple):
+class _AffineKind(NamedTuple):
     """OpenRAVE's defaults for one type of affine DOFs, and words for the docstrings."""
 
     size: int
@@ -53,10 +53,10 @@ class _Kind(NamedTuple):
 
 
 _KINDS = {
-    "Translation": _Kind(3, 100, 1.0, 0.001, 2.0, "X, Y and Z", "m"),
-    "RotationAxis": _Kind(4, 10000, 0.4, 0.01, 2.0, "angle, for x, y, z and other axes", "rad"),
-    "Rotation3D": _Kind(3, 10000, 0.07, 0.01, 1.0, "rotation vector", "rad"),
-    "RotationQuat": _Kind(4, 1.0, 1.0, 0.01, 0.4, "quaternion", "1"),
+    "Translation": _AffineKind(3, 100, 1.0, 0.001, 2.0, "X, Y and Z", "m"),
+    "RotationAxis": _AffineKind(4, 10000, 0.4, 0.01, 2.0, "angle, for x, y, z and other axes", "rad"),
+    "Rotation3D": _AffineKind(3, 10000, 0.07, 0.01, 1.0, "rotation vector", "rad"),
+    "RotationQuat": _AffineKind(4, 1.0, 1.0, 0.01, 0.4, "quaternion", "1"),
 }
 
 _SETTINGS = {
