@@ -182,6 +182,8 @@ def pose_with_values(pose: Pose, values: Floats, affinedofs: int, axis: Vec3 = Z
             turn = arguments.vec3(given, "values")
             quaternion = wxyz_from_axis_angle(turn, float(np.linalg.norm(turn)))
         else:
+            if not any(given):
+                raise ArgumentError("values: the quaternion is 0 0 0 0, which is not a rotation")
             quaternion = normalize(arguments.wxyz(given, "values"))
     x, y, z = position
     return Pose((x, y, z), quaternion)

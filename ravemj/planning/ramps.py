@@ -93,7 +93,10 @@ def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, accelerat
 def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: Floats) -> Ramps | None:
     """Return the result of ``fit_ramps`` for motions from rest to rest, in a third of its time."""
     first = last = np.full(len(steps), duration / 2)
-    rate = steps * (4 / duration**2)
+    square = duration * duration  # of a long one infinite, where ** raises an error
+    if not square:
+        return None
+    rate = steps * (4 / square)
     way = np.abs(steps)
     too_fast = way > speed * (duration / 2 * (1 + _ROUNDING))
     if too_fast.any():
@@ -121,7 +124,7 @@ def fit_ramps(
     # From the area under two ramps: a^2 T^2 - 4 a (d - (v0 + v1) T / 2) - (v1 - v0)^2 = 0; with the greater root, the
     # change of acceleration within the time.
     side = np.where(excess < 0, -1.0, 1.0)
-    rate = (2 * excess + side * np.sqrt(4 * excess**2 + (duration * change) ** 2)) / duration**2
+    rate = (2 * excess + side * np.sqrt(4 * excess**2 + (duration * change) ** 2)) / (duration * duration)
     divisor = np.where(rate != 0, rate, 1.0)
     first = last = np.clip((duration + change / divisor) / 2, 0.0, duration)
     cruise = start + rate * first

@@ -5,6 +5,7 @@ import pytest
 
 import ravemj
 from ravemj import ConfigurationSpecification, planningutils
+from ravemj.planning.ramps import fit_from_rest
 
 
 def trajectory(rows, *groups):
@@ -104,3 +105,16 @@ def test_the_linear_retimer_interpolates_the_numbers_of_quaternions():
     np.testing.assert_allclose(traj.Sample(1, spec), [1, 0, 0, 0.5, 0, 0, 0], atol=1e-12)
     derivative = traj.Sample(1, spec.ConvertToVelocitySpecification())
     np.testing.assert_allclose(derivative, [-1, 0, 0, -0.5, 0, 0, 0], atol=1e-12)
+
+
+def test_a_pose_of_zeros_is_refused_by_name():
+    spec = ravemj.RaveGetAffineConfigurationSpecification(ravemj.DOFAffine.Transform)
+    with pytest.raises(ravemj.openrave_exception, match="the quaternion is 0 0 0 0"):
+        spec.ExtractTransform(np.eye(4), np.zeros(7), None)
+
+
+@pytest.mark.parametrize("duration", [1e200, 1e-200])
+def test_no_duration_is_too_long_or_short_for_ramps(duration):
+    step, limit = np.array([1.0]), np.array([1e10])
+    ramps = fit_from_rest(step, duration, limit, limit)
+    assert ramps is None if duration < 1 else ramps.duration == duration

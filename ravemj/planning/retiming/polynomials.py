@@ -273,7 +273,10 @@ class JerkLimited:
         times = np.append(inner[np.diff(inner, prepend=0.0) > _SAME_TIME], duration)
         orders = [np.zeros((len(times), len(segment.step))) for _ in range(3)]
         for column, own, (way, *_) in zip(np.flatnonzero(segment.step), changes, joints, strict=True):
-            for order, rows in zip(orders, _states(own, way, duration, times), strict=True):
+            states = _states(own, way, duration, times)
+            if states is None:
+                return None
+            for order, rows in zip(orders, states, strict=True):
                 order[:, column] = np.sign(segment.step[column]) * rows
         for order in orders[1:]:
             order[-1] = 0.0  # exactly at rest
@@ -314,12 +317,17 @@ def _changes(profile: tuple[float, float, float, float], duration: float) -> Flo
     return changes * (duration / whole)
 
 
-def _states(changes: Floats, way: float, duration: float, times: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return values, velocities and accelerations of a joint at times, shape (len(times),) each."""
+def _states(changes: Floats, way: float, duration: float, times: Floats) -> tuple[Floats, Floats, Floats] | None:
+    """Return values, velocities and accelerations of a joint at times, shape (len(times),) each.
+
+    None means that the motion is so short that its distance is rounded to 0.
+    """
     ends = np.append(changes[1:], duration)
     states = [(0.0, 0.0, 0.0)]
     for jerk, elapsed in zip(_SIGNS, (ends - changes).tolist(), strict=True):
         states.append(_after(states[-1], jerk, elapsed))
+    if not states[-1][0]:
+        return None
     scale = way / states[-1][0]
     piece = np.searchsorted(ends[:-1], times, side="right")
     value, velocity, acceleration = np.array(states[:-1])[piece].T
