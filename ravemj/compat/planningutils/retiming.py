@@ -79,7 +79,7 @@ def RetimeTrajectory(
         hastimestamps: Whether to keep existing times if the limits allow.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer; empty for the same as there.
+        plannername: The retimer; empty for the default of ``RetimeActiveDOFTrajectory``.
         plannerparameters: Its parameters as XML text.
     """
     extra = stamped(hastimestamps, plannerparameters)
