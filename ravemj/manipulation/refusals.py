@@ -196,33 +196,24 @@ def troubles(bodies: Bodies, values: Floats) -> list[str]:
 
 
 def allowed_ends(
-    conditions: Conditions,
-    space: Space,
-    allowed: Allowed,
-    ends: tuple[Sequence[Floats], Sequence[Floats]],
-    *,
-    needs: tuple[bool, bool] = (True, True),
-) -> tuple[list[Floats], list[Floats]]:
-    """Return the allowed starts and goals. Use it within ``conditions.kept``.
-
-    ``needs`` are two flags: whether a start and whether a goal is required.
+    conditions: Conditions, space: Space, allowed: Allowed, name: str, ends: Sequence[Floats], *, needed: bool
+) -> list[Floats]:
+    """Return those of the starts or goals that are allowed; ``name`` says which. Use it within ``conditions.kept``.
 
     Raises:
-        RefusedError: a required start or goal is missing, none is allowed, or a value has no limits.
+        RefusedError: none is allowed, there is none although it is needed, or a value has no limits.
     """
     endless = np.flatnonzero(~np.isfinite(space.lower) | ~np.isfinite(space.upper))
     if len(endless):
         raise RefusedError(f"{_described(conditions, int(endless[0]))} has no limits, and should have some")
-    kept: list[list[Floats]] = []
-    for name, candidates, needed in zip(("start", "goal"), ends, needs, strict=True):
-        if not len(candidates) and needed:
-            raise RefusedError(f"there is no {name}")
-        refusals = [refusal(conditions, space, allowed, values, name) for values in candidates]
-        kept.append([values for values, why in zip(candidates, refusals, strict=True) if why is None])
-        if refusals and not kept[-1]:
-            assert refusals[0] is not None, "none is allowed"
-            raise refusals[0]
-    return kept[0], kept[1]
+    if not len(ends) and needed:
+        raise RefusedError(f"there is no {name}")
+    refusals = [refusal(conditions, space, allowed, values, name) for values in ends]
+    kept = [values for values, why in zip(ends, refusals, strict=True) if why is None]
+    if refusals and not kept:
+        assert refusals[0] is not None, "none is allowed"
+        raise refusals[0]
+    return kept
 
 
 def _described(conditions: Conditions, index: int) -> str:

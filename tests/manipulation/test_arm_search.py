@@ -122,7 +122,7 @@ def test_starts_and_goals_are_refused_with_the_reason(simulation, puma):
 
     def refused(*goals):
         with conditions.kept(), pytest.raises(RefusedError) as caught:
-            allowed_ends(conditions, space, conditions.allowed(), ([ANGLES], goals))
+            allowed_ends(conditions, space, conditions.allowed(), "goal", goals, needed=True)
         return caught.value
 
     name = puma.scene.joint_of_dof(arm.arm_dofs[0]).name

@@ -164,12 +164,21 @@ def test_regions_in_collision_name_a_pair_and_a_configuration(kind):
 @pytest.mark.stress
 def test_regions_off_a_constraint_say_how_far():
     robot = planar(1, 1)
+    robot.SetActiveDOFValues([np.pi / 2, 0])
     aside = Region(Bw=bounds(x=ANY, y=[0.5, math.inf], yaw=TURN))
     error = failure(robot, regions=[SQUARE], constraints=[aside])
     assert error.status.causes == {"off the constraint": 200}
     low, high = map(float, str(error).partition("missed by ")[2].split(")")[0].split(" to "))
     assert 0.099 < low < 0.12
     assert 0.27 < high < 0.302
+
+
+def test_a_start_off_the_constraint_is_refused_before_goals_are_sampled():
+    robot = planar(1, 1)
+    aside = Region(Bw=bounds(x=ANY, y=[0.5, math.inf], yaw=TURN))
+    error = failure(robot, regions=[SQUARE], constraints=[aside])
+    assert str(error).startswith("start: the tool is 0.5 off its constraint")
+    assert not error.status.causes
 
 
 @pytest.mark.stress

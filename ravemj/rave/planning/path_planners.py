@@ -2,7 +2,7 @@
 
 import logging
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -87,20 +87,24 @@ class PathPlanner(Planner):
         def draw(source: RootSource) -> list[Floats]:
             return source.first(refuse, random, enough=enough)
 
+        def ends(name: str, given: Floats, sampler: Sampler | None) -> list[Floats]:
+            needed = (sampler is None or not self._samples_roots) and (name == "start" or self._needs_goal)
+            roots = _with_first_roots(name, given, sampler, draw)
+            return allowed_ends(conditions, space, allowed, name, roots, needed=needed)
+
         samplers = values.start_sampler, values.goal_sampler
-        needs = tuple(sampler is None or not self._samples_roots for sampler in samplers)
         try:
-            given = _with_first_roots(samplers, (starts, goals), draw)
-            ends = allowed_ends(conditions, space, allowed, given, needs=(needs[0], needs[1] and self._needs_goal))
+            starts = ends("start", starts, samplers[0])  # before goals are sampled, which may take long
+            goals = ends("goal", goals, samplers[1])
         except RefusedError as error:
             return self._refused(error)
         iterations = int(values.numbers["_nmaxiterations"]) or _ITERATIONS
         budget = Budget(iterations, values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
-        configurations = [*ends[0], *ends[1]]
+        configurations = [*starts, *goals]
         near = conditions.near_others(space, np.array(configurations))
         edges = conditions.edges(near, allowed, values.numbers["_fsteplength"], configurations)
         more = [_further(sampler, refuse) for sampler in samplers]
-        return Problem(edges, *ends, budget, random, more)
+        return Problem(edges, starts, goals, budget, random, more)
 
     def _refused(self, error: RefusedError) -> PlannerStatus:
         status = self._failed(str(error))
@@ -266,21 +270,18 @@ class ExplorationRrt(PathPlanner):
 
 
 def _with_first_roots(
-    samplers: Sequence[Sampler | None], ends: Sequence[Floats], draw: Callable[[RootSource], list[Floats]]
-) -> tuple[list[Floats], list[Floats]]:
-    """Return starts and goals, including those drawn by samplers before the search.
+    name: str, given: Floats, sampler: Sampler | None, draw: Callable[[RootSource], list[Floats]]
+) -> list[Floats]:
+    """Return the starts or goals, including those drawn by a sampler before the search; ``name`` says which.
 
     Raises:
         RefusedError: there are no others, and none of the poses sampled from regions can be reached.
     """
-    every: list[list[Floats]] = []
-    for name, sampler, given in zip(("start", "goal"), samplers, ends, strict=True):
-        drawn = [] if sampler is None else draw(sampler.source)
-        every.append([*given, *drawn])
-        tally = None if sampler is None else sampler.source.tally
-        if tally is not None and not every[-1]:
-            raise tally.error(f"no {name}")
-    return every[0], every[1]
+    roots = [*given, *([] if sampler is None else draw(sampler.source))]
+    tally = None if sampler is None else sampler.source.tally
+    if tally is not None and not roots:
+        raise tally.error(f"no {name}")
+    return roots
 
 
 def _further(sampler: Sampler | None, refuse: Refuse) -> MoreRoots | None:
