@@ -138,7 +138,7 @@ class Waypoints:
         return float(times[-1]) if len(times) else 0.0
 
     def first_after(self, time: float) -> int:
-        """Return the index of the first waypoint at a time or later; after the end, the number of waypoints."""
+        """Return the index of the first waypoint at a time or later; if there is none, the number of waypoints."""
         self._timed()
         if math.isnan(time):
             raise ArgumentError("time: is nan, and should be a number", ErrorCode.Assert)
@@ -198,8 +198,8 @@ class Waypoints:
         """Yield the polynomials of some groups between consecutive waypoints.
 
         Yields:
-            Start and end [s], and the coefficients of powers of the fraction of the segment, lowest first, shape (k,
-            n).
+            Start and end [s], and the coefficients of powers of the fraction of the segment, lowest first, shape
+            (k, n).
 
         Raises:
             ArgumentError: the layout has no time, a group jumps, or derivatives for the interpolation are missing.
@@ -224,7 +224,7 @@ class Waypoints:
         return self.data[index - 1, group.columns], self.data[index, group.columns]
 
     def _unwound(self, group: Group, ends: Ends, find_body: FindBody) -> Ends:
-        """Return the values at both ends; circular joints at the second end are shifted by turns to the first."""
+        """Return the values at both ends; circular joints at the second end are shifted by turns towards the first."""
         first, second = ends
         body = find_body(group.body or "") if group.kind == JOINTS[0] else None
         if body is None:
