@@ -302,7 +302,7 @@ class _Poses:
         return qpos
 
     def targets(self, qpos: Floats) -> Floats:
-        """Return the targets with which servos, named like their joints, hold a pose; shape (nu,)."""
+        """Return the targets of servos that hold a pose, shape (nu,); servos have the names of their joints."""
         model, joints = self.model, {name for body in self._names for names in body.joints for name in names}
         names = [model.actuator(number).name for number in range(model.nu)]
         return np.array([qpos[model.joint(name).qposadr[0]] if name in joints else 0.0 for name in names])

@@ -76,7 +76,7 @@ def _tool(arm: Manipulator) -> tuple[object, ...]:
 
 
 def _links(body: KinBody) -> list[object]:
-    """Return the shapes of all links, and the poses of links that no joint places."""
+    """Return the shapes of each link, and the pose of links that are not the child of a joint of the kinematic tree."""
     placed = {joint.child for joint in body.all_joints if joint.places_child}
     entries: list[object] = []
     for index, link in enumerate(body.links):

@@ -188,7 +188,7 @@ def _slid(parent: Floats, T_parent_frame: Floats, ways: Floats) -> Floats:
 
 
 def _turned(parent: Floats, T_parent_frame: Floats, vectors: Floats) -> Floats:
-    """Return frames after a spherical joint, rotated by vectors of shape (3, N)."""
+    """Return the frames behind a spherical joint for N rotation vectors (axis times angle [rad]), shape (3, N)."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     angle = np.sqrt((vectors * vectors).sum(axis=0))
     x, y, z = vectors / np.where(angle > 0, angle, 1.0)

@@ -32,11 +32,11 @@ class _Meant:
     """Geom pairs that are tested for a robot and a target.
 
     Attributes:
-        link: Link of the robot that each geom belongs to or is held by; -1 for other bodies, one for each geom.
-        side: 1 for geoms of the target, 2 for those of other bodies, 0 for the rest, one for each geom.
+        link: For each geom, the robot link that it belongs to or that holds it; -1 for geoms of other bodies.
+        side: For each geom, 1 if it is of the target, 2 if it is of another body, else 0.
         within: Pairs of geoms of the robot, both orders.
-        masks: For MuJoCo to look at all of these.
-        left_out: Pairs within the robot that MuJoCo does not look at.
+        masks: Masks with which MuJoCo tests all pairs except ``left_out``.
+        left_out: Pairs that MuJoCo cannot test, or None.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState, target: BodyState | None) -> None:

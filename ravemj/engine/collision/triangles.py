@@ -62,7 +62,7 @@ class TriangleTests:
         return not self._is_convex[mesh]
 
     def touch(self, mesh: int, other: int, touching: float) -> bool:
-        """Return whether a mesh and another geom overlap, or a solid is within ``touching`` [m]."""
+        """Return whether a mesh and another geom overlap; a solid also touches within a distance ``touching`` [m]."""
         overlaps = fcl.CollisionResult()
         if not fcl.collide(self._placed(mesh), self._placed(other), _ANY, overlaps):
             return False
@@ -91,7 +91,10 @@ class TriangleTests:
         return min(distance, limit)
 
     def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
-        """Yield signed distance [m] and ``segment`` of each triangle that touches a solid or one of another mesh."""
+        """Yield signed distance [m] and ``segment`` of each triangle that touches the other geom.
+
+        A solid is measured as a whole, a mesh triangle by triangle.
+        """
         result, place = fcl.CollisionResult(), _OTHER_TRIANGLE
         if self._is_mesh(other):
             fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)
@@ -105,7 +108,7 @@ class TriangleTests:
                 yield distance, segment
 
     def _pairs(self, mesh: int, other: int, overlaps: Iterable[fcl.Contact]) -> Iterable[_Candidate]:
-        """Return the triangles of two meshes that overlap."""
+        """Return the intersecting pairs of triangles of two meshes, given FCL's contacts ``overlaps``."""
         pairs = np.array(sorted({(overlap.b1, overlap.b2) for overlap in overlaps}), dtype=int).reshape(-1, 2)
         rotation, position = self._pose_in(mesh, other)
         ours = self._triangles_of(mesh).corners[pairs[:, 0]]

@@ -276,7 +276,7 @@ class BodyKinematics:
 
     @property
     def multiples(self) -> list[tuple[int, Multiple, int]] | None:
-        """The mimic joints as affine functions of DOFs: the DOF, the equation and the index in ``qpos``; else None."""
+        """For each mimic joint its DOF, affine equation and index in ``qpos``; None if an equation is not affine."""
         return self._multiples if self._are_multiples else None
 
     def passive_values(self, index: int) -> Floats:

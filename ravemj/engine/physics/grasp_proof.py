@@ -169,7 +169,7 @@ class _Experiment:
         return forces
 
     def run(self, gravity: Floats) -> Proof:
-        """Press, lift and shake, until the object has moved too far."""
+        """Press the fingers on, lift and shake the object; stop early if it moves too far in the hand."""
         model, data = self._model, self._data
         rotation = self._T_model_world[:3, :3]
         model.opt.gravity[:] = 0.0

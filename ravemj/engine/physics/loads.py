@@ -99,7 +99,7 @@ class Spring:
 
     @property
     def place(self) -> Floats:
-        """Present world position of the point [m], shape (3,)."""
+        """Current world position [m] of the link's point where the spring acts, shape (3,)."""
         T_world_link = self.state.link_transform(self.link)
         return T_world_link[:3, :3] @ self.point + T_world_link[:3, 3]
 

@@ -49,7 +49,7 @@ class Physics:
         return self._loads[state]
 
     def step(self, timestep: float) -> None:
-        """Advance by a time [s], and copy the result to the simulation."""
+        """Advance the dynamics by a time [s], and copy poses and velocities to the simulated bodies."""
         self.prepare()
         model, data = self._model, self._data
         count = math.ceil(timestep / LONGEST_STEP)
@@ -207,7 +207,7 @@ class Physics:
         return spatial[3:].copy(), spatial[:3] - np.cross(point - center, spatial[3:])
 
     def _give_back(self) -> None:
-        """Copy the state to the simulation."""
+        """Copy poses and velocities to the simulated bodies."""
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_comVel(self._model, self._data)

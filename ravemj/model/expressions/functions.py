@@ -218,7 +218,7 @@ def _several(arity: int, roots: Roots, most_roots: int) -> Function:
 
 
 def _root(arity: int, roots: Roots, index: int) -> Function:
-    """Make a function that returns one of several values, or nan if there are fewer."""
+    """Make a function that returns the root number ``index`` of its arguments, or nan if there are fewer roots."""
 
     def root(*arguments: float) -> float:
         values = roots(*arguments)

@@ -242,5 +242,5 @@ class Joint(Record):
 
     @property
     def has_room(self) -> bool:
-        """True if an axis can move within its limits."""
+        """True if an axis is circular or its lower limit is below the upper one."""
         return any(axis.lower < axis.upper or axis.circular for axis in self.axes)
