@@ -143,8 +143,8 @@ class GrabChange(NamedTuple):
 def grab_changes(waypoints: Waypoints, robot_name: str) -> list[GrabChange]:
     """Return the grabs and releases in a trajectory, in the order of time.
 
-    A group ``grab ROBOT LINK …`` has a value for each link of these indices: the index of a body to grab with it, the
-    negative index of one to release, or 0 for no change.
+    A group ``grab ROBOT LINK …`` has a value for each link index: the index of a body to grab with this link, the
+    negative index of a body to release, or 0 for no change.
     """
     times = waypoints.times()
     changes: list[GrabChange] = []

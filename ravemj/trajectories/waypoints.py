@@ -67,8 +67,8 @@ class Waypoints:
         Args:
             index: The waypoint before which they are inserted.
             numbers: The configurations, concatenated.
-            groups: Their layout. Existing waypoints keep values that it lacks; in new ones these are the present values
-                for joints of the same group, else zeros.
+            groups: Their layout. Existing waypoints keep the values that it lacks; in new ones these are the present
+                values for joints of the same group, else zeros.
             overwrite: Whether to overwrite waypoints; data beyond the last one is appended.
             find_body: Finds the bodies of the groups.
 
@@ -149,7 +149,7 @@ class Waypoints:
 
         Args:
             time: Time [s] since the start.
-            restamped: Whether ``deltatime`` is the time since the last waypoint; else that of the next waypoint.
+            restamped: Whether ``deltatime`` is the time since the last waypoint; else it is that of the next waypoint.
             find_body: Finds the bodies of the groups, whose circular joints take the shorter arc.
 
         Raises:
@@ -235,7 +235,7 @@ class Waypoints:
         return first, np.where(circular, second - 2 * np.pi * turns, second)
 
     def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
-        """Return the curve of a group to a waypoint, from its derivatives, or as the derivative of another group."""
+        """Return the curve of a group up to waypoint ``index``, or differentiate that of the group's integral."""
         if group.kind == IK[0]:
             what = f"'{interpolation}' interpolation of goals of inverse kinematics"
             raise UnsupportedError(f"sampling of '{group.name}'", what)
