@@ -1,4 +1,4 @@
-"""The folders of the environment variable ``OPENRAVE_DATA``, in which files are looked for."""
+"""Folders of the environment variable ``OPENRAVE_DATA``, in which files are searched."""
 
 import os
 
@@ -34,7 +34,7 @@ def existing(name: str) -> str:
 
 
 def name_in_data_folders(path: str) -> str:
-    """Return the path of a file relative to the first of the folders that it is in; empty: in none."""
+    """Return the path of a file relative to the first data folder that contains it; empty if there is none."""
     absolute = os.path.abspath(path)
     inside = (
         folder for folder in map(os.path.abspath, data_folders()) if absolute.startswith(os.path.join(folder, ""))

@@ -1,6 +1,6 @@
-"""The policy on which files a model may read; ``docs/files.md`` says it for users.
+"""Policy on which files a model may read; ``docs/files.md`` documents it for users.
 
-Every reader checks here before it opens a file that another file names, however the path is spelled.
+Every reader checks it before opening a file that another file names, however the path is spelled.
 """
 
 import os
@@ -12,12 +12,12 @@ from ravemj.formats.data_folders import data_folders
 
 
 class FileAccess:
-    """The file access of one reading: permitted files, and files read so far.
+    """File access of one reading: permitted files, and files read so far.
 
     Attributes:
-        diagnostics: Takes every finding of the reading.
-        files: Paths of the files that were read, in the order of reading, each with the element that names it; None
-            for the file that was loaded.
+        diagnostics: Receives diagnostics of the reading.
+        files: Paths of the files that were read, in order, each with the element that names it; None for the file
+            that was loaded.
         is_dropped: Whether the model was dropped on a viewer; otherwise its user opened it.
     """
 
@@ -55,13 +55,13 @@ class FileAccess:
         Args:
             path: Its absolute path.
             folder: The folder of the mesh file.
-            is_raw: Whether its bytes become numbers, whatever they are.
+            is_raw: Whether the file is raw numbers of any content.
         """
         places = (folder,) if is_raw else (folder, *self._trees)
         return any(is_inside(path, place) for place in places) and self.permits(path)
 
     def candidates(self, name: str, *folders: str) -> list[str]:
-        """Return the paths at which to look for a model or mesh file: in some folders, then in ``OPENRAVE_DATA``.
+        """Return the paths at which to search a model or mesh file: in some folders, then in ``OPENRAVE_DATA``.
 
         The list is empty if the file must not be read.
         """
@@ -72,8 +72,8 @@ class FileAccess:
         """Report a file that must not be read, and return the report as an error.
 
         Args:
-            name: The file, as it is named.
-            source: Where it is named.
+            name: The file, as written.
+            source: The position of its name.
             is_raw: As for ``permits_part``.
         """
         if self.is_dropped:
@@ -91,12 +91,12 @@ class FileAccess:
         return SourceError(message, source, hint)
 
     def report_missing(self, name: str, source: Source) -> None:
-        """Report a file that is not among those that were dropped; arguments as for ``refuse``."""
+        """Report a file that is not among the dropped ones; arguments as for ``refuse``."""
         message = f"there is no file {name!r} with what was dropped"
         self.diagnostics.error("missing-file", message, source, "drop it together with the model")
 
     def named_diagnostics(self) -> Diagnostics:
-        """Return the findings with the names of dropped files in place of their paths."""
+        """Return the diagnostics with the names of dropped files in place of their paths."""
         named = Diagnostics()
         for finding in self.diagnostics:
             source = self._named_source(finding.source)
@@ -115,6 +115,6 @@ class FileAccess:
 
 
 def is_inside(path: str, place: str) -> bool:
-    """Return whether an absolute path is that of a place, or leads below it; paths count as written."""
+    """Return whether an absolute path is a place or below it; paths are compared as written."""
     path, place = os.path.normcase(path), os.path.normcase(place)
     return path == place or path.startswith(os.path.join(place, ""))

@@ -1,4 +1,4 @@
-"""Files with gains of servos: one line for each joint, or for a pattern of names."""
+"""Files with servo gains: one line for each joint, or for a pattern of names."""
 
 import fnmatch
 import math
@@ -11,7 +11,7 @@ from ravemj.formats.openrave_xml.tree import content_of
 
 
 class GivenGains(NamedTuple):
-    """Gains that a user gives to joints.
+    """User-defined gains of joints.
 
     Attributes:
         pattern: Name of a joint, or a pattern with ``*`` and ``?``.
@@ -50,16 +50,16 @@ def read_gains(path: AnyPath) -> list[GivenGains]:
 
 
 def gains_of(name: str, given: Iterable[GivenGains]) -> GivenGains | None:
-    """Return the last gains whose pattern has the name of a joint, or None."""
+    """Return the last gains whose pattern matches the name of a joint, or None."""
     matching = [gains for gains in given if gains.pattern == name or fnmatch.fnmatchcase(name, gains.pattern)]
     return matching[-1] if matching else None
 
 
 def check_used(given: Iterable[GivenGains], names: Iterable[str]) -> None:
-    """Check that each pattern has a joint.
+    """Check that each pattern matches a joint.
 
     Raises:
-        SourceError: one has none.
+        SourceError: a pattern matches none.
     """
     known = list(names)
     for gains in given:

@@ -1,7 +1,7 @@
 """Resource limits of all readers: a small file must not exhaust memory or processor time.
 
-Documents are counted before a parser builds a tree of them, archives while they are unpacked, and counts that files
-declare before anything of that size is allocated.
+The content of documents is counted before a parser builds a tree, that of archives during unpacking, and declared
+counts are checked before memory is allocated.
 """
 
 import os
@@ -12,37 +12,37 @@ VARIABLE = "RAVEMJ_MOST_BYTES"
 """Environment variable that overrides the limit ``most_bytes``."""
 
 MOST_RATIO = 200
-"""Largest ratio of the size of unpacked content to that of the archive. Meshes and XML reach about 20."""
+"""Maximum ratio of unpacked to packed size. Meshes and XML reach about 20."""
 
 MOST_ELEMENTS = 1_000_000
-"""Largest number of XML elements in a model, where an included file counts each time, and of JSON objects and lists."""
+"""Maximum number of XML elements in a model, where an included file counts each time, and of JSON objects and lists."""
 
 MOST_ATTRIBUTES = 2 * MOST_ELEMENTS
-"""Largest number of XML attributes, and of names and texts in JSON."""
+"""Maximum number of XML attributes, and of names and texts in JSON."""
 
 MOST_NUMBERS = 50_000_000
-"""Largest number of numbers in one list."""
+"""Maximum number of numbers in one list."""
 
 MOST_TRIANGLES = 5_000_000
-"""Largest number of triangles in a mesh file; a few hundred bytes of USE or instances could produce billions."""
+"""Maximum number of triangles in a mesh file; a few hundred bytes of USE or instances could produce billions."""
 
 MOST_MODEL_TRIANGLES = 4 * MOST_TRIANGLES
-"""Largest number of triangles in all mesh files of a model; each scale of a file counts."""
+"""Maximum number of triangles in all mesh files of a model; each scale of a file counts."""
 
 MOST_NODES = 200_000
-"""Largest number of nodes in a mesh file, and of copies of nodes in a COLLADA scene."""
+"""Maximum number of nodes in a mesh file, and of copies of nodes in a COLLADA scene."""
 
 MOST_FILES = 10_000
-"""Largest number of files in an archive or in a model, which may include a file again and again."""
+"""Maximum number of files in an archive or in a model, which may include a file repeatedly."""
 
 _DEFAULT = 256 << 20
 
 
 def most_bytes() -> int:
-    """Return the largest size of a file, unpacked if it is compressed, and of all XML documents of a model together.
+    """Return the maximum size of a file, unpacked if it is compressed, and of all XML documents of a model together.
 
     Raises:
-        ArgumentError: The environment variable ``RAVEMJ_MOST_BYTES`` is no whole number above 0.
+        ArgumentError: The environment variable ``RAVEMJ_MOST_BYTES`` is not a whole number above 0.
     """
     text = os.environ.get(VARIABLE) or str(_DEFAULT)
     if not (text.isascii() and text.isdecimal() and len(text) < 20 and int(text)):
@@ -54,7 +54,7 @@ def check_bytes(count: int, what: str, source: Source) -> None:
     """Refuse content that is too large.
 
     Args:
-        count: Its size, or a lower bound of it.
+        count: Its size, or a lower bound.
         what: Start of the message, for instance "the file has".
         source: The file.
 
@@ -68,10 +68,10 @@ def check_bytes(count: int, what: str, source: Source) -> None:
 
 
 def check_unpacked(count: int, packed: int, source: Source) -> None:
-    """Refuse the unpacked content of an archive or compressed file that is too large, given the sizes of both.
+    """Refuse unpacked content that is too large, given unpacked and packed size.
 
     Raises:
-        LimitError: It has more than ``most_bytes()`` bytes, or is more than ``MOST_RATIO`` times as large.
+        LimitError: It has more than ``most_bytes()`` bytes, or the ratio is above ``MOST_RATIO``.
     """
     check_bytes(count, "it unpacks to", source)
     if count > MOST_RATIO * packed:
@@ -80,7 +80,7 @@ def check_unpacked(count: int, packed: int, source: Source) -> None:
 
 
 def most_unpacked(packed: int) -> int:
-    """Return the number of unpacked bytes to read to decide whether the content is too large."""
+    """Return the number of bytes to unpack to decide whether the content is too large."""
     return min(most_bytes(), MOST_RATIO * packed) + 1
 
 
@@ -125,20 +125,20 @@ def check_count(count: int, most: int, what: str, source: Source) -> None:
 class ParsingBudget:
     """Counts the XML documents of one model against the limits.
 
-    The elements of a document count at each use, its bytes each time it is parsed.
+    The elements of a document count at each use, its bytes at each parsing.
     """
 
     def __init__(self) -> None:
         """Start with a count of zero.
 
         Raises:
-            ArgumentError: The environment variable ``RAVEMJ_MOST_BYTES`` is wrong.
+            ArgumentError: The environment variable ``RAVEMJ_MOST_BYTES`` is invalid.
         """
         most_bytes()
         self._bytes = self._elements = self._attributes = 0
 
     def add_document(self, content: bytes, source: Source) -> int:
-        """Count a document that is about to be parsed; return the number of its elements, or a little more.
+        """Count a document that is about to be parsed; return an upper bound of its number of elements.
 
         Raises:
             LimitError: The model becomes too large.

@@ -1,4 +1,4 @@
-"""``<parameter>``, an element of our own: a value that scripts attach to a link or a joint."""
+"""``<parameter>``, an element of ravemj: a value that scripts attach to a link or a joint."""
 
 from dataclasses import replace
 
@@ -12,9 +12,9 @@ def write_parameters(out: XmlText, parameters: Parameters, of: str | None = None
     """Write an element for each value.
 
     Args:
-        out: Takes the elements.
+        out: Receives the elements.
         parameters: The values.
-        of: What they belong to, if the element around them does not say so.
+        of: Name of the link or joint, if the enclosing element does not give it.
     """
     for name, values in parameters.floats:
         out.element("parameter", values, of=of, name=name, type="floats")
@@ -25,10 +25,10 @@ def write_parameters(out: XmlText, parameters: Parameters, of: str | None = None
 
 
 def with_parameter(before: Parameters, name: str, kind: str, text: str) -> Parameters:
-    """Return some parameters and one more.
+    """Return ``before`` with one more parameter.
 
     Raises:
-        ValueError: It is of no known type, or its text holds something else.
+        ValueError: It is of an unknown type, or its text does not match the type.
     """
     match kind:
         case "floats":

@@ -34,9 +34,9 @@ def read_file(
     """Read a model file from the working folder or a folder of ``OPENRAVE_DATA``.
 
     Args:
-        path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm`` is
-            what has the id ``arm`` in a COLLADA file.
-        given: Attributes that act on the bodies of the file; see ``openrave_xml.given``.
+        path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm``
+            selects the id ``arm`` in a COLLADA file.
+        given: Additional attributes of the bodies; see ``openrave_xml.given``.
         metre: Length of a metre in the unit of the scene. Only lengths of COLLADA files, which declare a unit, are
             converted; gravity and other files are not, as in OpenRAVE.
         access: The files that may be read; by default those of a model that its user opens.
@@ -62,7 +62,7 @@ def read_file(
 
 
 def _read_model(path: str, wanted: str, given: Attributes, metre: float, access: FileAccess) -> Reading:
-    """Read XML, or COLLADA under any file name, since ``Environment.Save`` accepts any."""
+    """Read XML, or COLLADA with any suffix, since ``Environment.Save`` accepts any."""
     if not path.lower().endswith(collada.SUFFIXES):
         try:
             content = content_of(path)
@@ -80,14 +80,14 @@ def _read_model(path: str, wanted: str, given: Attributes, metre: float, access:
 
 
 def _read_mjcf(path: str, content: bytes, given: Attributes, access: FileAccess) -> Reading:
-    """Read MJCF, which MuJoCo compiles: the only format whose reader stands above this room."""
+    """Read MJCF by the engine: only MuJoCo can compile it."""
     from ravemj.engine.mjcf_reading import read_mjcf  # noqa: PLC0415 - it needs MuJoCo
 
     return read_mjcf(path, content, given, access)
 
 
 def _read_xacro(path: str, given: Attributes, access: FileAccess) -> Reading:
-    """Read the URDF to which a xacro file expands; lines in findings are those of the expanded text."""
+    """Read the URDF to which a xacro file expands; line numbers in messages are those of the expanded text."""
     try:
         content = expand(path, given, access)
     except SourceError as error:
@@ -114,7 +114,7 @@ def missing(path: str) -> SourceError:
 def read_data(data: str | bytes, given: Attributes = NOTHING, metre: float = 1.0) -> Reading:
     """Read an OpenRAVE XML or COLLADA document from memory; arguments as for ``read_file``.
 
-    Files that it names are looked for in the working folder.
+    Files that it names are searched in the working folder.
     """
     content, access = data if isinstance(data, bytes) else data.encode(), FileAccess.opened(_TEXT)
     if is_mjcf(content):
@@ -159,7 +159,7 @@ def _read_collada(
 
 
 class _NameSuffixes:
-    """The body names of a file in use, each with its next numeric suffix."""
+    """Names of a file's bodies, each with its next numeric suffix."""
 
     def __init__(self) -> None:
         self._next: dict[str, int] = {}

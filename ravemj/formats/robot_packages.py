@@ -43,7 +43,7 @@ class RobotFile(NamedTuple):
 
 
 def robot_names() -> list[str]:
-    """Return the names of the robots of the packages that are installed."""
+    """Return the names of the robots of the installed packages."""
     folder = _folder(_DESCRIPTIONS)
     modules = [] if folder is None else [path.stem for path in folder.glob(f"[!_]*{_SUFFIX}.py")]
     return sorted({*modules, *_registry()})
@@ -60,7 +60,7 @@ def robot_file(name: str, *, download: bool = False, say: Callable[[str], None] 
     Args:
         name: Its name, for instance ``ur5e_mj_description`` or ``universal_robots_ur5e``.
         download: Whether it may be fetched.
-        say: Receives a message before something is fetched.
+        say: Receives a message before a download.
 
     Raises:
         ArgumentError: there is no such robot, or it is not on this machine and may not be fetched.
@@ -131,7 +131,7 @@ def _repositories(folder: str) -> dict[str, dict[str, str]]:
 
 
 class _Assignments(ast.NodeVisitor):
-    """Values of the assignments of a module: paths that it joins, and arguments of a xacro.
+    """Values assigned in a module: paths, and arguments of a xacro.
 
     Attributes:
         texts: Paths by the names of their variables.
@@ -146,11 +146,11 @@ class _Assignments(ast.NodeVisitor):
         self._repositories = repositories
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
-        """Keep a value with a type."""
+        """Store the value of an annotated assignment."""
         self._assign(node.target, node.value)
 
     def visit_Assign(self, node: ast.Assign) -> None:
-        """Keep a value."""
+        """Store the value of an assignment."""
         self._assign(node.targets[0], node.value)
 
     def _assign(self, target: ast.expr, value: ast.expr | None) -> None:
@@ -165,7 +165,7 @@ class _Assignments(ast.NodeVisitor):
             self.texts[target.id] = text
 
     def _text(self, value: ast.expr) -> str | None:
-        """Evaluate an expression for a path; None if it is not understood."""
+        """Evaluate an expression for a path; None if it is not supported."""
         if isinstance(value, ast.Constant):
             return str(value.value)
         if isinstance(value, ast.Name):

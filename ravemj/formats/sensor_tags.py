@@ -25,7 +25,7 @@ class SensorTag(NamedTuple):
     """An element that describes a sensor.
 
     Attributes:
-        fields: The fields of the device that its numbers set, one each; "" for a number without meaning.
+        fields: The field of the device for each of its numbers; "" for a number without meaning.
         meaning: Description of its content.
         unit: Factor from the element's unit to the field's.
         size: Number of values of a single field; 0 for any.

@@ -1,8 +1,8 @@
 """Rounding of numbers in files, so that reading and writing again reproduces the same digits.
 
 Readers compose transforms, normalize quaternions and convert degrees to radians, which changes the last digits. Writers
-round the results to fewer digits; the errors of reading are so much smaller that the rounded number is a fixed point.
-An error of 1e-13 is a thousandth of what any test can detect.
+round the results to fewer digits; reading errors are so much smaller that the rounded number is a fixed point. The
+rounding error of 1e-13 is a thousandth of what any test can detect.
 """
 
 import math
@@ -44,7 +44,7 @@ def position(point: Vec3) -> Vec3:
 
 
 def direction(vector: Vec3) -> Vec3:
-    """Round a unit vector; its largest component follows from the others."""
+    """Round a unit vector; its largest component is computed from the others."""
     return cast(Vec3, _unit(vector))
 
 
@@ -69,7 +69,7 @@ def degrees(angle: float) -> float:
 
 
 def values(joint: Joint) -> list[float]:
-    """Round the values of a joint that were measured from poses [rad or m]."""
+    """Round the values of a joint, which were measured from poses [rad or m]."""
     return [round(axis.value, _LENGTH_DECIMALS) for axis in joint.axes]
 
 
@@ -80,7 +80,7 @@ def _largest(parts: Sequence[float]) -> int:
 
 
 def _unit(parts: Sequence[float]) -> tuple[float, ...]:
-    """Round a unit vector; its largest component follows from the others, so that normalizing changes nothing."""
+    """Round a unit vector; its largest component is computed from the others, so that normalizing changes nothing."""
     rounded = [_snapped(round(part, _UNIT_DECIMALS)) for part in parts]
     index = _largest(parts)
     rest = sum(part * part for place, part in enumerate(rounded) if place != index)

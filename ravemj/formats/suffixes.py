@@ -1,4 +1,4 @@
-"""Formats of model files that ravemj writes, and the suffixes of their names."""
+"""File formats in which ravemj writes models, and their suffixes."""
 
 SUFFIXES = {
     "collada": (".dae", ".zae"),

@@ -1,4 +1,4 @@
-"""Files with models: COLLADA, OpenRAVE XML and URDF with their meshes; they appear whole or not at all."""
+"""Atomic writing of model files: COLLADA, OpenRAVE XML and URDF with their meshes."""
 
 import io
 import os
@@ -40,12 +40,12 @@ def save(
     """Write a scene to a file.
 
     Args:
-        path: The file. COLLADA goes into a zip archive where it ends in ``.zae``.
-        scene: What to write.
+        path: The file. COLLADA is written to a zip archive if the suffix is ``.zae``.
+        scene: The scene.
         diagnostics: Receives a warning for everything that the format cannot represent.
         kind: The format.
-        meshes: The kind of the files in the folder ``meshes`` beside an OpenRAVE XML file.
-        external: Bodies that COLLADA refers to in other files; see ``external_bodies``.
+        meshes: The format of the files in the folder ``meshes`` beside an OpenRAVE XML file.
+        external: Bodies to which COLLADA refers in other files; see ``external_bodies``.
 
     Raises:
         OutputError: The file or a name in it cannot be written.
@@ -88,7 +88,7 @@ def _save_collada(
 
 
 def _warn_of_losses(body: KinBody, diagnostics: Diagnostics) -> None:
-    """Warn of properties of a body that neither format can represent; scripts and JSON can."""
+    """Warn of properties of a body that no format except scripts and JSON can represent."""
     for arm in body.manipulators:
         if arm.gripper_name:
             message = f"the name '{arm.gripper_name}' of the gripper of the manipulator '{arm.name}' is left out"
@@ -116,7 +116,7 @@ def external_bodies(
         scene: Its bodies; reading a reference must reproduce the present body.
         names: Names of the bodies to refer to.
         diagnostics: Receives a warning for each body that a reference does not reproduce.
-        scheme: What URIs of files in the folders of ``OPENRAVE_DATA`` start with; None for relative ones.
+        scheme: Scheme of URIs of files in the folders of ``OPENRAVE_DATA``; None for relative URIs.
     """
     asked = [(number, body) for number, body in enumerate(scene.bodies) if body.name in names]
     references = {body.name: _external(path, body, number, diagnostics, scheme) for number, body in asked}
@@ -126,7 +126,7 @@ def external_bodies(
 def _external(
     path: AnyPath, body: KinBody, number: int, diagnostics: Diagnostics, scheme: str | None
 ) -> ExternalBody | None:
-    """Return a reference to a body in its file; None, with a warning, where reading it gives another body."""
+    """Return a reference to a body in its file; None, with a warning, if reading it gives another body."""
     try:
         reference = find_external(body, number, os.fspath(path), scheme)
         for root in body.links[:1]:
@@ -172,7 +172,7 @@ def _save_openrave_xml(path: Path, scene: Scene, diagnostics: Diagnostics, meshe
 
 
 def _archive(name: str, content: bytes) -> bytes:
-    """Return a ``.zae`` archive: a document, and the manifest that names it."""
+    """Return a ``.zae`` archive of a document, with the manifest that names it."""
     manifest = f'<?xml version="1.0" encoding="utf-8"?>\n<dae_root>./{escape(quote(name))}</dae_root>\n'
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -9,10 +9,10 @@ from xml.sax.saxutils import escape
 from ravemj.errors import OutputError
 
 Content = str | float | bool | Iterable[float]
-"""What an element or attribute holds: a text, a truth value, or numbers."""
+"""Content of an element or attribute: a text, a truth value, or numbers."""
 
 _FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that no XML document can hold, not even as references."""
+"""Characters that XML documents cannot contain, not even as references."""
 
 _QUOTED = {'"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
@@ -21,7 +21,7 @@ _HEAD = '<?xml version="1.0" encoding="utf-8"?>'
 
 
 class XmlText:
-    """Lines of XML, one element a line, with two blanks for each level."""
+    """Lines of XML, one element per line, indented by two spaces per level."""
 
     def __init__(self, level: int = 0) -> None:
         self._lines: list[str] = []
@@ -37,7 +37,7 @@ class XmlText:
 
     @contextmanager
     def inside(self, tag: str, /, **attributes: Content | None) -> Generator[None]:
-        """Write an element around the content that the block writes; attributes that are None are left out."""
+        """Write an element around the content written in the block; attributes that are None are omitted."""
         self._lines.append(f"{self._indent}<{tag}{_attributes(attributes)}>")
         self._indent += "  "
         yield
@@ -45,26 +45,26 @@ class XmlText:
         self._lines.append(f"{self._indent}</{tag}>")
 
     def element(self, tag: str, content: Content | None = None, /, **attributes: Content | None) -> None:
-        """Write an element that holds a text, or nothing."""
+        """Write an element with or without text."""
         start = f"{self._indent}<{tag}{_attributes(attributes)}"
         text = "" if content is None else text_of(content, tag)
         self._lines.append(f"{start}>{escape(text, {chr(13): '&#13;'})}</{tag}>" if text else f"{start}/>")
 
     def element_inside(self, tag: str, inner: str, content: Content, /, **attributes: Content | None) -> None:
-        """Write an element with attributes around another one that holds a text."""
+        """Write an element with attributes around another one with text."""
         with self.inside(tag, **attributes):
             self.element(inner, content)
 
 
 def text_of(content: Content, tag: str) -> str:
-    """Return the text of a content: numbers with all their digits, whole ones without a point.
+    """Return a content as text: numbers with all their digits, integers without a point.
 
     Args:
         content: The content.
         tag: Name of its element or attribute, for messages.
 
     Raises:
-        OutputError: XML cannot hold one of its characters, or a number is not finite, which OpenRAVE reads as 0.
+        OutputError: XML cannot contain one of its characters, or a number is not finite, which OpenRAVE reads as 0.
     """
     if isinstance(content, str):
         forbidden = _FORBIDDEN.search(content)

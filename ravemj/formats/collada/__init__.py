@@ -1,8 +1,8 @@
-"""COLLADA 1.5: files with kinematics, ``.dae`` and ``.zae``, become bodies.
+"""COLLADA 1.5 files with kinematics, ``.dae`` and ``.zae``.
 
-A document names one scene of nodes that are seen, one of kinematics, and one of physics, and binds them to each other.
-``scenes`` walks over it and fills a ``BodyBuilder`` for each robot; the other modules each read one kind of element.
-References may lead to other files. Broken references are reported and left out, as in OpenRAVE.
+A document names a scene of visible nodes, one of kinematics, and one of physics, and binds these to each other.
+``scenes`` traverses it and fills a ``BodyBuilder`` for each robot; the other modules each read one kind of element.
+References may name other files. As in OpenRAVE, elements with broken references are skipped; they are reported.
 """
 
 from collections.abc import Callable
@@ -34,14 +34,14 @@ def read_file(
     """Read a ``.dae`` or ``.zae`` file.
 
     Args:
-        uri: Where it lies; behind ``#``, the id of the only articulated system or model that is wanted.
-        access: The files that may be read; takes every finding.
+        uri: The path; ``#`` and the id of an articulated system or model select a single body.
+        access: The files that may be read; receives diagnostics.
         included_from: The element that names the file, or None.
-        scale: What all lengths are multiplied by.
-        documents: The COLLADA documents of the model that names the file; None if the file is all of it.
+        scale: Factor of all lengths.
+        documents: The COLLADA documents of the model that names the file; None if the file is the whole model.
 
     Raises:
-        SourceError: The file is broken, or something in it is impossible.
+        SourceError: The file is malformed or has impossible content.
     """
     from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
 
@@ -62,13 +62,13 @@ def split_uri(uri: str) -> tuple[str, str]:
 
 
 def read_text(data: bytes, name: str, access: FileAccess, scale: float = 1.0) -> "Content":
-    """Read a document that is no file, as ``read_file`` reads a file.
+    """Read a document from memory, like ``read_file``.
 
     Args:
-        data: The document; files that it names are looked for in the working folder.
-        name: What to call it in messages.
+        data: The document; files that it names are searched in the working folder.
+        name: Its name in messages.
         access: As for ``read_file``.
-        scale: What all lengths are multiplied by.
+        scale: Factor of all lengths.
     """
     from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
 

@@ -1,4 +1,4 @@
-"""Archives of COLLADA files (``.zae``): a zip file, and in it a manifest that names the document to start with."""
+"""Archives of COLLADA files (``.zae``): zip files with a manifest that names the main document."""
 
 import io
 import os
@@ -13,24 +13,24 @@ from ravemj.formats.meshes.collada.document import parse_tree, words
 from ravemj.formats.meshes.files import read_bytes
 
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
-"""Methods of compression that OpenRAVE unpacks. Python unpacks others without a bound on their size."""
+"""Compression methods that OpenRAVE supports. For others, Python does not limit the unpacked size."""
 _ENTRY = b"PK\1\2"  # begins an entry of the directory
 _DAMAGES = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError)
-"""Exceptions of ``zipfile`` about damaged or encrypted archives, which it does not document."""
+"""Exceptions of ``zipfile`` for damaged or encrypted archives, which it does not document."""
 
 
 class Archive:
-    """An opened archive. Reading a COLLADA file of it unpacks nothing to the disk.
+    """An opened archive. Files in it are read without writing to the disk.
 
     Attributes:
-        path: Where it lies.
+        path: Its path.
     """
 
     def __init__(self, path: str) -> None:
         """Open an archive.
 
         Raises:
-            SourceError: It is missing, too large, or no zip file.
+            SourceError: It is missing, too large, or not a zip file.
         """
         self.path = path
         data = read_bytes(path)
@@ -43,10 +43,10 @@ class Archive:
         self._packed, self._unpacked = len(data), 0
 
     def root(self) -> str:
-        """Return the name of the document to start with.
+        """Return the name of the main document.
 
         Raises:
-            SourceError: The manifest is broken or names a file outside of the archive, or there is no document.
+            SourceError: The manifest is malformed or names a file outside of the archive, or there is no document.
         """
         manifest = Source(self.place("manifest.xml"))
         named = self._named_by_manifest(manifest)
@@ -61,14 +61,14 @@ class Archive:
         return documents[0]
 
     def member(self, name: str, folder: str = "") -> str | None:
-        """Return the full name of a file in the archive, given relative to a folder in it; None if it is not there."""
+        """Return the full name of a file, given relative to a folder in the archive; None if it does not exist."""
         return self._members.get(posixpath.normpath(posixpath.join(folder, name)))
 
     def read(self, name: str) -> bytes:
         """Return the content of a file.
 
         Raises:
-            SourceError: It is damaged or encrypted, or what the archive unpacks to is too large in all.
+            SourceError: It is damaged or encrypted, or the unpacked archive is too large.
         """
         source = Source(self.place(name))
         if self._zip.getinfo(name).compress_type not in _METHODS:
@@ -86,7 +86,7 @@ class Archive:
         """Write all files into a new folder.
 
         Raises:
-            SourceError: A file is damaged or too large, or its name leads out of the folder.
+            SourceError: A file is damaged or too large, or its name is outside of the folder.
         """
         for inside, name in self._members.items():
             if inside.startswith(("/", "..")) or ":" in inside or "\\" in inside:

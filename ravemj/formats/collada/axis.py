@@ -1,4 +1,4 @@
-"""The parameters of an axis: limits, velocities, weights and resolutions, from up to three elements."""
+"""Parameters of a joint axis: limits, velocities, weights and resolutions, from up to three elements."""
 
 import math
 from typing import NamedTuple
@@ -9,20 +9,20 @@ from ravemj.formats.meshes.collada.document import Element, child, children, loc
 from ravemj.model.scene import UNLIMITED, Axis
 
 _RADIANS = {"OpenRAVE Collada Writer", "URDF Collada Writer"}
-"""Tools that write speeds and values of joints in radians, where the standard says degrees."""
+"""Tools that write speeds and values of joints in radians, although the standard requires degrees."""
 
 _UNLIMITED_SLIDE = 1e6  # OpenRAVE's limit of sliders without limits
 _DEGREE = math.pi / 180
 
 
 class AxisReader(NamedTuple):
-    """Reads one axis.
+    """Reader of one axis.
 
     Attributes:
         library: The documents.
         element: The ``<revolute>`` or ``<prismatic>``.
         kinematics: The ``<axis_info>`` of the kinematics system, or None.
-        motion: That of the motion system, or None.
+        motion: The ``<axis_info>`` of the motion system, or None.
     """
 
     library: Library
@@ -52,7 +52,7 @@ class AxisReader(NamedTuple):
 
     @property
     def wrap(self) -> float:
-        """The middle of limits beyond half a turn, about which OpenRAVE counts turns [rad]; 0 within them."""
+        """The middle of limits that exceed half a turn [rad], to which OpenRAVE wraps values; 0 for other limits."""
         written = self._written_limits()
         return sum(written) / 2 if written and max(map(abs, written)) > math.pi else 0.0
 
@@ -66,7 +66,7 @@ class AxisReader(NamedTuple):
         return math.inf
 
     def value(self, written: float | None) -> float:
-        """Return the value that a binding gives to the axis [rad or m]."""
+        """Return the axis value [rad or m] that a binding specifies."""
         return 0.0 if written is None or not math.isfinite(written) else written * self._speed_unit()
 
     def read(self, direction: Vec3) -> Axis:
@@ -98,7 +98,7 @@ class AxisReader(NamedTuple):
         return -_UNLIMITED_SLIDE, _UNLIMITED_SLIDE, False
 
     def _written_limits(self) -> tuple[float, float] | None:
-        """Return the limits as written: those of the system, or else those of the axis itself [rad or m]."""
+        """Return the limits as written [rad or m]: those of the kinematics system, or else those of the axis."""
         unit = self._unit(_DEGREE)
         for owner in (self.kinematics, self.element):
             limits = child(owner, "limits")
@@ -120,7 +120,7 @@ class AxisReader(NamedTuple):
         return default if value is None or not math.isfinite(value) else abs(value * self._speed_unit())
 
     def _unit(self, angle: float) -> float:
-        """Return the conversion factor of this axis' numbers, given the unit of angles [rad]."""
+        """Return the conversion factor of this axis's numbers; ``angle`` is the unit of angles [rad]."""
         return angle if self.is_revolute else self.library.metres(self.element)
 
     def _speed_unit(self) -> float:

@@ -1,4 +1,4 @@
-"""The bindings of a ``<scene>``: models to the nodes that show them, and axes to nodes and values."""
+"""Bindings of a ``<scene>``: of models to visible nodes, and of axes to nodes and values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,9 +31,9 @@ class AxisBinding:
 
     Attributes:
         owner: The instance in the kinematics scene whose parameter names the axis, or None.
-        through: The instances that the reference goes through.
+        through: The instances on the path of the reference.
         axis: The ``<revolute>`` or ``<prismatic>``.
-        node: The node, or None where it is missing.
+        node: The node, or None if it is missing.
         value: The value as written.
     """
 
@@ -45,12 +45,12 @@ class AxisBinding:
 
 
 class Bindings:
-    """All bindings of a kinematics scene; of several bindings of one object the first counts.
+    """All bindings of a kinematics scene; if an object has several bindings, the first one is used.
 
     Attributes:
         models: The bindings of models.
         axes: The bindings of axes.
-        moved: The nodes that they bind.
+        moved: The nodes bound to axes.
     """
 
     def __init__(self, models: Sequence[ModelBinding], axes: Sequence[AxisBinding]) -> None:
@@ -65,7 +65,7 @@ class Bindings:
             self._of_axis.setdefault(axis.axis, []).append(axis)
 
     def node_of(self, owner: Element, instance: Element, model: Element) -> Node | None:
-        """Return the node that shows an instance of a model, given the instance in the scene that it belongs to."""
+        """Return the node that shows an instance of a model; ``owner`` is its instance in the kinematics scene."""
         numbers = {number for element in (instance, model) for number in self._of_instance.get(element, ())}
         bound = [self.models[number] for number in sorted(numbers)]
         own = [binding for binding in bound if binding.owner is owner]
@@ -75,10 +75,10 @@ class Bindings:
         """Return the first binding of an axis.
 
         Args:
-            owner: The instance in the kinematics scene that it belongs to.
-            instance: The instance of its model.
+            owner: The instance in the kinematics scene.
+            instance: The instance of the axis's model.
             axis: The axis.
-            holder: The ``<joint>`` or ``<instance_joint>`` that stands in the model.
+            holder: The ``<joint>`` or ``<instance_joint>`` in the model.
         """
         bound = [binding for binding in self._of_axis.get(axis, ()) if _is_through(binding, instance, holder)]
         own = [binding for binding in bound if binding.owner is owner]
@@ -86,7 +86,7 @@ class Bindings:
 
 
 def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> bool:
-    """Return whether a binding may refer to this instance of a model and of a joint."""
+    """Return whether a binding may refer to the given instance of a model and to the given joint."""
     for item in binding.through:
         kind = local_name(item)
         if kind == "instance_kinematics_model" and item is not instance:
@@ -97,7 +97,7 @@ def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> boo
 
 
 def read_bindings(library: Library, instance: Element, scene: Element, root: Node | None) -> Bindings:
-    """Read the bindings in an ``<instance_kinematics_scene>``, whose scene is given, to nodes of the visual scene."""
+    """Read the bindings of a kinematics scene's instance to nodes of the visual scene."""
     models: list[ModelBinding] = []
     axes: list[AxisBinding] = []
     for element in children(instance, "bind_kinematics_model"):

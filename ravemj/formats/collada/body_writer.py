@@ -1,4 +1,4 @@
-"""The writer of one body: its nodes, kinematics models, rigid bodies and articulated systems."""
+"""Writer of one body: its nodes, kinematics models, rigid bodies and articulated systems."""
 
 from collections.abc import Iterator
 
@@ -20,7 +20,7 @@ from ravemj.model.scene import Joint, KinBody, Mimic
 
 _Z: Vec3 = (0.0, 0.0, 1.0)
 DEEPEST = 140
-"""Maximum length of a chain of links; readers accept a few more."""
+"""Maximum length of a chain of links; the limit of readers is slightly higher."""
 
 
 class BodyWriter:
@@ -111,7 +111,7 @@ class BodyWriter:
         return f"{self._model_of_joint[index]}/joint{index}"
 
     def _write_joint(self, index: int, joint: Joint) -> None:
-        """Write the kind of a joint and its axes in its own frame, which has the axes of its parent link."""
+        """Write the type and the axes of a joint, in its frame, which is parallel to that of its parent link."""
         out = self._sections.kinematics_models
         with out.inside("joint", sid=f"joint{index}", name=self._joint_names[index]):
             for place, direction in enumerate(self._directions(joint)):
@@ -132,11 +132,11 @@ class BodyWriter:
         return [direction if direction == ZERO else settled.direction(direction) for direction in directions]
 
     def _is_bare(self, joint: Joint) -> bool:
-        """Return whether OpenRAVE gives a joint the z axis of its child, whatever the file says."""
+        """Return whether OpenRAVE replaces a joint's axis by the z axis of its child."""
         return joint.static and joint.kind == "hinge" and len(self._body.joints) > 0
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn of a weld with another axis than OpenRAVE gives it."""
+        """Warn of a weld whose axis differs from that which OpenRAVE gives it."""
         if self._is_bare(joint) and not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in COLLADA it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)
@@ -194,7 +194,7 @@ class BodyWriter:
             out.element("technique", profile=PROFILE)
 
     def _joint_frames(self, index: int) -> tuple[Vec3, Pose]:
-        """Return a joint's frame: its origin in the parent link, and the pose of the child in it at the value 0."""
+        """Return a joint's origin in the parent link, and the pose of the child in the joint's frame at the value 0."""
         joint, T_parent_child = self._joints[index], self._rest_pose(index)
         anchor = settled.position(joint.anchor if rests(self._body, index) else reported_anchor(joint))
         T_frame_child = Pose(add(T_parent_child.position, scale(anchor, -1.0)), T_parent_child.wxyz)
@@ -232,7 +232,7 @@ class BodyWriter:
 
 
 def _joint_names(body: KinBody) -> dict[int, str]:
-    """Return unique names by joint index, also for readers that normalize names; names they would change come last."""
+    """Return unique joint names by index, also after readers normalize them; names that they change come last."""
     names, used = [joint.name for joint in body.all_joints], Names(())
     order = sorted(range(len(names)), key=lambda index: not names[index] or valid_name(names[index]) != names[index])
     return {index: used.give(valid_name(names[index]) or f"joint{index}") for index in order}

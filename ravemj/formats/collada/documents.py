@@ -1,4 +1,4 @@
-"""The COLLADA documents of one model, which several of its elements may name."""
+"""The COLLADA documents of one model, to which several of its elements may refer."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -12,13 +12,13 @@ if TYPE_CHECKING:  # lxml is slow to import
 
 @dataclass(slots=True)
 class Documents:
-    """Parsed documents and opened archives, so that each file is read once.
+    """Cache of parsed documents and opened archives, so that each file is read once.
 
     Attributes:
-        budget: Counts all XML documents of the model, those of other formats included.
+        budget: Counts all XML documents of the model, including other formats.
         parsed: Documents by path.
         archives: Archives by path.
-        places: For each document the archive that it lies in, or None, and its name there.
+        places: Archive (or None) of each document, and its name in the archive.
     """
 
     budget: ParsingBudget = field(default_factory=ParsingBudget)

@@ -1,4 +1,4 @@
-"""Bodies in other COLLADA files, to which a document refers: how those files name the parts."""
+"""Bodies in other COLLADA files to which a document refers: the names of their parts in those files."""
 
 import os
 from collections.abc import Iterator
@@ -22,20 +22,20 @@ from ravemj.formats.meshes.collada.document import ColladaDocument, Element, chi
 from ravemj.model.scene import KinBody
 
 _MODEL_PARTS = {"instance_kinematics_model", "instance_joint"}
-"""Instances that a path of names has to go through, since one element may be in several of them."""
+"""Instances that a path must contain, since an element may belong to several of them."""
 _TOP = "external_node"
-"""Base name of the outermost nodes, followed by a number; unlike those of inner nodes, so that paths are unique."""
+"""Base name of the outermost nodes, followed by a number; inner nodes have other names, so that paths are unique."""
 
 
 class _BoundAxis(NamedTuple):
     """An axis that the file binds to a node.
 
     Attributes:
-        path: Where it is in the articulated system.
+        path: Its path in the articulated system.
         target: The transform in the node.
-        joint: Where the joint comes from.
-        place: Which axis of the joint it is.
-        unit: The number by which a written value has to be multiplied [rad or m].
+        joint: Source of the joint.
+        place: Index of the axis in the joint.
+        unit: Factor of written values [rad or m].
     """
 
     path: str
@@ -57,13 +57,13 @@ class ExternalBody(NamedTuple):
     """A body in another file.
 
     Attributes:
-        uri: The file, relative to the one that refers to it.
+        uri: The file, relative to the file that refers to it.
         suffix: Suffix of the ids of its nodes, since a document may contain several copies of them.
         system: The id of its articulated system.
-        nodes: The ids of the outermost nodes that show it.
-        models: For each kinematics model its path in the articulated system, and the path of the node that shows it.
+        nodes: The ids of its outermost nodes.
+        models: For each kinematics model its path in the articulated system, and the path of its node.
         axes: Its axes.
-        links: For each link where it comes from, and its path in the articulated system.
+        links: For each link its source, and its path in the articulated system.
         physics: Instances of physics models with its masses.
         T_world_file: Transform from the file's frame to the world.
     """
@@ -85,12 +85,12 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
     Args:
         body: The body.
         number: Its number in the document that will refer to it.
-        target: Path of that document.
-        scheme: What URIs of files in the folders of ``OPENRAVE_DATA`` start with; None for relative ones.
+        target: Path of this document.
+        scheme: Scheme of URIs of files in the folders of ``OPENRAVE_DATA``; None for relative URIs.
 
     Raises:
-        SourceError: It comes from no COLLADA file or from the one that will be replaced, or its file is gone or lacks
-            names.
+        SourceError: It was read from another format or from the file that will be replaced, or its file is missing or
+            lacks names.
     """
     file, line = body.source.file, body.source.line
     archive, inside, _ = file.partition(f"{ARCHIVE_SUFFIX}/")
@@ -109,7 +109,7 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
 
 
 def _uri(path: str, target: str, scheme: str | None) -> str:
-    """Return a URI by which a document finds a file."""
+    """Return a URI of a file, as seen from a document."""
     name = name_in_data_folders(path) if scheme else ""
     file = find(name) if name else None
     if file is not None and os.path.samefile(file, path):  # an earlier folder may have another file of that name
@@ -120,7 +120,7 @@ def _uri(path: str, target: str, scheme: str | None) -> str:
 
 
 class _Finder:
-    """Finds the parts of a body in the file that has it."""
+    """Finds the parts of a body in its file."""
 
     def __init__(self, library: Library, document: ColladaDocument, uri: str, suffix: str) -> None:
         self._library = library
@@ -133,7 +133,7 @@ class _Finder:
         self._root = None if shown is None else expand(library, shown)
 
     def find(self, line: int) -> ExternalBody:
-        """Return the body whose instance or articulated system stands in a line.
+        """Return the body whose instance or articulated system is at a line.
 
         Raises:
             SourceError: There is none, or it lacks names.
@@ -170,7 +170,7 @@ class _Finder:
         return name
 
     def _path(self, node: Node, tops: list[Node]) -> str:
-        """Return the names of the nodes from an outermost one, which is called by its place, to a node."""
+        """Return the path from an outermost node, named by its index, to a node."""
         around = [*node.around()][:-2]  # without the outermost one and the scene
         named = [(step.element.get("sid"), step.element.get("id")) for step in reversed(around)]
         names = [sid or f"{identity}{self._suffix}" for sid, identity in named if sid or identity]

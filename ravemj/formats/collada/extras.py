@@ -1,4 +1,4 @@
-"""``<extra>`` elements: OpenRAVE's, and our own, which say what neither COLLADA nor OpenRAVE's extras can say."""
+"""``<extra>`` elements of OpenRAVE, and of ravemj for properties that neither COLLADA nor OpenRAVE's can represent."""
 
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
@@ -7,7 +7,7 @@ from ravemj.formats.meshes.collada.document import Element, children
 from ravemj.formats.xml_text import XmlText
 
 PROFILE = "ravemj"
-"""The type and the profile of our own extras, which other programs skip."""
+"""Type and profile of ravemj's own extras, which other programs skip."""
 
 
 def extras(element: Element | None, kind: str = PROFILE) -> Iterator[tuple[Element, Element]]:
@@ -20,13 +20,13 @@ def extras(element: Element | None, kind: str = PROFILE) -> Iterator[tuple[Eleme
 
 
 def own_techniques(element: Element | None) -> Iterator[Element]:
-    """Yield the techniques of our own extras in an element."""
+    """Yield the techniques of ravemj's extras in an element."""
     return (technique for _, technique in extras(element))
 
 
 @contextmanager
 def inside_extra(out: XmlText, kind: str = PROFILE, name: str | None = None) -> Generator[None]:
-    """Write an ``<extra>`` of a type around the content that the block writes."""
+    """Write an ``<extra>`` of a type around the content written in the block."""
     with out.inside("extra", type=kind, name=name), out.inside("technique", profile=_profile(kind)):
         yield
 

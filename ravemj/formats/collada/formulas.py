@@ -32,15 +32,15 @@ _LONGEST = 100_000
 
 
 class _FormulaError(Exception):
-    """A formula that has no counterpart in the language of mimic equations."""
+    """A formula that cannot be expressed as a mimic equation."""
 
 
 _NameOf = Callable[[str], str | None]
-"""Returns the expression for a path or a parameter, or None."""
+"""Function that returns the expression for a path or a parameter, or None."""
 
 
 def read_formulas(library: Library, model: Element, joints: Mapping[Element, int], body: BodyBuilder) -> None:
-    """Give the followers of a ``<kinematics_model>`` their equations, given the indices of its joints in a body."""
+    """Set the equations of mimic joints of a ``<kinematics_model>``; ``joints`` are indices of joints in the body."""
     reader = _FormulaReader(library, model, joints, body.joints)
     for item in children(child(model, "technique_common"), "formula", "instance_formula"):
         formula = library.follow(item) if local_name(item) == "instance_formula" else item
@@ -57,7 +57,7 @@ class _FormulaReader:
     steps: Iterator[int] = field(default_factory=itertools.count)
 
     def read(self, formula: Element) -> None:
-        """Read a formula; a joint with an unusable formula stays at its value."""
+        """Read a formula; a joint with an invalid formula keeps its value."""
         path = "".join(words(child(formula, "target", "param")))
         joint = self._joint(path)
         if joint is None:
@@ -88,7 +88,7 @@ class _FormulaReader:
         return text
 
     def _variable(self, path: str) -> str | None:
-        """Return the text for the value of a joint in units of the file."""
+        """Return the expression for the value of a joint in units of the file."""
         joint = self._joint(path)
         if joint is None:
             return None
@@ -109,7 +109,7 @@ class _FormulaReader:
         return self.library.follow(symbol, "formula", attribute="definitionURL") if is_named else None
 
     def _content(self, math: Element | None, name_of: _NameOf, depth: int) -> str:
-        """Return the text of a ``<math>``."""
+        """Return the expression of a ``<math>``."""
         content = next(children(math), None)
         if content is None:
             raise _FormulaError("it is empty")
@@ -163,7 +163,7 @@ class _FormulaReader:
         return text
 
     def _call(self, function: Element, texts: list[str], depth: int) -> str:
-        """Return the text of a function that the file defines, or that OpenRAVE knows by its name."""
+        """Return the expression of a function that is defined in the file, or known to OpenRAVE by name."""
         name = "".join(words(function))
         if name in NAMED:  # OpenRAVE has three of them: SSSA, SASA and SASS
             return f"{name}({','.join(texts)})"

@@ -1,4 +1,4 @@
-"""Geometries of links: the triangles of nodes, and the primitives that OpenRAVE writes beside them."""
+"""Geometries of links: triangles of nodes, and the primitives that OpenRAVE writes in addition."""
 
 import math
 from collections.abc import Callable, Container, Iterator
@@ -31,7 +31,7 @@ _Z_TO_Y = Pose(wxyz=wxyz_from_axis_angle((1.0, 0.0, 0.0), -math.pi / 2))
 
 
 class GeometryReader:
-    """Reads the shapes of nodes; remembers the triangles of each ``<geometry>``."""
+    """Reader of the shapes of nodes, with a cache of the triangles of each ``<geometry>``."""
 
     def __init__(self, library: Library) -> None:
         self._library = library
@@ -41,9 +41,9 @@ class GeometryReader:
         self._triangles = 0
 
     def read(self, node: Node, T_link_node: Callable[[Node], Floats], others: Container[Node] = ()) -> list[Geometry]:
-        """Return the shapes that a node gives to its link, with those of the nodes in it but for other links' nodes.
+        """Return the shapes of a link's node and of the nodes in it, except ``others``, the nodes of other links.
 
-        ``T_link_node`` gives the pose of a node in the link as OpenRAVE computes it, shape (4, 4).
+        ``T_link_node`` returns the pose of a node in the link as OpenRAVE computes it, shape (4, 4).
         """
         shapes: list[Geometry] = []
         for inner in node.nodes:
@@ -91,7 +91,7 @@ class GeometryReader:
                 return
 
     def _own(self, geometry: Element, T_link_frame: Pose) -> tuple[Mesh | None, bool]:
-        """Return the display mesh of a shape and its flag ``modifiable``, from our own extra."""
+        """Return the display mesh of a shape and its flag ``modifiable``, from ravemj's own extra."""
         technique = next(own_techniques(geometry), None)
         render = child(technique, "render")
         target = None if render is None else self._library.follow(render, "geometry")
@@ -102,7 +102,7 @@ class GeometryReader:
         return self._mesh(drawn, None, T_link_frame, target).mesh, modifiable
 
     def _mesh(self, mesh: Mesh, scaling: Floats | None, T_link_frame: Pose, geometry: Element) -> TriMesh:
-        """Return triangles in the frame of their geometry; OpenRAVE takes the file's for those of the link."""
+        """Convert triangles to the geometry's frame; like OpenRAVE, take them as given in the link's frame."""
         self._triangles += len(mesh.triangles)
         source = self._library.source(geometry)
         check_size(self._triangles, source)
@@ -128,7 +128,7 @@ class GeometryReader:
         return self._meshes[geometry]
 
     def _check_count(self, element: Element, readable: int) -> None:
-        """Report triangles that are left out; a polygon of another kind is one triangle or more."""
+        """Report unread triangles; other polygons count as at least one triangle each."""
         count = attribute_number(element, "count", 0)
         if readable < count and (readable == 0 or local_name(element) == "triangles"):
             message = f"only {readable} of {count:.0f} can be read: indices lead nowhere, or numbers are missing"
@@ -169,7 +169,7 @@ class GeometryReader:
 
 
 def _shape(element: Element, metres: float) -> Shape | None:
-    """Return the shape of an element that has a child for each size; None where a size is missing or not finite."""
+    """Return the shape of an element with a child for each size; None if a size is missing or not finite."""
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():

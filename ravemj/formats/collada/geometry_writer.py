@@ -1,4 +1,4 @@
-"""The writer of ``<geometry>`` and its materials: triangles, and what OpenRAVE says of shapes beside them."""
+"""Writer of ``<geometry>`` and materials: triangles, and OpenRAVE's primitives."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ravemj.model.scene import SHAPE_TYPES, Cylinder, Geometry, Mesh, Rgb, TriMe
 _TAGS = {kind.shape: kind.collada[-1] for kind in SHAPE_TYPES if kind.collada}  # the last of two is that along z
 _MESH_DECIMALS = 10  # a coordinate [m] that is all rounding becomes 0
 _LEAST_OPACITY = 1e-12
-"""Least written opacity: readers take an opacity of 0 for a mistake."""
+"""Minimum written opacity: readers treat an opacity of 0 as a mistake."""
 
 
 class GeometryWriter:
@@ -31,7 +31,7 @@ class GeometryWriter:
         self._known: dict[tuple[Rgb, Rgb, float], str] = {}
 
     def write(self, geometry: Geometry, name: str, node: XmlText) -> None:
-        """Write a shape under an id, and an instance of it into the node of its link."""
+        """Write a shape with an id, and an instance of it in its link's node."""
         T_link_geometry = settled.pose(geometry.T_link_geometry)
         out = self.geometries
         with out.inside("geometry", id=name, name=geometry.name or None):
@@ -91,7 +91,7 @@ def _write_info(out: XmlText, geometry: Geometry, T_link_geometry: Pose) -> None
 
 
 def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
-    """Return a mesh in the frame of its link in single precision with merged vertices, like readers of the file."""
+    """Return a mesh as read from the file: in its link's frame, single precision, merged vertices."""
     vertices = mesh.vertices
     if T_link_geometry != Pose():
         vertices = mesh.moved(T_link_geometry.matrix()).vertices
@@ -100,7 +100,7 @@ def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
 
 
 def _write_mesh(out: XmlText, name: str, mesh: Mesh) -> None:
-    """Write triangles; nothing for an empty mesh."""
+    """Write the triangles of a mesh, unless it is empty."""
     count = len(mesh.vertices)
     with out.inside("mesh"):
         if not len(mesh.triangles):
@@ -122,6 +122,6 @@ def _write_mesh(out: XmlText, name: str, mesh: Mesh) -> None:
 
 
 def write_pose(out: XmlText, T: Pose) -> None:
-    """Write the transforms of a settled pose."""
+    """Write the transforms of a rounded pose."""
     out.element("translate", T.position)
     out.element("rotate", settled.axis_angle(T.wxyz))

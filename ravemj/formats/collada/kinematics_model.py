@@ -1,4 +1,4 @@
-"""``<kinematics_model>``: links and joints, filled into a body."""
+"""``<kinematics_model>``: links and joints of a body."""
 
 import re
 from collections.abc import Iterable
@@ -39,7 +39,7 @@ def valid_name(name: str | None) -> str:
 
 
 Infos = dict[Element, tuple[Element, Element | None]]
-"""For axes, the ``<axis_info>`` of the system of kinematics, and that of the system of motion."""
+"""For each axis, its ``<axis_info>`` of the kinematics system and that of the motion system."""
 
 
 class SceneContext(NamedTuple):
@@ -52,7 +52,7 @@ class SceneContext(NamedTuple):
 
 
 class Names:
-    """The names in use, each with its next numeric suffix."""
+    """Names in use, each with its next numeric suffix."""
 
     def __init__(self, taken: Iterable[str]) -> None:
         self._next = dict.fromkeys(taken, 1)
@@ -71,10 +71,10 @@ class _FoundJoint(NamedTuple):
     """A joint that an attachment refers to.
 
     Attributes:
-        keys: All elements that stand for the joint.
+        keys: All elements that represent the joint.
         built: The joint.
         values: The bound values of its axes.
-        place: Its first DOF as the file says it.
+        place: Index of its first DOF in the file.
     """
 
     keys: tuple[Element, ...]
@@ -84,7 +84,7 @@ class _FoundJoint(NamedTuple):
 
 
 _LoopEnd = tuple[Element, int]
-"""An attachment of a joint that closes a loop, and the link that it stands in."""
+"""An attachment of a joint that closes a loop, and the link that contains it."""
 
 
 class ModelReader:
@@ -94,7 +94,7 @@ class ModelReader:
         model: The ``<kinematics_model>``.
         links: Indices of links, by ``<link>``.
         joints: Indices of joints, by ``<joint>`` or ``<instance_joint>``, and by axis.
-        values: Values of the axes of each joint as the scene binds them, in the order of the body's joints.
+        values: Bound values of the axes of each joint, in the order of the body's joints.
         ends: The ends of joints that close loops.
     """
 
@@ -119,7 +119,7 @@ class ModelReader:
         self._dummies = 0
 
     def read(self) -> None:
-        """Read all links, each with those that its joints carry."""
+        """Read all links, each with its child links."""
         common = child(self.model, "technique_common")
         for link in children(common, "link"):
             parent = None if self._root is None else self._root.parent
@@ -128,7 +128,7 @@ class ModelReader:
             self._read_link(link, self._root, self._T_world_root)
 
     def settle(self, others: "list[ModelReader]") -> None:
-        """Give the joints to the body, with what they follow, once all models of the body are read."""
+        """Add joints and mimic equations to the body, after all models of the body are read."""
         self._close_loops([end for reader in others for end in reader.ends])
         for joint in sorted(self._found, key=lambda joint: joint.place):  # OpenRAVE's order, where it wrote one
             self.joints |= dict.fromkeys(joint.keys, len(self._body.joints))
@@ -137,7 +137,7 @@ class ModelReader:
         read_formulas(self._library, self.model, self.joints, self._body)
 
     def _close_loops(self, ends: "list[_LoopEnd]") -> None:
-        """Read the joints that close loops; OpenRAVE's reader, and so that of its files, leaves them out."""
+        """Read the joints that close loops, which OpenRAVE's reader ignores."""
         for start, parent in self.ends:
             path = start.get("joint")
             if next(own_techniques(start), None) is None:
@@ -193,8 +193,8 @@ class ModelReader:
     def _world(self, node: Node) -> Floats:
         """Return the pose of a node in the world as OpenRAVE composes it.
 
-        It is the pose of the root link times the transforms of the nodes below that link's node. For shapes of that
-        node itself, its transform counts twice.
+        It is the pose of the root link times the transforms of the nodes below the link's node. For shapes of the
+        link's node itself, its transform is applied twice.
         """
         path = [*node.around()]
         if self._root not in path:
@@ -275,7 +275,7 @@ class ModelReader:
 
 
 def _weld_turn(axis: AxisReader, T_parent_frame: Pose, T_parent_child: Pose) -> Wxyz:
-    """Return the rotation of the child of a weld in its parent, turned by the middle of the written limits."""
+    """Return the rotation of a weld's child in its parent, rotated by the middle of the written limits."""
     turn = wxyz_from_axis_angle(axis.direction, axis.wrap)
     T_frame_child = T_parent_frame.inverse() @ T_parent_child
     return multiply(T_parent_frame.wxyz, multiply(turn, T_frame_child.wxyz))

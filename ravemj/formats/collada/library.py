@@ -52,10 +52,10 @@ class ResolvedReference(NamedTuple):
 
 
 class Library:
-    """The documents that one reading has opened.
+    """The documents opened by one reading.
 
     Attributes:
-        diagnostics: Takes every finding.
+        diagnostics: Receives diagnostics.
     """
 
     def __init__(
@@ -77,10 +77,10 @@ class Library:
         self._scopes: dict[Element, dict[str, ResolvedReference]] = {}
 
     def open_file(self, path: str, named_by: Source | None = None) -> ColladaDocument:
-        """Return the document of a ``.dae`` file, or the first one of a ``.zae`` archive.
+        """Return the document of a ``.dae`` file, or the main document of a ``.zae`` archive.
 
         Raises:
-            SourceError: It cannot be read, or is no COLLADA.
+            SourceError: It cannot be read, or is not COLLADA.
         """
         self._access.files.setdefault(path, named_by or self._included_from)
         if not path.lower().endswith(ARCHIVE_SUFFIX):
@@ -91,11 +91,11 @@ class Library:
         return self._member(archive, archive.root())
 
     def open_text(self, data: bytes, name: str) -> ColladaDocument:
-        """Return the document of a text; files that it names are looked for in the working folder."""
+        """Return the document of a text; files that it names are searched in the working folder."""
         return self._parsed(data, name, None, name)
 
     def document_of(self, element: Element) -> ColladaDocument:
-        """Return the document that an element stands in."""
+        """Return the document that contains an element."""
         return self._of_root[element.getroottree().getroot()]
 
     def source(self, element: Element) -> Source:
@@ -103,25 +103,25 @@ class Library:
         return self.document_of(element).source(element)._replace(included_from=self._included_from)
 
     def warn(self, code: str, message: str, element: Element, hint: str = "") -> None:
-        """Report a finding about an element, which its nearest id names; the same one only once."""
+        """Report a warning about an element, identified by its nearest id; repeated warnings are dropped."""
         if (element, message) not in self._reported:
             self._reported.add((element, message))
             self.diagnostics.warn(code, f"{label(element)}: {message}", self.source(element), hint)
 
     def error(self, message: str, element: Element, hint: str = "") -> SourceError:
-        """Return an error about an element, which its nearest id names."""
+        """Return an error about an element, identified by its nearest id."""
         return SourceError(f"{label(element)}: {message}", self.source(element), hint)
 
     def follow(self, element: Element, *kinds: str, attribute: str = "url") -> Element | None:
-        """Return the element that a URL in an attribute names.
+        """Return the element to which a URL in an attribute refers.
 
         Args:
             element: The element with the attribute.
-            kinds: What it may name; by default what the element is an instance of.
+            kinds: Permitted kinds; by default the kind of which the element is an instance.
             attribute: The attribute.
 
         Returns:
-            The element; None, with a warning, where there is none.
+            The element; None, with a warning, if it does not exist.
         """
         kinds = kinds or (local_name(element).removeprefix("instance_"),)
         url = (element.get(attribute) or "").strip()
@@ -139,7 +139,7 @@ class Library:
         return next((item for item in items if item is not None), None)
 
     def _document(self, here: ColladaDocument, uri: str, element: Element) -> ColladaDocument | None:
-        """Return the document that a URI names in another one; a file that is missing or broken is reported."""
+        """Return the document of a URI in another document; a missing or malformed file is reported."""
         archive, name = self._documents.places[here.path]
         plain = unquote(uri.partition(":")[2].lstrip("/") if uri.startswith("openrave:") else uri.removeprefix("file:"))
         plain = plain.removeprefix("./")  # so that a file has one name
@@ -189,11 +189,11 @@ class Library:
         return document
 
     def metres(self, element: Element) -> float:
-        """Return the length of the unit that holds for an element, scaled [m]."""
+        """Return the length of the unit of an element, scaled [m]."""
         return self._scale * self._unit(element)
 
     def _unit(self, element: Element) -> float:
-        """Return the length of the unit that the nearest ``<asset>`` around an element gives [m]."""
+        """Return the length of the unit in the nearest enclosing ``<asset>`` [m]."""
         metres = self._units.get(element)
         if metres is None:
             asset = child(element, "asset", "unit")
@@ -209,8 +209,8 @@ class Library:
     def resolve(self, path: str, scope: Element) -> ResolvedReference | None:
         """Resolve a path of names.
 
-        The first name is an id, or a sid in the scope or in one around it; ``.`` is the scope itself. The others are
-        sids, each below the one before; where that is an instance, in what it is an instance of.
+        The first name is an id, or a sid in the scope or an enclosing one; ``.`` is the scope itself. Each further name
+        is a sid below the previous element or, if that is an instance, below its target.
         """
         first, *rest = path.strip().split("/")
         for start in self._starts(first, scope):
@@ -237,7 +237,7 @@ class Library:
         return None if inner is None else ResolvedReference(inner.element, (*place.through, *inner.through))
 
     def _scope(self, element: Element) -> dict[str, ResolvedReference]:
-        """Return the elements below one by their sids; of equal ones the nearest, and of these the first, counts."""
+        """Return the elements below an element by sid; of equal sids the nearest, then the first is used."""
         names = self._scopes.get(element)
         if names is not None:
             return names
@@ -262,15 +262,15 @@ class Library:
         return names
 
     def _target(self, element: Element) -> Element | None:
-        """Return the element that an instance refers to; None for other elements."""
+        """Return the target of an instance; None for other elements."""
         if not element.get("url") or local_name(element) not in _MODELS:
             return None
         return self.follow(element)
 
     def parameter(self, name: str, *scopes: Element) -> ResolvedReference | None:
-        """Resolve a parameter to an element that is not a parameter, or to a parameter with a plain value.
+        """Resolve a parameter to an element that is not a parameter, or to a parameter with a literal value.
 
-        Its name, which may be a path of names, is looked for in the scopes, in their order.
+        Its name, which may be a path, is searched in the scopes in order.
         """
         place = next((item for scope in scopes if (item := self.resolve(name, scope)) is not None), None)
         for _ in range(_LONGEST_CHAIN):
@@ -282,7 +282,7 @@ class Library:
         return None
 
     def value(self, element: Element | None, *scopes: Element) -> Element | None:
-        """Return the element that has the plain value of another one, which may name a parameter instead."""
+        """Return the element with the literal value of an element, which may name a parameter instead."""
         if element is None:
             return None
         param = child(element, "param")
@@ -293,7 +293,7 @@ class Library:
         return None if place is None else place.element
 
     def number(self, element: Element | None, *scopes: Element) -> float | None:
-        """Return a number that stands in an element, in its ``<float>``, or in the parameter that it names."""
+        """Return a number in an element, in its ``<float>``, or in the parameter that it names."""
         value = self.value(element, *scopes)
         if value is None:
             return None
@@ -302,14 +302,14 @@ class Library:
         return float(values[0]) if len(values) else None
 
     def truth(self, element: Element | None, default: bool, *scopes: Element) -> bool:
-        """Return a truth value that stands in an element, in its ``<bool>``, or in the parameter that it names."""
+        """Return a truth value in an element, in its ``<bool>``, or in the parameter that it names."""
         value = self.value(element, *scopes)
         text = words(child(value, "bool") if child(value, "bool") is not None else value)
         return default if not text else text[0].lower() not in {"false", "0"}
 
 
 def _reference(element: Element) -> str | None:
-    """Return the path that a parameter refers to; None for other elements and for parameters with a plain value."""
+    """Return the path to which a parameter refers; None for other elements and for parameters with a literal value."""
     if local_name(element) == "bind":
         param = child(element, "param")
         return None if param is None else param.get("ref") or "".join(words(param))

@@ -1,4 +1,4 @@
-"""Translation of mimic equations into MathML: what ``formulas`` reads."""
+"""Translation of mimic equations to MathML, which ``formulas`` reads."""
 
 from collections.abc import Callable, Sequence
 
@@ -9,7 +9,7 @@ from ravemj.model.expressions.nodes import Call, Node, Number, Variable
 
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
 MOST_NESTED = 60
-"""The reader takes a little more than that."""
+"""Maximum nesting depth; the limit of the reader is slightly higher."""
 
 _OPERATORS = {
     "add": "plus", "sub": "minus", "neg": "minus", "mul": "times", "div": "divide", "mod": "rem", "eq": "eq",
@@ -22,7 +22,7 @@ _READ_AS_0 = {"sqrt", "atan2", "int", "SASA", "SASS", "cbrt", "hypot", "not"}
 
 
 def read_as_0(node: Node) -> set[str]:
-    """Return the functions of an equation that OpenRAVE's reader of COLLADA takes for 0, however they are written."""
+    """Return the functions in an equation that OpenRAVE's COLLADA reader evaluates to 0."""
     if not isinstance(node, Call):
         return set()
     name = node.function
@@ -32,14 +32,14 @@ def read_as_0(node: Node) -> set[str]:
 
 
 class TooDeepError(Exception):
-    """An equation whose parentheses are nested too deep for readers."""
+    """An equation nested too deep for readers."""
 
 
 def math_of(expression: Expression, path_of: Callable[[str], str]) -> XmlText:
-    """Return an equation as a ``<math>``, given the path of a joint by the name of its variable.
+    """Return an equation as a ``<math>``; ``path_of`` returns the path of a joint by its variable.
 
     Raises:
-        TooDeepError: No reader would take it.
+        TooDeepError: The equation is nested too deep.
     """
     writer = _Math(path_of)
     with writer.out.inside("math", xmlns=NAMESPACE):
@@ -89,7 +89,7 @@ class _Math:
 
 
 def _operands(function: str, arguments: Sequence[Node]) -> list[Node]:
-    """Return the operands of a sum or product of any number of terms, else the arguments themselves."""
+    """Return all terms of a nested sum or product, else the arguments themselves."""
     rest: list[Node] = []
     while function in {"add", "mul"} and isinstance(arguments[0], Call) and arguments[0].function == function:
         rest.append(arguments[1])

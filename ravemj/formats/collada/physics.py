@@ -1,4 +1,4 @@
-"""Rigid bodies of the physics scenes, which give the links their masses."""
+"""Rigid bodies of physics scenes, which contain the masses of links."""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class RigidBody:
 
     Attributes:
         element: The ``<rigid_body>``.
-        parent: The node in whose frame its mass is given, or None for that of the body's first link.
+        parent: The node in whose frame its mass properties are given, or None for the frame of the first link.
     """
 
     element: Element
@@ -57,11 +57,11 @@ class PhysicsScenes:
     """The physics scenes of a document.
 
     Attributes:
-        gravity: Acceleration of free fall [m/s^2], or None.
+        gravity: Gravitational acceleration [m/s^2], or None.
     """
 
     def __init__(self, library: Library, scene: Element | None, root: Node | None) -> None:
-        """Read the physics scenes that a ``<scene>`` instantiates."""
+        """Read the physics scenes instantiated by a ``<scene>``."""
         self._library = library
         self._root = root
         self._bodies: dict[Node, RigidBody] = {}

@@ -1,4 +1,4 @@
-"""OpenRAVE's ``<extra>`` elements: the kind of a body, manipulators, sensors, motors and adjacent links."""
+"""OpenRAVE's ``<extra>`` elements: body type, manipulators, sensors, motors and adjacent links."""
 
 import math
 from collections.abc import Mapping
@@ -29,11 +29,11 @@ def interface_kind(*elements: Element) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class ExtraReader:
-    """Reads the extras of one body.
+    """Reader of the extras of one body.
 
     Attributes:
         library: The documents.
-        body: The body, filled from its models.
+        body: The body with its links and joints.
         models: Its kinematics models.
         links: Indices of its links, by their elements.
         joints: Indices of its joints, by their elements.
@@ -46,7 +46,7 @@ class ExtraReader:
     joints: Mapping[Element, int]
 
     def read(self, systems: list[Element]) -> None:
-        """Read the extras of articulated systems, and those of the models."""
+        """Read the extras of articulated systems and of the models."""
         for system in systems:
             for extra, technique in extras(system, "manipulator"):
                 self._read_manipulator(extra, technique, system)
@@ -59,7 +59,7 @@ class ExtraReader:
                 self._read_collision(technique, scope)
 
     def _link(self, element: Element, scope: Element, attribute: str = "link") -> int | None:
-        """Return the index of the link in an attribute; None, with a warning, if it does not exist."""
+        """Return the index of the link named by an attribute; None, with a warning, if it does not exist."""
         path = element.get(attribute) or ""
         index = self._found(path, scope, self.links)
         if index is None:
@@ -106,7 +106,7 @@ class ExtraReader:
         self.body.manipulators.append(built)
 
     def _closing(self, element: Element, count: int) -> list[float]:
-        """Return the signs of closing of a gripper's joint, one for each axis."""
+        """Return the closing sign of each axis of a gripper joint."""
         directions = children(element, "chucking_direction", "closing_direction")
         signs = [self.library.number(direction) or 0.0 for direction in directions]
         return (signs + [0.0] * count)[:count]
@@ -151,7 +151,7 @@ class ExtraReader:
 
 
 def _driven(axis: Axis, motor: Element) -> Axis:
-    """Return an axis with the torque limit and the inertia of its motor, both behind the gear, and its friction."""
+    """Return an axis with its motor's torque limit and inertia, both converted by the gear, and friction."""
 
     def number(name: str) -> float:
         values = numbers(child(motor, name))

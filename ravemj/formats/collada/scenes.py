@@ -1,4 +1,4 @@
-"""``<scene>``: the bodies of a document, and the sensors that none of them carries."""
+"""``<scene>``: the bodies of a document, and its sensors without a robot."""
 
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ from ravemj.model.scene import AttachedSensor
 
 _MAX_DEPTH = 20
 _GRAVITY: dict[str, Vec3] = {"X_UP": (-9.797930195020351, 0.0, 0.0), "Y_UP": (0.0, -9.797930195020351, 0.0)}
-"""OpenRAVE's gravity [m/s^2] in files whose up axis is not z."""
+"""OpenRAVE's gravity [m/s^2] for files whose up axis is not z."""
 _MOST_SYSTEMS = 1000
 
 
@@ -28,9 +28,9 @@ class Content(NamedTuple):
 
     Attributes:
         bodies: Bodies with kinematics, articulated systems first.
-        others: Bodies that are only a node of the visual scene.
-        gravity: Acceleration of free fall [m/s^2], or None.
-        sensors: Sensors that no body carries.
+        others: Bodies that consist of a node of the visual scene only.
+        gravity: Gravitational acceleration [m/s^2], or None.
+        sensors: Sensors without a robot.
         description: Description in its ``<asset>``.
     """
 
@@ -46,11 +46,11 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
 
     Args:
         library: The documents.
-        document: The one to read.
-        wanted: The id of the articulated system or model of the only body that is wanted; empty for all bodies.
+        document: The document to read.
+        wanted: The id of an articulated system or model to read a single body; empty for all bodies.
 
     Raises:
-        SourceError: Something in it is impossible, or what is wanted is not there.
+        SourceError: It has impossible content, or the body does not exist.
     """
     scene = child(document.root, "scene")
     instance = child(scene, "instance_visual_scene")
@@ -88,7 +88,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
 
 
 class _System(NamedTuple):
-    """An articulated system, the outermost part first, or a model that belongs to none."""
+    """An articulated system, outermost part first, or a model outside of systems."""
 
     systems: list[Element]
     models: list[Element]
@@ -174,7 +174,7 @@ def _take_apart(
 
 
 def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
-    """Return the ``<axis_info>`` elements of a part of a system, by what they say something about."""
+    """Return the ``<axis_info>`` elements of a part of a system, by the axis that they describe."""
     infos: dict[Element, Element] = {}
     for info in children(child(part, "technique_common"), "axis_info"):
         axis = scene.library.resolve(info.get("axis") or "", part)

@@ -11,8 +11,8 @@ class Sections:
     """The libraries of a document, filled body by body.
 
     Attributes:
-        bindings: What binds kinematics to nodes and values.
-        models: How many kinematics models there are.
+        bindings: The bindings of kinematics to nodes and values.
+        models: Number of kinematics models.
     """
 
     geometry: GeometryWriter

@@ -1,4 +1,4 @@
-"""Sensors: OpenRAVE's ``<sensor>``, and the extra of ravemj for sensors that no robot carries."""
+"""Sensors: OpenRAVE's ``<sensor>``, and ravemj's extra for sensors without a robot."""
 
 import math
 from collections.abc import Iterator
@@ -53,7 +53,7 @@ def read_sensor(
 
 
 def read_loose(library: Library, scene: Element) -> Iterator[AttachedSensor]:
-    """Yield the sensors of a kinematics scene that no robot carries."""
+    """Yield the sensors without a robot of a kinematics scene."""
     for technique in own_techniques(scene):
         for element in children(technique, "sensor"):
             sensor = read_sensor(library, element, element, None, read_pose(library, element))
@@ -62,7 +62,7 @@ def read_loose(library: Library, scene: Element) -> Iterator[AttachedSensor]:
 
 
 def _device(library: Library, sensor: Element, device: Device) -> Device:
-    """Return the device that a ``<sensor>`` describes. Elements that are no property of the device are skipped."""
+    """Return the device described by a ``<sensor>``. Elements that are not properties of the device are skipped."""
     tags = {name.lower(): tag for name, tag in sensor_tags(device).items()}
     for element in children(sensor):
         tag = tags.get(local_name(element).lower())
@@ -80,7 +80,7 @@ def _device(library: Library, sensor: Element, device: Device) -> Device:
 
 
 def _device_type(sensor: Element) -> str:
-    """Return the name of the device: the interface that a ``<sensor>`` names, else its type."""
+    """Return the name of the device: the interface named by a ``<sensor>``, else its type."""
     for technique in children(child(sensor, "interface_type"), "technique"):
         named = " ".join(words(child(technique, "interface")))
         if named:
@@ -89,7 +89,7 @@ def _device_type(sensor: Element) -> str:
 
 
 def write_device(out: XmlText, library: XmlText, name: str, sensor: AttachedSensor) -> None:
-    """Write a sensor into the library under an id, and a reference to it; nothing for a frame without a device."""
+    """Write a sensor into the library with an id, and a reference to it; nothing for a frame without a device."""
     if sensor.type is None:
         return
     out.element("instance_sensor", url=f"#{name}")
@@ -103,7 +103,7 @@ def write_device(out: XmlText, library: XmlText, name: str, sensor: AttachedSens
 
 
 def write_loose(out: XmlText, library: XmlText, sensors: tuple[AttachedSensor, ...]) -> None:
-    """Write the sensors that no robot carries into a kinematics scene; only ``read_loose`` reads them."""
+    """Write the sensors without a robot into a kinematics scene; only ``read_loose`` reads them."""
     if not sensors:
         return
     with inside_extra(out):

@@ -1,4 +1,4 @@
-"""Reader of our own ``<extra>`` elements of a body: order, names and parameters of its parts, and grabbed bodies."""
+"""Reader of ravemj's own ``<extra>`` elements: order, names and parameters of a body's parts, and grabbed bodies."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,15 +28,15 @@ _NUMBERS = {
 
 @dataclass(frozen=True, slots=True)
 class SupplementReader:
-    """Reads our own extras of a body's articulated systems.
+    """Reader of ravemj's own extras of a body's articulated systems.
 
     Attributes:
         library: The documents.
-        geometry: Reads shapes.
-        body: The body, filled from its models.
+        geometry: Reader of shapes.
+        body: The body with its links and joints.
         links: Its links, by their elements.
         joints: Its joints, by their elements.
-        values: Values of the joints' axes as the scene binds them, in the order of the body's joints.
+        values: Bound values of the joints' axes, in the order of the body's joints.
     """
 
     library: Library
@@ -50,7 +50,7 @@ class SupplementReader:
         """Read the extras of a system.
 
         Raises:
-            SourceError: A number in it is none.
+            SourceError: A number is malformed.
         """
         for technique in own_techniques(system):
             self._read_names(technique)
@@ -69,7 +69,7 @@ class SupplementReader:
                     self.body.grabs.append(GrabBuilder(element.get("body") or "", link, pose, ignored))
 
     def _read_names(self, technique: Element) -> None:
-        """Read the original names, which COLLADA's readers change, and the order of all parts, written by ravemj."""
+        """Read the original names, which COLLADA readers change, and the order of all parts."""
         body = self.body
         body.name = _text(child(technique, "name")) or body.name
         body.description = _text(child(technique, "description")) or body.description
@@ -97,7 +97,7 @@ class SupplementReader:
     def _order(
         self, listed: list[Element], technique: Element, parts: Mapping[Element, _Part], built: list[_Part]
     ) -> list[int] | None:
-        """Return the indices of the listed parts; None if these are not all parts of the body."""
+        """Return the indices of the listed parts; None unless all parts of the body are listed."""
         index_of = {id(part): index for index, part in enumerate(built)}
         ordered = (self._found(element.get("path") or "", technique, parts) for element in listed)
         order = [index_of.get(id(part), -1) for part in ordered]

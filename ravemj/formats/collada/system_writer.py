@@ -1,4 +1,4 @@
-"""The writer of articulated systems: parameters of the axes, mimic relations, and OpenRAVE's extras."""
+"""Writer of articulated systems: parameters of axes, mimic joints, and OpenRAVE's extras."""
 
 import itertools
 from collections.abc import Callable, Iterator
@@ -37,7 +37,7 @@ class SystemWriter:
         self._model_of_joint = {joint: tree.model for tree in trees for joint in tree.joints}
 
     def write(self) -> None:
-        """Write the systems of kinematics and of motion, and the instance of the latter in the scene."""
+        """Write the kinematics and motion systems, and the instance of the motion system in the scene."""
         out = self._sections.systems
         with out.inside("articulated_system", id=f"{self._name}_kinematics"), out.inside("kinematics"):
             for tree in self._trees:
@@ -95,7 +95,7 @@ class SystemWriter:
                     out.element_inside("max", "float", _in_file(joint, place, axis.upper))
 
     def _write_motion(self, index: int, place: int, axis: Axis) -> None:
-        """Write the largest velocity and acceleration of an axis."""
+        """Write the velocity and acceleration limits of an axis."""
         out, joint = self._sections.systems, self._joints[index]
         with out.inside("axis_info", axis=f"{self._name}_kinematics/{self._name}_axis{index}_{place}"):
             out.element_inside("speed", "float", _in_file(joint, place, axis.max_velocity))
@@ -126,7 +126,7 @@ class SystemWriter:
             bind_axis(self._sections.bindings, target, f"{scope}_joint{index}_axis{place}", value)
 
     def _write_extras(self) -> None:
-        """Write OpenRAVE's extras of the body, and our own for the rest."""
+        """Write OpenRAVE's extras of the body, and ravemj's own for the rest."""
         out, body = self._sections.systems, self._body
         kind = ("robot", "GenericRobot") if body.is_robot else ("kinbody", "KinBody")
         with inside_extra(out, "interface_type"):
@@ -188,10 +188,10 @@ class SystemWriter:
             library.element("viscous_friction", axis.viscous_friction)
 
     def _write_supplement(self) -> None:
-        """Write the extras for ``supplement``.
+        """Write the extras read by ``supplement``.
 
-        That is the order of the parts, their names, which COLLADA's readers change, the values of joints that are no
-        DOFs, and torques that differ between the axes of a joint, which has one motor.
+        They contain the order of parts, names, which COLLADA readers change, values of joints without DOFs, and torques
+        that differ between the axes of a joint, since COLLADA has one motor per joint.
         """
         out, body = self._sections.systems, self._body
         out.element("name", body.name)
@@ -244,12 +244,12 @@ class SystemWriter:
 
 
 def _in_file(joint: Joint, place: int, value: float) -> float:
-    """Return a value of an axis in degrees, for prismatic axes in metres."""
+    """Return an axis value in the unit of the file: degrees, or metres for prismatic axes."""
     return value if joint.slides(place) else settled.degrees(value)
 
 
 def bind_axis(out: XmlText, target: str, parameter: str, value: float) -> None:
-    """Bind the axis of a parameter to its node and value."""
+    """Bind the axis named by a parameter to its node and value."""
     with out.inside("bind_joint_axis", target=target):
         out.element_inside("axis", "param", parameter)
         out.element_inside("value", "float", value)

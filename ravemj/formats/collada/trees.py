@@ -1,4 +1,4 @@
-"""The trees of links that a body consists of; each becomes a kinematics model."""
+"""Link trees of a body; each becomes a kinematics model."""
 
 from typing import NamedTuple
 
@@ -12,8 +12,8 @@ class Tree(NamedTuple):
         number: Its number in the document.
         root: The root link, which has no parent joint.
         links: The links, parents before children.
-        joints: The joints, those that close loops included; they are counted as in ``KinBody.all_joints``.
-        placing: For each link, the joints that carry links on it.
+        joints: The joints, including those that close loops, by their index in ``KinBody.all_joints``.
+        placing: For each link, its child joints in the tree.
     """
 
     number: int
@@ -29,7 +29,7 @@ class Tree(NamedTuple):
 
 
 def trees_of(body: KinBody, first: int) -> list[Tree]:
-    """Return the trees of a body, numbered from a number on; an empty one for a body without links."""
+    """Return the trees of a body, numbered from ``first``; an empty tree for a body without links."""
     joints = body.all_joints
     placing: dict[int, list[int]] = {}
     on_link: dict[int, list[int]] = {}

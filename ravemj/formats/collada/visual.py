@@ -1,4 +1,4 @@
-"""The visual scene with all instances of nodes expanded: which node has which pose, and the poses of elements."""
+"""The visual scene with all instances of nodes expanded, and poses of elements."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -22,12 +22,12 @@ class Node:
     """A node of the expanded scene.
 
     Attributes:
-        element: The ``<node>``; of the scene itself the ``<visual_scene>``.
-        parent: The node around it.
-        names: Its id and sid, and those of the instances that it comes through.
-        transform: Its pose in its parent [m], scale included, shape (4, 4).
-        nodes: The nodes in it.
-        named: The nodes below it by their names, once they were asked for.
+        element: The ``<node>``; for the scene itself the ``<visual_scene>``.
+        parent: The parent node.
+        names: Its id and sid, and those of the instances on its path.
+        transform: Its pose in its parent [m], with scale, shape (4, 4).
+        nodes: The child nodes.
+        named: The nodes below it by name, cached on first use.
     """
 
     element: Element
@@ -39,7 +39,7 @@ class Node:
 
     @property
     def name(self) -> str:
-        """Its name, else its id."""
+        """Its name, else its id, else its sid."""
         return self.element.get("name") or self.element.get("id") or self.element.get("sid") or ""
 
     @property
@@ -48,21 +48,21 @@ class Node:
         return self.transform if self.parent is None else self.parent.world @ self.transform
 
     def around(self) -> Iterator["Node"]:
-        """Yield this node and those around it, the innermost first."""
+        """Yield this node and its ancestors, the nearest first."""
         node: Node | None = self
         while node is not None:
             yield node
             node = node.parent
 
     def find(self, path: str) -> "Node | None":
-        """Return the node that a path of names leads to; the last name may be that of a transform in it."""
+        """Return the node at a path of names; the last name may be that of a transform in the node."""
         node: Node | None = self
         for name in path.strip().removeprefix("#").split("/"):
             node = None if node is None else node._below().get(name)
         return node
 
     def _below(self) -> dict[str, "Node"]:
-        """Return this node and those in it by their names and by those of their transforms; the nearest ones count."""
+        """Return this node and its descendants by their names and those of their transforms; the nearest win."""
         if self.named is None:
             self.named = {}
             queue: deque[Node] = deque([self])
@@ -77,7 +77,7 @@ class Node:
 
 
 def transform_of(library: Library, element: Element) -> Floats:
-    """Return the product of the transforms in an element, in their order, with lengths in metres, shape (4, 4)."""
+    """Return the product of the transforms in an element, in order, with lengths in metres, shape (4, 4)."""
     product = np.eye(4)
     for item in children(element):
         step = local_transform(item)
@@ -129,7 +129,7 @@ def expand(library: Library, scene: Element) -> Node:
 
 
 def find_node(library: Library, root: Node | None, path: str, element: Element) -> Node | None:
-    """Return the node of the visual scene that a path in an element leads to; None, with a warning, without one."""
+    """Return the node at a path of the visual scene; None, with a warning about ``element``, if it does not exist."""
     node = None if root is None else root.find(path.rpartition("#")[2])
     if node is None:
         library.warn("broken-reference", f"there is no node '{path}' in the visual scene", element)
@@ -137,7 +137,7 @@ def find_node(library: Library, root: Node | None, path: str, element: Element) 
 
 
 def read_pose(library: Library, element: Element) -> Pose:
-    """Return the pose that the transforms in an element give, without their stretch.
+    """Return the pose of an element's transforms, without stretch.
 
     Raises:
         SourceError: A number in them is not finite.
@@ -146,7 +146,7 @@ def read_pose(library: Library, element: Element) -> Pose:
 
 
 def polar_decomposition(matrix: Floats, source: Source) -> tuple[Pose, Floats | None]:
-    """Decompose a 4x4 matrix into a pose and a 3x3 stretch, ``matrix = pose @ stretch``; None for one that is rigid.
+    """Decompose a 4x4 matrix into a pose and a 3x3 stretch (None if rigid), ``matrix = pose @ stretch``.
 
     Raises:
         SourceError: A number in it is not finite.
@@ -163,7 +163,7 @@ def polar_decomposition(matrix: Floats, source: Source) -> tuple[Pose, Floats | 
 
 
 def rigid_part(matrix: Floats, source: Source) -> Pose:
-    """Return the pose of a matrix, without its stretch.
+    """Return the pose of a matrix, without stretch.
 
     Raises:
         SourceError: A number in it is not finite.

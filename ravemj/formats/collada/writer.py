@@ -1,8 +1,8 @@
-"""The writer of COLLADA 1.5 with OpenRAVE's extras: a scene as a document.
+"""Writer of COLLADA 1.5 with OpenRAVE's extras.
 
-It writes what ``scenes`` reads, in the arrangement of OpenRAVE's own writer: bodies are articulated systems of motion
-and kinematics, joints stand at 0 and are moved by bound values, masses are rigid bodies. What OpenRAVE's extras cannot
-say goes into extras of our own (``supplement``), which other programs skip.
+It writes what ``scenes`` reads, structured like the output of OpenRAVE's writer: bodies are articulated systems of
+motion and kinematics, joints are written at 0 and moved by bound values, masses are rigid bodies. What OpenRAVE's
+extras cannot represent is written to ravemj's own extras (``supplement``), which other programs skip.
 """
 
 from collections.abc import Mapping
@@ -19,16 +19,16 @@ from ravemj.model.scene import Scene
 NAMESPACE = "http://www.collada.org/2008/03/COLLADASchema"
 
 _NO_TIME = "1970-01-01T00:00:00Z"
-"""The time that the standard requires; constant, so that equal scenes give equal files."""
+"""Time required by the standard; constant, so that equal scenes give equal files."""
 
 
 def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, ExternalBody] | None = None) -> str:
     """Write a scene.
 
     Args:
-        scene: What to write; its view has no place in a COLLADA file.
-        diagnostics: Takes a warning for everything that the format cannot say.
-        external: By name, the bodies that are written as references to other files.
+        scene: The scene; its view is not written.
+        diagnostics: Receives a warning for everything that the format cannot represent.
+        external: By name, the bodies to write as references to other files.
 
     Raises:
         OutputError: A name or a number cannot be written.

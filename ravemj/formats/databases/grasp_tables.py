@@ -33,15 +33,15 @@ _IN_ORDER = (
 
 @dataclass(frozen=True)
 class Owner:
-    """Hand and body that a table is made for; texts are empty in files of OpenRAVE.
+    """Hand and body of a grasp table; texts are empty in files of OpenRAVE.
 
     Attributes:
         robot: Name of the robot.
         manip: Name of the manipulator.
         target: Name of the body.
         joints: Names of the gripper joints.
-        robot_hash: ``robot.GetKinematicsGeometryHash()``.
-        target_hash: The same of the target.
+        robot_hash: ``GetKinematicsGeometryHash()`` of the robot.
+        target_hash: ``GetKinematicsGeometryHash()`` of the target.
     """
 
     robot: str = ""
@@ -54,16 +54,16 @@ class Owner:
 
 @dataclass(frozen=True)
 class StoredGrasps:
-    """Grasp table and how it was made.
+    """Grasp table, and how it was generated.
 
     Attributes:
         rows: One grasp in each row, shape (n, m).
         columns: Columns of each property, by OpenRAVE's names.
-        owner: What it was made for.
+        owner: Hand and body.
         settings: ``friction``, ``avoidlinks``, ``plannername``, ``translationstepmult``, ``finestep`` and
             ``graspsetname``.
-        tried: Number of candidates that were tried.
-        candidates: Number of candidates; more than ``tried`` if the table is partial.
+        tried: Number of tested candidates.
+        candidates: Number of candidates; greater than ``tried`` if the table is partial.
     """
 
     rows: Floats
@@ -75,7 +75,7 @@ class StoredGrasps:
 
 
 def write_grasps(path: str | Path, stored: StoredGrasps) -> None:
-    """Write a table as ``.npz``, whatever its name ends with. A file that was there is kept as ``.old``.
+    """Write a table as ``.npz``, whatever the suffix of the name. An existing file is renamed to ``.old``.
 
     Raises:
         OutputError: it cannot be written.
@@ -99,10 +99,10 @@ def write_grasps(path: str | Path, stored: StoredGrasps) -> None:
 
 
 def read_grasps(path: str | Path) -> StoredGrasps:
-    """Read a table of ravemj, or a pickle of OpenRAVE's.
+    """Read a table of ravemj or a pickle of OpenRAVE.
 
     Raises:
-        ArgumentError: the file is damaged, holds no table, or a table of another version.
+        ArgumentError: the file is damaged, has no table, or a table of another version.
         OSError: it cannot be read.
     """
     content = Path(path).read_bytes()
@@ -118,7 +118,7 @@ def read_grasps(path: str | Path) -> StoredGrasps:
 
 
 def read_version(content: bytes) -> tuple[int, Any]:
-    """Return the version and the value of a database of OpenRAVE's."""
+    """Return the version and the value of an OpenRAVE database."""
     from ravemj.formats.databases.pickles import read_pickle  # noqa: PLC0415 - old files are rare
 
     version, params = read_pickle(content)

@@ -1,4 +1,4 @@
-"""Pickles of OpenRAVE's databases, read through a closed list of classes, so that files cannot run code."""
+"""Pickles of OpenRAVE's databases, read with a fixed list of permitted classes, so that files cannot run code."""
 
 import pickle
 from collections.abc import Callable
@@ -19,7 +19,7 @@ _RENAMED = {"xrange": "range"}
 
 
 class _ArrayUnpickler(pickle.Unpickler):
-    """Unpickler that knows arrays and plain containers only."""
+    """Unpickler that permits only arrays and plain containers."""
 
     def find_class(self, module: str, name: str, /) -> Any:  # noqa: ANN401 - as the base class
         if (module, name) == ("_codecs", "encode"):
@@ -32,7 +32,7 @@ class _ArrayUnpickler(pickle.Unpickler):
 
 
 def _encoder() -> Callable[[str, str], bytes]:
-    """Return a function that encodes bytes of Python 2; pickles cannot change another one."""
+    """Return a new function that encodes bytes of Python 2, so that pickles cannot modify a shared one."""
 
     def encode(text: str, encoding: str = "latin1") -> bytes:
         if encoding != "latin1":
@@ -46,7 +46,7 @@ def read_pickle(content: bytes) -> Any:  # noqa: ANN401 - any plain value
     """Return the plain value of a pickle of Python 2 or 3.
 
     Raises:
-        pickle.UnpicklingError: it is damaged, or holds something else than numbers, texts, arrays and containers.
+        pickle.UnpicklingError: it is damaged, or contains anything but numbers, texts, arrays and containers.
     """
     try:
         return _ArrayUnpickler(BytesIO(content), encoding="latin1").load()

@@ -1,13 +1,13 @@
-"""A cache of parsed meshes on disk, keyed by the content of their files.
+"""Disk cache of parsed meshes, keyed by the content of their files.
 
 The name of an entry (``.mesh``) is a hash of the file, its suffix and the source code of the readers, so that a change
-of any of them invalidates it. It lists the files that the mesh refers to with their hashes, and is valid only while
-these are unchanged.
+of any of them invalidates it. An entry lists the files that the mesh refers to with their hashes, and is valid only
+while these are unchanged.
 
 Errors of the cache are logged at debug level and never prevent a mesh from being read.
 
 ``RAVEMJ_CACHE`` is the folder, or ``off`` for no cache; the default is ``$XDG_CACHE_HOME/ravemj`` or
-``~/.cache/ravemj``. Meshes are in ``meshes`` below it.
+``~/.cache/ravemj``. Meshes are in its folder ``meshes``.
 """
 
 import contextlib
@@ -30,7 +30,7 @@ from ravemj.model.scene import mesh
 _log = logging.getLogger(__name__)
 
 MAX_BYTES = 1 << 30
-"""Size to which the cache is pruned, least recently used files first."""
+"""Size to which the cache is pruned, by deleting the least recently used files first."""
 
 _PRUNE_EVERY = 64  # files written by this process between two checks of the size
 _RECENT = 24 * 3600  # s; a file that was used that recently is not marked again
@@ -44,13 +44,13 @@ def cached_file(
 ) -> tuple[Parts, dict[str, str]]:
     """Return the parts of a mesh file parsed by ``read``, and the digests of the files to which it refers.
 
-    Both come from the cache where possible.
+    Both come from the cache if possible.
 
     Args:
         path: The file.
-        kind: Further key of the cache, such as the suffix.
+        kind: Additional key of the cache, such as the suffix.
         read: Parser of the file's content; returns the parts, and the other files that it has read.
-        access: The files that may be read; the parts of others are not taken from the cache.
+        access: The files that may be read; entries that refer to other files are not used.
 
     Raises:
         SourceError: The file cannot be read.
@@ -98,10 +98,10 @@ def _by_content(
     read: Callable[[bytes], tuple[Parts, ReferencedFiles]],
     permits: Callable[[str], bool],
 ) -> tuple[Parts, ReferencedFiles]:
-    """Return the parts, and the further files that they come from.
+    """Return the parts, and the other files from which they were read.
 
-    If there are further files, the entry is valid for the folder ``home`` only, since their names are relative to it.
-    All of them must be permitted.
+    If there are other files, the entry is valid for the folder ``home`` only, since their names are relative to it. All
+    of them must be permitted.
     """
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
@@ -165,7 +165,7 @@ def _loaded(file: str) -> tuple[Parts, dict[str, str]] | None:
 
 
 def _store(file: Path, content: bytes) -> None:
-    """Write a cache file under a temporary name and rename it, so that no process ever reads an incomplete file."""
+    """Write a cache file under a temporary name and rename it, so that no process reads an incomplete file."""
     global _written  # noqa: PLW0603 - a counter
     name = None
     try:

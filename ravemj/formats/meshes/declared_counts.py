@@ -92,7 +92,7 @@ class _Gltf:
         return cast("list[Entry]", self._header.get(name, []))
 
     def _size(self, accessor: Entry) -> int:
-        """Return how many bytes trimesh allocates for an accessor."""
+        """Return the number of bytes that trimesh allocates for an accessor."""
         count = accessor["count"]
         item = _COMPONENT_BYTES[accessor["componentType"]] * _COMPONENTS[accessor["type"]]
         what = "items in an accessor"

@@ -1,4 +1,4 @@
-"""The format of cache files: arrays as they lie in memory, behind a check sum and a JSON header.
+"""Format of cache files: arrays in their memory layout, after a checksum and a JSON header.
 
 NumPy's own format would take several times as long to load, and pickles can run code.
 
@@ -24,7 +24,7 @@ _SINGLE, _DOUBLE, _TRIANGLE = np.dtype("<f4"), np.dtype("<f8"), np.dtype("<i4")
 
 
 def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
-    """Return the content of an entry: parts, and the files besides the mesh file, as in ``ReferencedFiles``."""
+    """Return the content of an entry: parts, and the digests of other files, as in ``ReferencedFiles``."""
     about: list[object] = []
     arrays: list[bytes] = []
     for part in parts:
@@ -42,7 +42,7 @@ def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
 
 
 def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
-    """Return the arguments of ``pack_entry`` that produced a content.
+    """Return the arguments of ``pack_entry`` for a content.
 
     Raises:
         ValueError: The content is damaged.

@@ -1,4 +1,4 @@
-"""Mesh files and the files that they refer to, read within bounds and recorded for the cache."""
+"""Mesh files and the files that they refer to, read within size limits and recorded for the cache."""
 
 import hashlib
 import os
@@ -16,10 +16,10 @@ _MAX_REFERENCES = 1000
 
 @dataclass(slots=True)
 class ReferencedFiles:
-    """The files that a mesh file and its references name.
+    """The files to which a mesh file and its references refer.
 
     Attributes:
-        digests: SHA-256 of each file on the disk, by path; empty for unreadable files.
+        digests: SHA-256 of each file by path; empty for unreadable files.
         refused: The error if one of them must not be read, else None.
     """
 
@@ -29,7 +29,7 @@ class ReferencedFiles:
     _bytes_left: int = field(default_factory=most_bytes)
 
     def read(self, path: str) -> bytes | None:
-        """Return a file's decompressed content, or None if it cannot be read or all files together get too large."""
+        """Return a file's decompressed content, or None if it is unreadable or all files together are too large."""
         if path not in self.digests and len(self.digests) < _MAX_REFERENCES:
             self.digests[path] = ""
             try:
@@ -50,9 +50,9 @@ class FileContent:
 
     Attributes:
         path: Its path.
-        data: Its bytes, unpacked if it was compressed with gzip.
-        references: The files that it names; shared by all of them.
-        parents: Absolute paths of the chain of files that led to this one.
+        data: Its bytes, decompressed.
+        references: The files that it refers to; shared with these files.
+        parents: Absolute paths of the chain of files that refer to it.
         access: The files that may be read; by default those in the folder of the mesh.
         ros: Whether it is read for a URDF; see ``read_mesh``.
     """
@@ -70,15 +70,15 @@ class FileContent:
         return Source(self.path)
 
     def refer(self, name: str, *, is_raw: bool = False) -> "FileContent | None":
-        """Read a file that this one names.
+        """Read a file that this file refers to.
 
         Args:
-            name: Path relative to this file's folder, or a URL of that kind.
-            is_raw: Whether the bytes of the file become numbers, whatever they are.
+            name: Path relative to this file's folder, or a relative URL.
+            is_raw: Whether the file is raw numbers of any content.
 
         Returns:
-            The file, or None if it cannot be read, is on the network, is one of those that led here, or must not be
-            read, which is reported.
+            The file, or None if it cannot be read, is remote, refers back to itself, or must not be read, which is
+            reported.
         """
         here = os.path.abspath(self.path)
         plain = unquote(re.sub("^file:(//)?", "", name.partition("#")[0], flags=re.IGNORECASE))
@@ -93,7 +93,7 @@ class FileContent:
         return None if data is None else replace(self, path=path, data=data, parents=parents)
 
     def _place(self, name: str) -> Source:
-        """Return the first line of this file that names another one, if it is a text."""
+        """Return the position of the first line that contains a name, if this file is text."""
         at = -1 if b"\0" in self.data else self.data.find(name.encode(errors="replace"))
         line = self.data.count(b"\n", 0, at) + 1 if at >= 0 else 0
         return Source(self.path, line, self.access.files.get(self.path))
@@ -130,10 +130,10 @@ def read_bytes(path: str) -> bytes:
 
 
 def unpacked(data: bytes, path: str) -> bytes:
-    """Return data decompressed if gzip compressed it, within bounds.
+    """Return data, decompressed if gzip compressed it, within size limits.
 
     Raises:
-        SourceError: The data is damaged, or what it unpacks to is too large.
+        SourceError: The data is damaged, or too large when decompressed.
     """
     if not data.startswith(b"\x1f\x8b"):
         return data

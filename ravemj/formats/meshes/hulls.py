@@ -22,7 +22,7 @@ _forms: WeakKeyDictionary[Mesh, CollisionForm] = WeakKeyDictionary()
 """Cache of forms, while their meshes are in use. A lookup hashes the mesh, whose digest all callers need anyway."""
 
 _NEEDLE = 1e-7
-"""Width of a mesh relative to its length below which its inertia about its axis is lost in rounding."""
+"""Width of a mesh relative to its length below which rounding cancels the inertia about its axis."""
 
 
 def collision_form(mesh: Mesh) -> CollisionForm:
@@ -63,7 +63,7 @@ def _form(mesh: Mesh) -> CollisionForm:
 
 
 def _is_plainly_solid(mesh: Mesh) -> bool:
-    """Return True if a sample of the triangles proves that the mesh has a volume; False is inconclusive.
+    """Return True if a sample of triangles proves that the mesh has a volume; False is inconclusive.
 
     The thickness of a mesh in any direction is at least twice the standard deviation of a sample of its points; its
     length is at most the diagonal of a box around it and the origin.
@@ -83,7 +83,7 @@ def _covariance(points: Floats) -> Floats:
 
 
 def volume(mesh: Mesh) -> float:
-    """Return the volume inside a closed mesh [m^3]; negative if its triangles are turned inside out."""
+    """Return the volume inside a closed mesh [m^3]; negative if its triangles face inwards."""
     a, b, c = np.moveaxis(corners_of(mesh), 1, 0)
     return float((a * np.cross(b - a, c - a)).sum() / 6)
 

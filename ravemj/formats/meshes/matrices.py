@@ -6,14 +6,14 @@ from ravemj.core.transforms import Floats
 
 
 def translation(offset: Floats) -> Floats:
-    """Return a 4x4 matrix that moves by ``offset``."""
+    """Return the 4x4 matrix of a translation."""
     matrix = np.eye(4)
     matrix[:3, 3] = offset
     return matrix
 
 
 def rotation(axis_angle: Floats) -> Floats:
-    """Return a 4x4 matrix that turns about an axis (x, y, z) by an angle [rad]; a zero axis turns nothing."""
+    """Return the 4x4 matrix of a rotation, an axis (x, y, z) and an angle [rad]; the identity for a zero axis."""
     axis, angle = axis_angle[:3], float(axis_angle[3])
     length = float(np.linalg.norm(axis))
     matrix = np.eye(4)

@@ -1,4 +1,4 @@
-"""Long lists of numbers in text, parsed in pieces: a list of all words takes thirty times the memory of the text."""
+"""Parsing of long number lists in text, in pieces: a list of all words would take thirty times the memory."""
 
 import re
 from collections.abc import Callable, Iterator

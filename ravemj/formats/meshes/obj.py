@@ -1,4 +1,4 @@
-"""The reader of Wavefront OBJ with its materials, and the writer of OBJ for MuJoCo."""
+"""Reader of Wavefront OBJ with its materials, and writer of OBJ for MuJoCo."""
 
 import hashlib
 import io
@@ -74,7 +74,7 @@ class _ObjParser:
         check_size(self._triangles, self.file.source)
 
     def _library(self, name: str) -> None:
-        """Read materials; the last one is in force until the first ``usemtl``, as in OpenRAVE's importer."""
+        """Read materials; the last one is used until the first ``usemtl``, as in OpenRAVE's importer."""
         file = self.file.refer(name)
         for line in [] if file is None else file.data.decode("latin-1").splitlines():
             words = line.split()
@@ -85,12 +85,12 @@ class _ObjParser:
 
 
 def read_obj(file: FileContent) -> tuple[MeshPart, ...]:
-    """Read an OBJ file: one part for each material that is used, in the order of the material file.
+    """Read an OBJ file: one part for each used material, in the order of the material file.
 
-    Objects and groups do not count, as OpenRAVE joins them. Lines and points are left out.
+    Objects and groups are joined, as in OpenRAVE. Lines and points are ignored.
 
     Raises:
-        SourceError: A line is malformed, or a face has a vertex that is not there.
+        SourceError: A line is malformed, or a face has a vertex that does not exist.
     """
     reading = _ObjParser(file)
     lines = io.StringIO(file.data.decode("latin-1").replace("\\\n", " "), newline=None)
@@ -108,8 +108,8 @@ def read_obj(file: FileContent) -> tuple[MeshPart, ...]:
 def write_obj(mesh: Mesh) -> str:
     """Return a mesh as OBJ text for MuJoCo.
 
-    OBJ and not STL, because it shares vertices, has no limit of faces and is readable; nine digits preserve every
-    single-precision coordinate, and MuJoCo stores no finer ones.
+    OBJ, unlike STL, shares vertices, has no limit of faces and is readable; nine digits preserve every single-precision
+    coordinate, and MuJoCo stores no finer ones.
     """
     text = _TEXTS.get(mesh)
     if text is None:
@@ -124,12 +124,12 @@ def write_obj(mesh: Mesh) -> str:
 
 
 def written_name(mesh: Mesh) -> str:
-    """Return the name of a mesh in MJCF: a hash of its OBJ text, which writing and reading do not change."""
+    """Return the name of a mesh in MJCF: a hash of its OBJ text, which stays the same after reading and writing."""
     return _name_of(write_obj(mesh))
 
 
 def read_written(path: str) -> Mesh | None:
-    """Read a file of ``write_obj`` digit for digit; None if its name is not that of its content."""
+    """Read a file of ``write_obj`` exactly; None if its name is not the hash of its content."""
     if not _WRITTEN.fullmatch(os.path.basename(path)):
         return None
     with open(path, encoding="utf-8", errors="replace") as file:
@@ -156,7 +156,7 @@ def _name_of(text: str) -> str:
 
 
 def _point(numbers: list[float]) -> tuple[float, ...]:
-    """Return the coordinates; a fourth number is a weight that divides them, six or more end in a colour."""
+    """Return the coordinates; four numbers are homogeneous, six or more end in a colour."""
     x, y, z = numbers[:3]
     weight = numbers[3] if len(numbers) == 4 and numbers[3] else 1.0
     return (x / weight, y / weight, z / weight)
@@ -188,8 +188,8 @@ def _parts(material: _MtlMaterial, points: Floats, file: FileContent) -> tuple[M
 
 
 def transparency(opacity: float) -> float:
-    """Return the transparency of a material whose opacity a file gives.
+    """Return the transparency of a material, given its opacity in a file.
 
-    An opacity of 0 counts as 1: nobody models what cannot be seen, but many exporters mix the two up.
+    An opacity of 0 is read as 1: nobody models invisible shapes, but many exporters confuse opacity and transparency.
     """
     return float(np.float32(1.0 - opacity)) if 0.0 < opacity <= 1.0 else 0.0

@@ -1,4 +1,4 @@
-"""Parts of mesh files, each of one colour, and the bounds that keep hostile files harmless."""
+"""Parts of mesh files, each of one colour, and the limits for hostile files."""
 
 from dataclasses import dataclass
 
@@ -32,8 +32,8 @@ class MeshPart:
 
     Attributes:
         mesh: The triangles, in the frame of the file [m].
-        diffuse: Colour, each part from 0 to 1.
-        ambient: Colour in the shade, each part from 0 to 1.
+        diffuse: Colour, each component from 0 to 1.
+        ambient: Ambient colour, each component from 0 to 1.
         transparency: 0 is opaque, 1 invisible.
     """
 
@@ -44,10 +44,10 @@ class MeshPart:
 
 
 def weld(corners: ArrayLike) -> Mesh:
-    """Return separate triangles as a mesh with shared vertices, in order of their first appearance.
+    """Return separate triangles as a mesh with shared vertices, in order of first appearance.
 
-    Coordinates are rounded to single precision first, like in OpenRAVE's importers and MuJoCo, so that the same corners
-    are merged as in OpenRAVE.
+    Coordinates are first rounded to single precision, as in OpenRAVE's importers and MuJoCo, so that the same vertices
+    are merged.
 
     Args:
         corners: Three points for each triangle, shape (n, 3, 3).
@@ -64,7 +64,7 @@ def weld(corners: ArrayLike) -> Mesh:
 def welded(
     corners: Floats, source: Source, diffuse: Rgb = WHITE, ambient: Rgb = BLACK, transparency: float = 0.0
 ) -> tuple[MeshPart, ...]:
-    """Return separate triangles as one part without the degenerate ones, as OpenRAVE's importer does it, or as none.
+    """Return separate triangles as one part, or as no part, without degenerate ones, as in OpenRAVE's importer.
 
     Raises:
         SourceError: There are too many triangles, or a coordinate is not finite.
@@ -81,20 +81,20 @@ def corners_of(mesh: Mesh) -> Floats:
 
 
 def without_degenerate(corners: Floats) -> Floats:
-    """Leave out triangles with two equal corners, as OpenRAVE's importer of everything but Inventor does."""
+    """Remove triangles with two equal corners, as OpenRAVE's importer does for all formats except Inventor."""
     a, b, c = (np.asarray(corners[:, i], np.float32) for i in range(3))
     degenerate = (a == b).all(1) | (b == c).all(1) | (c == a).all(1)
     return corners[~degenerate]
 
 
 def rgb(numbers: ArrayLike) -> Rgb:
-    """Return a colour in the single precision that OpenRAVE's importers work in."""
+    """Return a colour rounded to single precision, as in OpenRAVE's importers."""
     red, green, blue = (float(part) for part in np.nan_to_num(np.asarray(numbers, np.float32)[:3]))
     return red, green, blue
 
 
 def check_size(triangles: int, source: Source) -> None:
-    """Refuse a file with far more triangles than any model has.
+    """Refuse a file with far more triangles than any model needs.
 
     Raises:
         SourceError: There are more than ``MOST_TRIANGLES``.
@@ -103,10 +103,10 @@ def check_size(triangles: int, source: Source) -> None:
 
 
 def check_finite(corners: Floats, source: Source) -> None:
-    """Refuse coordinates that no engine can use.
+    """Refuse coordinates that are not finite in single precision.
 
     Raises:
-        SourceError: A coordinate is not a finite number in single precision.
+        SourceError: A coordinate is not finite.
     """
     if not (np.abs(corners) <= np.finfo(np.float32).max).all():
         raise SourceError("the mesh has a coordinate that is not a finite number", source)

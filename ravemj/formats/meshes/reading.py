@@ -26,24 +26,24 @@ def reader_of(suffix: str) -> _Reader:
 def read_mesh(
     path: str, scale: Vec3 = UNSCALED, access: FileAccess | None = None, *, ros: bool = False
 ) -> tuple[MeshPart, ...]:
-    """Read a mesh file as OpenRAVE does it for the ``<data>`` of a trimesh.
+    """Read a mesh file as OpenRAVE reads the ``<data>`` of a trimesh.
 
-    Vertices are in metres, in the frame of the file; a COLLADA file is scaled by its unit and turned to y up.
+    Vertices are in metres, in the frame of the file; a COLLADA file is scaled by its unit and rotated to y up.
     Inventor and VRML give one part for the whole file, the other formats one for each material.
 
     Args:
         path: The file; its suffix selects the format, in upper or lower case.
         scale: Factors along x, y and z.
-        access: The files that may be read, which takes findings; by default those of a mesh that its user opens, and
-            findings are sent as warnings.
-        ros: Whether to read it as the programs of ROS do for URDF: the up axis of COLLADA is ignored, and a mirrored
-            mesh (a negative product of the factors) keeps its outside.
+        access: The files that may be read; receives diagnostics. By default, the files are those of a mesh that its
+            user opens, and diagnostics are issued as warnings.
+        ros: Whether to read it as ROS does for URDF: the up axis of COLLADA is ignored, and the triangles of a mirrored
+            mesh (a negative product of the factors) keep facing outwards.
 
     Returns:
-        Its parts, none of them without triangles.
+        Its parts, without empty ones.
 
     Raises:
-        SourceError: The file is missing, empty, malformed, too large, or of an unknown kind.
+        SourceError: The file is missing, empty, malformed, too large, or of an unknown format.
     """
     suffix = next((suffix for suffix in MESH_SUFFIXES if path.lower().endswith(suffix)), None)
     if suffix is None:
@@ -72,7 +72,7 @@ def read_mesh(
 
 
 def read_content(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
-    """Return the parts, and the files that they come from besides ``file``."""
+    """Return the parts, and the other files from which they were read."""
     try:
         with np.errstate(all="ignore"):  # what is not finite in the end is refused
             return reader(file), file.references

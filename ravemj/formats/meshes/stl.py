@@ -1,4 +1,4 @@
-"""The reader of STL, binary and text, and a writer of binary STL."""
+"""Reader of STL, binary and text, and writer of binary STL."""
 
 import re
 
@@ -19,13 +19,12 @@ _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
 
 
 def read_stl(file: FileContent) -> tuple[MeshPart, ...]:
-    """Read an STL file; solids are joined, as OpenRAVE does it.
+    """Read an STL file; solids are joined, as in OpenRAVE.
 
-    A colour ``COLOR=rgba`` in the header of a binary file is that of the part, as some writers mean it; else it is
-    white.
+    The part has the colour ``COLOR=rgba`` in the header of a binary file, as some programs write it; else it is white.
 
     Raises:
-        SourceError: It is neither binary nor text STL, or is cut short.
+        SourceError: It is neither binary nor text STL, or is truncated.
     """
     diffuse = WHITE
     count = int.from_bytes(file.data[80:_HEADER], "little")

@@ -1,6 +1,6 @@
-"""Triangulation of polygons: halves of quadrilaterals, fans for convex ones, ear clipping for the others.
+"""Triangulation of polygons: quadrilaterals are halved, convex polygons become fans, others are clipped by ears.
 
-Conformance cases fix the order of the triangles, so this is no package's triangulation.
+Conformance cases define the order of the triangles, so no package is used.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ def fans(starts: Ints, sizes: Ints) -> Ints:
 
     Args:
         starts: For each polygon the position of its first corner in a list of corners.
-        sizes: For each polygon the number of its corners; those with fewer than three vanish.
+        sizes: For each polygon the number of its corners; polygons with fewer than three are dropped.
 
     Returns:
         Positions in the list of corners, shape (n, 3).
@@ -30,7 +30,7 @@ def fans(starts: Ints, sizes: Ints) -> Ints:
 
 
 def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
-    """Triangulate polygons that may be concave, as ``fans`` does it, given the list of corners, shape (n, 3)."""
+    """Triangulate polygons that may be concave; ``points`` is the list of corners, (n, 3), the rest as for ``fans``."""
     quads, large = sizes == 4, sizes > 4
     concave = _concave(points, starts, sizes) & large
     convex = large & ~concave
@@ -49,9 +49,9 @@ def triangles(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats
 
     Args:
         points: The points, shape (n, 3).
-        sizes: For each polygon the number of its corners; those with fewer than three vanish.
-        index: For each corner the index of its point; polygons with an index that leads nowhere vanish.
-        concave: Whether polygons may be concave; else they become fans.
+        sizes: For each polygon the number of its corners; polygons with fewer than three are dropped.
+        index: For each corner the index of its point; polygons with an invalid index are dropped.
+        concave: Whether polygons may be concave; otherwise they become fans.
 
     Returns:
         Three points for each triangle, shape (m, 3, 3).
@@ -69,16 +69,16 @@ def triangles(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats
 
 
 def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
-    """Triangulate convex polygons as ear clipping does, which cuts the corners in order from the first one."""
+    """Triangulate convex polygons in the order of ear clipping, which cuts the corners from the first one on."""
     triangles = fans(starts, sizes)
     first = np.repeat(starts + sizes - 1, np.maximum(sizes - 2, 0))
     return np.stack([first, triangles[:, 1] - 1, triangles[:, 2] - 1], axis=1)
 
 
 def _halves(points: Floats, starts: Ints) -> Ints:
-    """Cut quadrilaterals, which may be bent, from the first corner where the angles to the diagonal exceed pi.
+    """Halve quadrilaterals, which may be bent, at the first corner whose angles to the diagonal exceed pi.
 
-    From the first corner where there is none, as OpenRAVE's importer does it.
+    If there is none, they are halved at the first corner, as in OpenRAVE's importer.
     """
     around = (np.arange(4)[:, np.newaxis] + np.arange(1, 4)) % 4  # for each corner the three others
     corners = points[starts[:, np.newaxis] + np.arange(4)]
@@ -93,15 +93,15 @@ def _halves(points: Floats, starts: Ints) -> Ints:
 
 
 def clip_ears(polygon: Floats) -> Ints:
-    """Triangulate one polygon by ear clipping; a corner that repeats the one before it is left out.
+    """Triangulate one polygon by ear clipping; repeated consecutive corners are ignored.
 
-    The search for the next ear continues behind the last one, as in OpenRAVE's importer (conformance case ``gap-74``).
+    The search for the next ear continues after the last one, as in OpenRAVE's importer (conformance case ``gap-74``).
 
     Args:
         polygon: Its corners in order, shape (n, 3).
 
     Returns:
-        Positions of corners, shape (m, 3), in the polygon's direction of turning.
+        Positions of corners, shape (m, 3), in the polygon's orientation.
     """
     left: list[int] = np.flatnonzero((polygon != np.roll(polygon, 1, axis=0)).any(1)).tolist()
     flat = _flattened(polygon)
@@ -117,10 +117,10 @@ def clip_ears(polygon: Floats) -> Ints:
 
 
 def split(index: Ints) -> tuple[Ints, Ints]:
-    """Cut a list of indices at its negative ones.
+    """Split a list of indices at its negative numbers.
 
     Returns:
-        The lengths of the pieces, and the indices without the negative ones.
+        The lengths of the pieces, and the indices without the negative numbers.
     """
     ends = np.append(np.flatnonzero(index < 0), len(index))
     sizes = np.diff(ends, prepend=-1) - 1
@@ -128,7 +128,7 @@ def split(index: Ints) -> tuple[Ints, Ints]:
 
 
 def strips(sizes: Ints, index: Ints) -> Ints:
-    """Return the triangles of strips, every second one reversed so that all have the same side outside."""
+    """Return the triangles of strips, every second one reversed so that all face the same side."""
     starts = np.cumsum(sizes) - sizes
     counts = np.maximum(sizes - 2, 0)
     step = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -152,7 +152,7 @@ def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
 
 
 def _flattened(polygon: Floats) -> Floats:
-    """Return the corners in the polygon's plane, turning counter-clockwise."""
+    """Return the corners in the polygon's plane, counter-clockwise."""
     corners = polygon - polygon[0]
     normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
     drop = int(np.argmax(np.abs(normal)))
@@ -178,5 +178,5 @@ def _ear(points: Floats) -> tuple[int, int]:
 
 
 def _turn(a: Floats, b: Floats, c: Floats) -> Floats:
-    """Return twice the signed areas of triangles, positive where they turn counter-clockwise."""
+    """Return twice the signed areas of triangles, positive if counter-clockwise."""
     return (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])

@@ -1,4 +1,4 @@
-"""The reader of PLY, OFF, GLB and glTF, formats that are rare with OpenRAVE: it uses trimesh."""
+"""Reader of PLY, OFF, GLB and glTF, which are rare with OpenRAVE, by trimesh."""
 
 import importlib
 import io
@@ -23,7 +23,7 @@ _COLOURS: dict[str, tuple[Rgb, Rgb]] = {
     "glb": (WHITE, BLACK),
     "gltf": (WHITE, BLACK),
 }
-"""Diffuse and ambient colours that OpenRAVE's importer gives to files without materials."""
+"""Diffuse and ambient colour of files without materials in OpenRAVE's importer."""
 
 
 def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
@@ -45,7 +45,7 @@ def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 class _References(Mapping[str, bytes]):
-    """Gives trimesh the files that glTF names: buffers, which are raw data, but no pictures, which are not drawn."""
+    """Gives trimesh the buffers that glTF refers to, which are raw data, but no pictures, which are not drawn."""
 
     def __init__(self, file: FileContent) -> None:
         self._file = file

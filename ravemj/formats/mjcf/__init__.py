@@ -1,7 +1,7 @@
 """Translation of a ``Scene`` to MJCF: text, meshes, and for every line its source in the user's file.
 
-The text is generated directly, since MuJoCo's own writer keeps only six digits, rotates inertias and moves meshes. Here
-numbers keep all digits, every element has its own line, and names do not change.
+The text is generated directly, since MuJoCo's own writer keeps only six digits, rotates inertias and moves meshes. This
+writer keeps all digits and names, and writes one element per line.
 """
 
 from ravemj.formats.mjcf.document import ASSETS, BodyNames, Mjcf, write

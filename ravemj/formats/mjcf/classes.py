@@ -17,7 +17,7 @@ _LEAST = 16  # characters that a class has to save in each element
 
 
 class _Class(NamedTuple):
-    """Attributes that elements share, and the default class that they have already."""
+    """Attributes that elements share, and their previous default class."""
 
     tag: str
     parent: str
@@ -48,7 +48,7 @@ def add_classes(document: MjcfSections) -> None:
 
 
 def _with_class(line: str, shared: _Class, name: str) -> str:
-    """Return an element with a class in place of the attributes of this class."""
+    """Return an element with a class in place of the attributes defined in the class."""
     for attribute, value in shared.attributes:
         line = line.replace(f' {attribute}="{value}"', "", 1)
     if shared.parent:

@@ -33,10 +33,10 @@ MECHANISM_MEMORY = "1M"
 _MANY_BODIES = 1000
 
 _LEAST_ROOM = 1e-6
-"""Half the range [rad or m] of a joint whose limits leave no room, and which is no weld."""
+"""Half the written range [rad or m] of a joint without range that is not a weld."""
 
 _LOCK_SOLREF, _LOCK_SOLIMP = (0.004, 1), (0.999, 0.9999, 1e-6)
-"""Limits of such a joint as stiff as MuJoCo allows, so that whoever stands on it does not sink."""
+"""Limits of a joint without range, as stiff as MuJoCo allows, so that a robot standing on it does not sink."""
 
 TIMESTEP = 0.002
 """MuJoCo's time step [s]."""
@@ -83,7 +83,7 @@ class Mjcf:
         return {name: write_obj(mesh) for name, mesh in self.meshes.items()}
 
     def source_of_line(self, line: int) -> Source | None:
-        """Return the source of a line of the text; lines count from 1."""
+        """Return the source of a line, which is counted from 1."""
         return self.sources[line - 1] if 0 < line <= len(self.sources) else None
 
 
@@ -91,7 +91,7 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
     """Translate a scene.
 
     Args:
-        scene: What to translate.
+        scene: The scene.
         diagnostics: Receives a warning for each value that MuJoCo would refuse and each name conflict.
         options: Options of the translation; None for the defaults.
     """
@@ -140,8 +140,8 @@ def _write_option(out: XmlLines, scene: Scene, options: Options) -> None:
 def _memory(lines: Sequence[str]) -> str:
     """Return the working memory that MuJoCo's broad phase needs for many bodies; empty if the default suffices.
 
-    The default grows with the square of the DOFs (60 bytes, measured on MuJoCo 4.0), the need with that of the bodies
-    (4.05 bytes).
+    The default grows with the square of the DOFs (60 bytes, measured on MuJoCo 4.0), the required memory with that of
+    the bodies (4.05 bytes).
     """
     bodies = sum("<body " in line for line in lines)
     dofs = sum(("<joint " in line) + 6 * ("<freejoint" in line) for line in lines)
@@ -152,7 +152,7 @@ def _memory(lines: Sequence[str]) -> str:
 
 @dataclass(slots=True)
 class _UniqueNames:
-    """The names in use, for making names unique."""
+    """Names in use, by kind of part."""
 
     diagnostics: Diagnostics
     taken: dict[str, set[str]] = field(
@@ -160,7 +160,7 @@ class _UniqueNames:
     )
 
     def give(self, kind: str, body: KinBody, name: str) -> str:
-        """Return a unique name for a part of a kind: its own if that is free."""
+        """Return a unique name for a part: its own if that is unused."""
         unique = name
         while unique in self.taken[kind]:
             unique = f"{body.name}/{unique}"
@@ -238,7 +238,7 @@ class _MjcfWriter:
         return (first,) if is_single else (first, self._given.give("joint", body, f"{name}_1"))
 
     def _is_free(self, body: KinBody) -> bool:
-        """Return whether the roots of a body can fall."""
+        """Return whether the roots of a body get free joints."""
         if self.options.mechanism_only or (self.options.free_robots and body.is_robot):
             return True
         return self.options.free_bases and not any(link.static for link in body.links)
@@ -271,7 +271,7 @@ class _MjcfWriter:
         return tuple(geoms)
 
     def _write_shapes(self, body: KinBody, link: int, merging: Merging) -> tuple[tuple[int, ...], bool]:
-        """Write the geoms of a link; return the number of each geometry, and whether one of them collides."""
+        """Write the geoms of a link; return their number for each geometry, and whether one of them collides."""
         if self.options.mechanism_only:
             return (), False
         T_body_link = merging.pose(link)
@@ -300,7 +300,7 @@ class _MjcfWriter:
         self._write_inertial(index, link, body, merging)
 
     def _source_text(self, source: Source) -> str:
-        """Return the source of a link for a comment, relative to the folder of the model if that is known."""
+        """Return the source of a link for a comment, relative to the model's folder if this is known."""
         folder = self.options.folder
         if folder is None or isinstance(source, Origin) or not os.path.exists(source.file):
             return str(source)
@@ -353,7 +353,7 @@ class _MjcfWriter:
 
 
 def joint_position(joint: Joint) -> Vec3:
-    """Return the anchor of a joint in the frame of its child, as MJCF has it."""
+    """Return the anchor of a joint in the frame of its child, as in MJCF."""
     return joint.T_parent_child.inverse().apply(joint.anchor)
 
 

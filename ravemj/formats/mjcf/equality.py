@@ -1,7 +1,7 @@
-"""Equality constraints for mimic joints, which act when MuJoCo simulates.
+"""Equality constraints for mimic joints, which are active when MuJoCo simulates.
 
-A constraint is a polynomial of degree 4 at most, in the displacements from ``ref``, of one other joint. Followers of
-several joints become a fixed tendon where they are linear.
+A constraint is a polynomial of degree 4 at most, in the displacement of one other joint from ``ref``. Mimic joints that
+are linear in several joints become fixed tendons.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ class EqualityWriter:
 
     Attributes:
         equalities: The constraints.
-        tendons: Their tendons.
+        tendons: The tendons of the constraints.
         solref: Time constant [s] and damping ratio of the constraints; None for MuJoCo's.
     """
 
@@ -42,7 +42,7 @@ class EqualityWriter:
 
         Args:
             joints: Active joints, then passive ones.
-            names: Their names in the MJCF; empty for those that move nothing.
+            names: Names of the joints in the MJCF; empty for joints that move nothing.
         """
         for joint, joint_names in zip(joints, names, strict=True):
             equation = joint.equation
@@ -86,7 +86,7 @@ class EqualityWriter:
         )
 
     def _coefficients(self, joint: Joint, leader: Joint, expression: "Expression") -> list[float]:
-        """Return the polynomial of a follower: its own, or a fit over the leader's range."""
+        """Return the polynomial of a mimic joint: exact, or fitted over the leader's range."""
         variable = expression.variables[0]
         exact = expression.polynomial(variable)
         if exact is not None:

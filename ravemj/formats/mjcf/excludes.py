@@ -1,8 +1,8 @@
 """``<exclude>``: the pairs of links that MuJoCo would test for collisions and OpenRAVE does not.
 
-MuJoCo skips pairs within a weld group, whose links no joint separates, and pairs of a group and its parent group,
-except the world's. Naming only the others keeps the text small: its size is linear in the number of links, for a robot
-as for a room of furniture. Only movable links without a joint between them are named pair by pair.
+MuJoCo ignores pairs within a weld group, whose links no joint separates, and pairs of a group and its parent group,
+except the world's. Excluding only the other pairs keeps the text small: its size is linear in the number of links, for
+a robot as for a room of furniture. Only movable links without a joint between them are excluded pair by pair.
 """
 
 from collections.abc import Iterator, Mapping
@@ -15,7 +15,7 @@ from ravemj.model.scene import KinBody
 _WORLD = -1
 
 _Cells = dict[int, list[int]]
-"""Links by their weld group."""
+"""Links by weld group."""
 
 
 @dataclass(slots=True)
@@ -38,7 +38,7 @@ class WeldGroups:
         Args:
             link: Its index.
             parent: Index of its parent link, or None for the world.
-            moves: Whether a MuJoCo joint connects the two.
+            moves: Whether a MuJoCo joint connects them.
             solid: Whether it has collision geometry.
         """
         carrier = _WORLD if parent is None else self.group[parent]
@@ -57,7 +57,7 @@ class WeldGroups:
         return self.carrier[first] != second and self.carrier[second] != first
 
     def tested_pairs(self, first: Mapping[int, list[int]], second: Mapping[int, list[int]]) -> Iterator[Pair]:
-        """Yield the pairs of a link of each collection that MuJoCo tests; links are sorted by group."""
+        """Yield the pairs of links of two collections, sorted by group, that MuJoCo tests."""
         for group, other in product(first, second):
             if self.are_tested(group, other):
                 for link, partner in product(first[group], second[other]):

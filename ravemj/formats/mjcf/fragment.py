@@ -1,4 +1,4 @@
-"""A fragment of MJCF that a user adds to a translated model."""
+"""User-defined fragment of MJCF that is added to a translated model."""
 
 from ravemj.core.output import AnyPath
 from ravemj.errors import SourceError
@@ -14,7 +14,7 @@ _REFUSED = {
     "compiler": "the model has angles in radians and meshes in assets/",
 }
 _SINGLE = {"option", "size", "visual", "statistic"}
-"""Sections that are settings: a later one overrides an earlier one."""
+"""Sections of settings, in which a later value overrides an earlier one."""
 
 
 def append(document: MjcfSections, path: AnyPath) -> None:
@@ -45,7 +45,7 @@ def append(document: MjcfSections, path: AnyPath) -> None:
 
 
 def _check(element: Element, section: str, document: MjcfSections) -> None:
-    """Refuse an element that contains anything that cannot be added."""
+    """Refuse an element with content that cannot be added."""
     taken = document.names()
     pending = [element]
     while pending:

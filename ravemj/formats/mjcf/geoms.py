@@ -7,7 +7,7 @@ from ravemj.formats.mjcf.lines import Attribute, XmlLines, attribute_text, pose_
 from ravemj.model.scene import Geometry, Mesh, Rgb, Solid, Surface
 
 SMALLEST_SIZE = 1e-10
-"""Least written size [m], since MuJoCo requires positive sizes."""
+"""Minimum written size [m], since MuJoCo requires positive sizes."""
 
 
 class MjcfGeomWriter:
@@ -15,7 +15,7 @@ class MjcfGeomWriter:
 
     Attributes:
         meshes: The meshes, by the name of their files.
-        lines: The elements that declare them.
+        lines: The declarations of the meshes.
     """
 
     def __init__(self, diagnostics: Diagnostics, *, decomposed: bool = False, hull_vertices: int | None = None) -> None:

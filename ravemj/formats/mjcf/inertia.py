@@ -9,11 +9,11 @@ from ravemj.formats.mjcf.lines import Attribute
 from ravemj.model.scene import Inertial
 
 SMALLEST = 1e-10
-"""Least written mass [kg] and moment of inertia [kg m^2], since MuJoCo requires positive values."""
+"""Minimum written mass [kg] and moment of inertia [kg m^2], since MuJoCo requires positive values."""
 
 
 _ROUNDING = 1e-11
-"""Relative margin of the moments from the triangle inequality: MuJoCo recomputes them from the tensor."""
+"""Relative margin to the triangle inequality of moments, since MuJoCo recomputes them from the tensor."""
 
 
 def is_rounding(legal: Inertial, given: Inertial) -> bool:
@@ -26,7 +26,7 @@ def is_rounding(legal: Inertial, given: Inertial) -> bool:
 
 
 def legal_inertial(inertial: Inertial) -> Inertial:
-    """Return the nearest mass properties that MuJoCo accepts: positive ones that fulfil the triangle inequality."""
+    """Return the nearest mass properties that MuJoCo accepts: positive, and fulfilling the triangle inequality."""
     if _is_legal_diagonal(inertial):
         return inertial
     mass = max(inertial.mass, SMALLEST) if math.isfinite(inertial.mass) else SMALLEST
@@ -44,9 +44,9 @@ def legal_inertial(inertial: Inertial) -> Inertial:
 
 
 def _nearest(small: float, middle: float, large: float) -> Vec3:
-    """Return the nearest moments, in the least-squares sense, of which none is larger than the sum of the others.
+    """Return the nearest moments, in the least-squares sense, none of which exceeds the sum of the others.
 
-    They are the projection onto the plane on which the largest is that sum or, if that is infeasible, onto the edge
+    They are the projection onto the plane on which the largest is this sum or, if that is infeasible, onto the edge
     of the feasible cone, on which the smallest is 0 and the others are equal.
     """
     excess = (large - small - middle) / 3
@@ -58,7 +58,7 @@ def _nearest(small: float, middle: float, large: float) -> Vec3:
 
 
 def _is_legal_diagonal(inertial: Inertial) -> bool:
-    """Return True for the usual case, without numpy: a legal mass and a legal diagonal tensor."""
+    """Return True if mass and diagonal tensor are legal, which is the usual case and needs no numpy."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
     if xy or xz or yz or not SMALLEST <= inertial.mass < math.inf:
         return False

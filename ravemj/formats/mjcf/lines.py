@@ -16,7 +16,7 @@ _ESCAPED = frozenset(map(chr, _ESCAPES))
 
 
 class XmlLines:
-    """An XML text under construction, one element a line.
+    """XML text under construction, one element per line.
 
     Attributes:
         text: The lines.
@@ -33,7 +33,7 @@ class XmlLines:
         self._line(f"<{tag}{_attributes(attributes)}/>", source)
 
     def text_element(self, name: str, data: str) -> None:
-        """Write a ``<text>`` of ``<custom>``, in apostrophes, since JSON is full of quotation marks."""
+        """Write a ``<text>`` of ``<custom>`` in single quotes, since JSON contains many double quotes."""
         quoted = attribute_text(data.replace('"', "\0")).replace("\0", '"').replace("'", "&apos;")
         self._line(f"<text name=\"{attribute_text(name)}\" data='{quoted}'/>", None)
 
@@ -65,7 +65,7 @@ class XmlLines:
 
 
 def comment_text(text: str) -> str:
-    """Return a text that is valid in a comment: in one line, without two dashes in a row."""
+    """Return a text made valid for a comment: on one line, without consecutive dashes."""
     if not text.isprintable():
         text = "".join(character if character.isprintable() else "?" for character in text)
     return re.sub("-(?=-)", "- ", text) if "--" in text else text
@@ -95,7 +95,7 @@ def attribute_text(value: Attribute) -> str:
 
 @functools.lru_cache(maxsize=10_000)  # models repeat sizes, colours and axes, and digits take time
 def _numbers_text(values: tuple[float, ...]) -> str:
-    """Return numbers separated by spaces, whole ones without a point and none with a minus before zero."""
+    """Return numbers separated by spaces; integers have no point, and zero has no minus sign."""
     return f"{' '.join(map(repr, values))} ".replace(".0 ", " ").replace("-0 ", "0 ")[:-1]
 
 

@@ -20,7 +20,7 @@ from ravemj.model.look import (
 from ravemj.model.scene import View
 
 _SKY_SIZE, _GRID_SIZE = 32, 128
-"""Texels along a side of a face of the sky, and of a cell of the floor's grid."""
+"""Number of texels along a side of a sky face, and of a cell of the floor's grid."""
 
 
 def write_look(out: XmlLines, view: View, meshes: XmlLines) -> None:

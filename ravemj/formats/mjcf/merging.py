@@ -1,4 +1,4 @@
-"""Merging of links into parents to which they are fixed."""
+"""Merging of links into the parents to which they are fixed."""
 
 from collections.abc import Sequence
 
@@ -11,12 +11,12 @@ from ravemj.model.scene import Inertial, KinBody
 
 
 class Merging:
-    """The tree of links of a body, and its merged links.
+    """The link tree of a body, with its merged links.
 
     Attributes:
         placing: For each link that a joint places, the index of this joint.
         children: The child links of each link.
-        names: Names of links in the MJCF: of bodies, for merged links of sites.
+        names: Names of the links in the MJCF: of their bodies, or of their sites if they are merged.
     """
 
     def __init__(self, body: KinBody, joint_names: Sequence[tuple[str, ...]], *, merges: bool) -> None:
@@ -31,7 +31,7 @@ class Merging:
 
     @cached_property
     def _merged(self) -> dict[int, tuple[int, Pose]]:
-        """For each merged link the link that it is merged into, and its pose there."""
+        """For each merged link, the link into which it is merged, and its pose there."""
         merged: dict[int, tuple[int, Pose]] = {}
         pending = [link for link in range(len(self._body.links)) if link not in self.placing] if self._merges else []
         while pending:
@@ -45,11 +45,11 @@ class Merging:
 
     @cached_property
     def carriers(self) -> dict[int, int]:
-        """For each merged link the link that it is merged into."""
+        """For each merged link, the link into which it is merged."""
         return {link: carrier for link, (carrier, _) in self._merged.items()}
 
     def carrier(self, link: int) -> int:
-        """Return the link whose MJCF body represents a link: itself, or the link that it is merged into."""
+        """Return the link whose MJCF body represents a link: itself, or the link into which it is merged."""
         return self.carriers.get(link, link)
 
     def pose(self, link: int) -> Pose:

@@ -14,15 +14,15 @@ class Options(NamedTuple):
             fixed to the world.
         actuators: The kind of actuator for each DOF, or None.
         decomposed: Whether meshes collide as several convex parts (with CoACD) in place of one hull.
-        excludes: Whether pairs of links that OpenRAVE never tests are excluded by name.
-        mechanism_only: Whether only links and joints are written, without shapes and dynamics, with a free joint for
+        excludes: Whether to exclude pairs of links that OpenRAVE never tests.
+        mechanism_only: Whether to write only links and joints, without shapes and dynamics, with a free joint for
             every root.
         free_robots: Whether robots can fall even if they have a static link.
         gains: For each body the gains of its actuators; a body without actuators may have None.
         merge_fixed: Whether a link fixed to its parent is merged into it, as shapes and a site.
-        hull_vertices: Largest number of vertices of a collision hull; 0 for no limit.
+        hull_vertices: Maximum number of vertices of a collision hull; 0 means no limit.
         self_collision: Whether links of one robot collide.
-        sensors: Whether sensors are written: of the joints, of the base, and the model's own.
+        sensors: Whether to write sensors of joints and of the base, and the model's own.
         timestep: Time step [s], or None for MuJoCo's.
         folder: Folder of the model, for a readable document: comments name files relative to it, and rounding noise
             is removed from vectors. None keeps all digits.

@@ -1,4 +1,4 @@
-"""Recognition of MJCF by its first tag: MuJoCo takes text that strict parsers of XML refuse."""
+"""Recognition of MJCF by its first tag: MuJoCo accepts text that strict XML parsers refuse."""
 
 import re
 

@@ -77,7 +77,7 @@ def body_text(body: scene.KinBody, names: StoredNames, mesh_name: Callable[[scen
 
 
 def scene_text(content: scene.Scene, touching: Sequence[tuple[str, str]]) -> str:
-    """Return the parts of a scene outside bodies as JSON, with the pairs excluded because they touch at the start."""
+    """Return everything in a scene except bodies as JSON, with the pairs excluded because they touch at the start."""
     stored = _RecordWriter(lambda _: None).encode(replace(content, bodies=()))
     return json.dumps({"scene": stored, "touching": touching}, separators=(",", ":"), sort_keys=True)
 
@@ -100,7 +100,7 @@ def read_body(text: str, meshes: Callable[[str], scene.Mesh], source: Source) ->
 
 
 def read_scene(text: str, source: Source) -> tuple[scene.Scene, tuple[tuple[str, str], ...]]:
-    """Read the parts of a scene outside bodies, and the pairs of names that touch at the start.
+    """Read everything in a scene except bodies, and the pairs of names that touch at the start.
 
     Raises:
         ValueError: the text is damaged.
@@ -126,11 +126,11 @@ def _loaded(text: str) -> dict[str, object]:
 
 
 UNKNOWN = scene.Inertial(0.0, (0.0, 0.0, 0.0), ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
-"""Placeholder for mass properties to be taken from the MJCF."""
+"""Placeholder of mass properties that are to be read from the MJCF."""
 
 
 def _without_inertial(link: scene.Link) -> scene.Link:
-    """Return a link without the mass properties that the MJCF has unchanged."""
+    """Return a link without mass properties that the MJCF contains unchanged."""
     own = link.inertial
     com = attribute_text(own.com)
     is_plain = legal_inertial(own) is own and own.axes is None and not own.undefined and tidy_vector(com) == com

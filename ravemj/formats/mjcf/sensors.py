@@ -1,4 +1,4 @@
-"""Sensors of the joints, of the base, and the model's own."""
+"""Sensors of joints and of the base, and the model's own sensors."""
 
 import math
 from collections.abc import Sequence
@@ -14,14 +14,14 @@ _BACK: Pose = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
 
 
 class SensorWriter:
-    """Writes sites and cameras into links, and collects the section of sensors.
+    """Writes sites and cameras into links, and collects the sensors.
 
     Attributes:
-        lines: The content of the section.
+        lines: The content of the section ``<sensor>``.
     """
 
     def __init__(self, diagnostics: Diagnostics, taken: set[str]) -> None:
-        """Start without sensors; ``taken`` are the names of sites, to which new ones are added."""
+        """Start without sensors; ``taken`` are the names of sites, to which new names are added."""
         self.lines = XmlLines(2)
         self._diagnostics = diagnostics
         self._taken = taken
@@ -35,7 +35,7 @@ class SensorWriter:
                     self.lines.element(kind, joint.source, name=self._free(f"{name}/{kind}"), joint=name)
 
     def write_on_link(self, body: KinBody, link: int, T_body_link: Pose, out: XmlLines) -> None:
-        """Write the sensors of a link: the IMU of a robot's base, and the robot's own."""
+        """Write the sensors of a link: the IMU of a robot's base, and the robot's own sensors."""
         if link == 0 and body.joints:
             self._write_at_site("imu", _IMU, T_body_link, body.links[0].source, out)
         for sensor in body.sensors:
@@ -69,7 +69,7 @@ class SensorWriter:
             self.lines.element(kind, None, name=self._free(f"{site}/{kind}"), site=site)
 
     def _free(self, name: str) -> str:
-        """Return a name that is unique among our sensors, sites and cameras."""
+        """Return a name that is unique among the written sensors, sites and cameras."""
         unique, number = name, 1
         while unique in self._taken:
             number += 1

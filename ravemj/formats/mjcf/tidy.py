@@ -10,9 +10,9 @@ _NOISE = 8
 
 
 def tidy(line: str) -> str:
-    """Return a line of MJCF with each long number of a vector replaced by the shortest decimal near it.
+    """Return a line of MJCF in which long numbers of vectors are replaced by the shortest decimals near them.
 
-    Near is within 8 units in the last place of the vector's largest number. Masses, inertias and limits stay.
+    The tolerance is 8 units in the last place of the vector's largest number. Masses, inertias and limits are kept.
     """
     return _VECTOR.sub(_tidied, line)
 
@@ -32,7 +32,7 @@ def tidy_vector(text: str) -> str:
 
 
 def _shortest(number: float, noise: float) -> str:
-    """Return the shortest decimal that is within some noise of a number."""
+    """Return the shortest decimal within ``noise`` of a number."""
     if abs(number) <= noise:
         return "0"
     few, enough = 0, 17  # insufficient and sufficient numbers of digits; more digits are never less accurate

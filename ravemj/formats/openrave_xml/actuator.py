@@ -57,14 +57,14 @@ ACTUATOR_IGNORED = reasons(
 
 
 class GearedMotor(NamedTuple):
-    """A motor behind its gear.
+    """A motor with its gear.
 
     Attributes:
-        torque: Torque limit [N m], or None where the data say nothing.
-        points: Turns of the joint per second (metres for sliders) and the torque limits [N m] there; none if the limit
-            is the same at any speed.
-        inertia: Inertia of the rotor [kg m^2].
-        coulomb_friction: Friction at any speed of the joint [N m]; OpenRAVE does not look at the gear there.
+        torque: Torque limit [N m], or None if it is not specified.
+        points: Joint speeds [turns/s, m/s for sliders] and the torque limits [N m] at these; none if the limit is the
+            same at any speed.
+        inertia: Inertia of the rotor at the joint [kg m^2].
+        coulomb_friction: Friction at any speed of the joint [N m]; as in OpenRAVE, not converted by the gear.
         viscous_friction: Friction per speed of the joint [N m s/rad].
     """
 
@@ -75,7 +75,7 @@ class GearedMotor(NamedTuple):
     viscous_friction: float
 
     def driven(self, axis: Axis, *, turns: bool) -> Axis:
-        """Return an axis, which turns or slides, with the data of this motor, which win over ``<maxtorque>``."""
+        """Return an axis, revolute if ``turns``, with the data of this motor, which override ``<maxtorque>``."""
         turn = 2 * math.pi if turns else 1.0
         torque = axis.max_torque if self.torque is None else self.torque
         return replace(
@@ -93,7 +93,7 @@ def read_motor(element: Element, context: Context) -> GearedMotor:
     """Read the motor of a joint.
 
     Raises:
-        SourceError: it is no electric motor.
+        SourceError: it is not an electric motor.
     """
     context.check_attributes(element, ACTUATOR_ATTRIBUTES, {})
     kind = element.attributes.get("type", "electric_motor")
@@ -105,11 +105,11 @@ def read_motor(element: Element, context: Context) -> GearedMotor:
 
 
 def motor_of(data: Mapping[str, float], points: Sequence[tuple[float, float]]) -> GearedMotor:
-    """Return the motor behind its gear; missing numbers are 0.
+    """Return the motor with its gear; missing numbers are 0.
 
     Args:
         data: Numbers by tag.
-        points: Turns of the motor per second, and torque limits [N m] there; none means the same at any speed.
+        points: Motor speeds [turns/s] and the torque limits [N m] at these; none means the same limit at any speed.
     """
     gear_ratio = data.get("gear_ratio", 0.0)
     inertia = data.get("rotor_inertia", 0.0) * gear_ratio**2

@@ -1,4 +1,4 @@
-"""The context of a reading: diagnostics, the search for files, and the walk over the children of an element."""
+"""The context of a reading: diagnostics, the search for files, and the traversal of an element's children."""
 
 import functools
 import os
@@ -20,12 +20,12 @@ from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
 _MOST_ABOVE = 4
-"""Number of parent folders of a file searched for its references; repositories are not nested deeper."""
+"""Number of parent folders of a file that are searched for its references; repositories are not nested deeper."""
 FLAGS = {"enable", "circular", "render", "modifiable", "selfcollision", "skipgeometry"}
-"""Attributes that are true or false, of any element."""
+"""Attributes of any element that are true or false."""
 PARAMETER_ATTRIBUTES = {"name": "what scripts ask for", "type": "floats, integers or text"}
 _LONGEST_NAME = 80
-"""No known name is anywhere near as long."""
+"""Length of names above which no similar known name is searched."""
 
 
 def uncomputable(element: Element) -> SourceError:
@@ -39,8 +39,8 @@ class Context:
     """The context of reading one file and the files that it includes.
 
     Attributes:
-        access: The files that may be read, and those that were.
-        diagnostics: Takes every finding.
+        access: The files that may be read, and those that were read.
+        diagnostics: Receives diagnostics.
         documents: The COLLADA documents of the model, and the budget of all its documents.
     """
 
@@ -64,9 +64,9 @@ class Context:
 
         Args:
             element: The parent of the children.
-            tags: How to read a child.
+            tags: Readers of children by tag.
             ignored: Known tags without effect, and the reason.
-            target: What the children are read into.
+            target: The object that receives the content of the children.
         """
         before: dict[object, Element] = {}
         for child in element.children:
@@ -117,10 +117,10 @@ class Context:
                 self.diagnostics.warn("unknown-attribute", message, element.source, did_you_mean(name, known))
 
     def include(self, element: Element) -> Element | None:
-        """Return the root of the file that an element's ``file`` attribute names.
+        """Return the root of the file named by an element's ``file`` attribute.
 
-        A file that is missing is passed over, as in OpenRAVE, with a warning; one that cannot be parsed is an error,
-        and what stands before the mistake is read.
+        A missing file is skipped with a warning, as in OpenRAVE; for a malformed one, an error is reported, and the
+        part before the error is read.
 
         Raises:
             SourceError: the file includes itself, or very many files are included.
@@ -159,23 +159,23 @@ class Context:
         return document.root
 
     def check_end(self, document: Document) -> None:
-        """Warn of what stands behind the root element."""
+        """Warn of content after the end of the root element."""
         if document.unread is not None:
             message = f"what stands behind the end of <{document.root.spelled}> is not read, as in OpenRAVE"
             self.diagnostics.warn("unread", message, document.unread, "put it all into one <Environment>")
 
     def find(self, name: str, source: Source, *folders: str) -> str | None:
-        """Look a file up in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
+        """Search for a file in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
 
-        If none of them has it, as in a cloned repository, the folders above the file that names it are searched.
+        If it is in none of them, as in a cloned repository, the folders above the file that names it are searched.
 
         Args:
             name: The file.
-            source: Where it is named.
-            folders: Where to look first.
+            source: The position of its name.
+            folders: Folders to search first.
 
         Returns:
-            Its path, or None, with a finding, where it is in none of them or must not be read.
+            Its path, or None, with a diagnostic, if it is in none of them or must not be read.
         """
         question = (name, source.file, folders)
         path = self._found.get(question)
@@ -205,7 +205,7 @@ class Context:
         self.diagnostics.warn("missing-file", message, source, hint)
 
     def with_parameter(self, before: Parameters, element: Element) -> Parameters:
-        """Return some parameters and that of a ``<parameter>``; a broken one is left out, with a warning."""
+        """Return ``before`` with that of a ``<parameter>``; a malformed one is skipped, with a warning."""
         self.check_attributes(element, PARAMETER_ATTRIBUTES, {})
         try:
             return with_parameter(
@@ -218,9 +218,9 @@ class Context:
     def mesh(
         self, name: str, source: Source, *folders: str, scale: Vec3 = UNSCALED, ros: bool = False
     ) -> tuple[MeshPart, ...]:
-        """Return the triangles of a mesh file; none, with a warning, if it is missing or broken.
+        """Return the triangles of a mesh file; none, with a warning, if it is missing or malformed.
 
-        The parts are the same objects at every use with the same scale. ``ros`` is as for ``read_mesh``.
+        The parts are the same objects for every use with the same scale. ``ros`` is as for ``read_mesh``.
         """
         path = self.find(name, source, *folders)
         if path is None:
@@ -250,7 +250,7 @@ class Context:
 
 @dataclass
 class Placed:
-    """An open element that has a transform of its own."""
+    """An open element with a transform of its own."""
 
     context: Context
     placement: ChildTransform = field(default_factory=ChildTransform)
@@ -273,9 +273,9 @@ PLACEMENT_TAGS: dict[str, Tag[Placed]] = {
 
 
 def _found_above(name: str, folder: str, access: FileAccess) -> str | None:
-    """Return the path of a file in the one of the folders above another that has it; None if several have.
+    """Return the path of a file in the folder above ``folder`` that contains it; None if several do.
 
-    The search ends at the root of a repository, and after some folders.
+    The search ends at the root of a repository, or after ``_MOST_ABOVE`` folders.
     """
     if os.path.isabs(name):
         return None
@@ -315,7 +315,7 @@ def _belongs(element: Element) -> str:
 
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
-    """Return a hint with the known name that looks most like the one given, or nothing."""
+    """Return a hint with the most similar known name, or an empty text."""
     return _closest(name, tuple(known)) if len(name) < _LONGEST_NAME else ""
 
 

@@ -1,4 +1,4 @@
-"""``<Environment>`` and the other roots: bodies and sensors in document order, background and camera."""
+"""``<Environment>`` and other roots: bodies and sensors in document order, background and camera."""
 
 import math
 import os
@@ -44,7 +44,7 @@ _KNOWN_CLASSES = {
     "basemanipulation", "taskmanipulation", "taskcaging", "visualfeedback", "logging", "ikfast", "grasper",
     "birrt", "basicrrt", "rastar", "workspacetrajectorytracker", "linearsmoother", "parabolicsmoother",
 }  # fmt: skip
-"""Classes of interfaces, other than bodies, that every installation of OpenRAVE has."""
+"""Interface classes other than bodies that every OpenRAVE installation has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +52,12 @@ class Reading:
     """The result of reading a file.
 
     Attributes:
-        scene: What was read; with a failure, what was read before it.
-        diagnostics: Every finding.
-        failure: What ended the reading, or None.
-        named_files: The files that were read, meshes included, each with the element that names it; see
+        scene: The scene; after a failure, what was read before.
+        diagnostics: The diagnostics.
+        failure: The error that ended the reading, or None.
+        named_files: The files that were read, including meshes, each with the element that names it; see
             ``FileAccess``.
-        renames: Whether a body whose name is taken in the environment gets another one.
+        renames: Whether a body gets another name if its own exists in the environment.
     """
 
     scene: Scene
@@ -82,8 +82,8 @@ def read(
 
     Args:
         path: The file.
-        given: Attributes that act on the root.
-        content: What it holds, if somebody has read it.
+        given: Additional attributes of the root.
+        content: Its content, if already read.
         access: The files that may be read; by default those of a model that its user opens.
     """
     path = os.fspath(path)
@@ -107,7 +107,7 @@ def read(
 
 
 class _FileContents:
-    """The bodies, the sensors and the view read from a file so far."""
+    """Bodies, sensors and view read from a file so far."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -122,7 +122,7 @@ class _FileContents:
         """Read a root element.
 
         Raises:
-            SourceError: this is another format.
+            SourceError: it belongs to another format.
         """
         readers = {"robot": self.read_body, "kinbody": self.read_body, "sensor": self.read_sensor}
         check_robot(root)
@@ -186,7 +186,7 @@ class _FileContents:
             raise body.refusal
 
     def read_sensor(self, element: Element) -> None:
-        """Read a sensor that no robot carries."""
+        """Read a sensor without a robot."""
         sensor = read_sensor(element, self.context)
         if sensor is not None:
             self._take_name("sensor", sensor.name, element)
@@ -227,7 +227,7 @@ class _EnvironmentScope:
         self.view = replace(self.view, T_world_camera=camera)
 
     def read_camera_rotation(self, element: Element) -> None:
-        """Read an axis and an angle [deg]; it replaces what stood before."""
+        """Read an axis and an angle [deg]; it replaces an earlier rotation."""
         camera = self._camera()._replace(wxyz=axis_angle(element, self._diagnostics))
         self.view = replace(self.view, T_world_camera=camera)
 
@@ -236,12 +236,12 @@ class _EnvironmentScope:
         self.view = replace(self.view, T_world_camera=camera)
 
     def read_old_camera_rotation(self, element: Element) -> None:
-        """Read the deprecated spelling: a half turn about x comes first."""
+        """Read the deprecated rotation, which is applied after a half turn about x."""
         turned = multiply(axis_angle(element, self._diagnostics), _HALF_TURN_X)
         self.view = replace(self.view, T_world_camera=self._camera()._replace(wxyz=turned))
 
     def read_physics(self, element: Element) -> None:
-        """Read the gravity of a physics engine; ODE without one has none."""
+        """Read the gravity of a physics engine; ODE's default is none."""
         self.document.context.check_attributes(element, PHYSICS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "").lower()
         if kind not in {"ode", "bullet", "genericphysicsengine", ""}:
@@ -261,7 +261,7 @@ class _EnvironmentScope:
                     self.document.context.leave_out(child, NO_PHYSICS)
 
     def read_interface(self, element: Element) -> None:
-        """Report an interface that belongs to no model; of an unknown class OpenRAVE makes an error."""
+        """Report an interface that is not part of a model; in OpenRAVE, an unknown class is an error."""
         kind = element.attributes.get("type", "")
         name = kind.split()[0].lower() if kind.split() else ""
         if name and name not in _KNOWN_CLASSES:

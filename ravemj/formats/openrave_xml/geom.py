@@ -36,7 +36,7 @@ from ravemj.model.scene import (
 )
 
 CYLINDER_TURN = Pose(ZERO, wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi / 2))
-"""In XML a cylinder lies along y, in memory along z."""
+"""Rotation from the axis of cylinders in memory, z, to that in XML, y."""
 
 _NO_PART = MeshPart(Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)))
 _REDDISH = replace(_NO_PART, diffuse=(1.0, 0.5, 0.5), ambient=(0.1, 0.0, 0.0))
@@ -47,7 +47,7 @@ class GeometryScope(NamedTuple):
 
     Attributes:
         models_folder: Folder to search for meshes first, or None.
-        scale: Accumulated ``scalegeometry``; it acts on meshes alone, in the axes of the link.
+        scale: Accumulated ``scalegeometry``; it is applied to meshes only, in the axes of the link.
     """
 
     models_folder: str | None = None
@@ -56,7 +56,7 @@ class GeometryScope(NamedTuple):
 
 @dataclass(slots=True)
 class _Geom(Placed):
-    """An open ``<Geom>``: what its children have set so far."""
+    """An open ``<Geom>``, with the properties read so far."""
 
     name: str = ""
     vectors: dict[str, Vec3] = field(default_factory=lambda: {})
@@ -160,10 +160,10 @@ GEOM_ATTRIBUTES = {
 }
 
 MESH_ATTRIBUTES = {"file": "the mesh file", "scale": "one to three factors"}
-"""Of ``<Collision>`` and ``<Render>``."""
+"""Attributes of ``<Collision>`` and ``<Render>``."""
 
 SIZE_TAGS = {"half_extents": "extents", "cross_section": "crosssection"}
-"""Tags of the sizes that are not called like their tag."""
+"""Tags whose size parameter has another name."""
 
 _SHAPES = {kind.xml: kind.shape for kind in SHAPE_TYPES}
 _VECTORS = ("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom")
@@ -209,7 +209,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 
 
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
-    """Return OpenRAVE's parts of a missing file: none (gap-71), for most absolute paths a reddish one (gap-72)."""
+    """Return OpenRAVE's parts of a missing file: none (gap-71), or a reddish part for most absolute paths (gap-72)."""
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()
     return (_REDDISH,)

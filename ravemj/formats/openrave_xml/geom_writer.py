@@ -1,4 +1,4 @@
-"""The writer of ``<Geom>``, and of the mesh files beside the document."""
+"""Writer of ``<Geom>``, and of the mesh files beside the document."""
 
 from typing import Literal
 
@@ -35,7 +35,7 @@ class GeomWriter:
         self.files: dict[str, bytes] = {}
 
     def write(self, geometry: Geometry, group: str | None = None) -> None:
-        """Write a shape with its place and colours, in a group if it is no shape of its link."""
+        """Write a shape with its pose and colours, in a geometry group if given."""
         shape = geometry.shape
         kind = _TYPES[type(shape)]
         if kind is None:
@@ -69,7 +69,7 @@ class GeomWriter:
             self._out.element(tag, f"{FOLDER}/{name}")
 
     def _added(self, mesh: Mesh) -> str | None:
-        """Add the file of a mesh as readers make it of the file; return its name."""
+        """Add the file of a mesh, as readers will reproduce it; return its name."""
         stored = weld(without_degenerate(corners_of(mesh)))
         if not len(stored.triangles):
             return None
@@ -79,7 +79,7 @@ class GeomWriter:
 
 
 def write_pose(out: XmlText, pose: Pose) -> None:
-    """Write the elements that place something; what does nothing is left out."""
+    """Write the elements of a pose, without identity parts."""
     if pose.position != ZERO:
         out.element("Translation", pose.position)
     if pose.wxyz != UNIT_WXYZ:

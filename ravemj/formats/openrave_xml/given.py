@@ -1,7 +1,7 @@
 """Attributes that a caller passes with a file, like those of a body's element.
 
 They are applied after those of the file: a name replaces its name, a prefix is put before its names, scale factors are
-multiplied. OpenRAVE considers them if the root of the file is a body, and not inside an ``<Environment>``.
+multiplied. OpenRAVE applies them if the root of the file is a body, and not inside an ``<Environment>``.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -24,7 +24,7 @@ KNOWN = {"name", "prefix", "scalegeometry", "skipgeometry"}
 
 
 def check_given(given: Attributes, source: Source, context: Context, known: Collection[str] = KNOWN) -> None:
-    """Report ignored attributes of a caller."""
+    """Report ignored attributes passed by a caller."""
     for name in given:
         if name in KNOWN and name not in known:
             message = f"the attribute '{name}' that was given for the file is left out: its root is not a body"
@@ -39,9 +39,9 @@ def check_given(given: Attributes, source: Source, context: Context, known: Coll
 
 
 def with_given(root: Element, given: Attributes, context: Context, others: Collection[str] = ()) -> Element:
-    """Return the root element of an XML file with the attributes that a caller gave.
+    """Return the root element of an XML file with the attributes passed by a caller.
 
-    ``others`` are the attributes that its format knows besides those of OpenRAVE's bodies.
+    ``others`` are the attributes that its format supports in addition to those of OpenRAVE's bodies.
     """
     if not given:
         return root
@@ -59,7 +59,7 @@ def with_given(root: Element, given: Attributes, context: Context, others: Colle
 
 
 def adapt(body: BodyBuilder, root: Element, context: Context) -> None:
-    """Prefix and strip the body of a URDF as the attributes of its root ask, which a caller may have given."""
+    """Apply the attributes ``prefix`` and ``skipgeometry`` of a URDF's root to its body."""
     add_prefix(root.attributes.get("prefix", ""), body, Marks(), whole=True)
     if is_true(root.attributes.get("skipgeometry", "")):
         for link in body.links:
@@ -75,7 +75,7 @@ def given_scale(given: Attributes) -> Vec3:
 
 
 def give(given: Attributes, bodies: Sequence[BodyBuilder]) -> None:
-    """Apply name, prefix and removal of shapes that a caller passed to bodies; the scale is applied already."""
+    """Apply name, prefix and removal of shapes passed by a caller to bodies; the scale is already applied."""
     for body in bodies:
         add_prefix(given.get("prefix", ""), body, Marks(), whole=True)
         if is_true(given.get("skipgeometry", "")):

@@ -33,7 +33,7 @@ _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1
 
 @dataclass(slots=True)
 class _JointElement:
-    """An open ``<Joint>``: what its children have set so far."""
+    """An open ``<Joint>``, with the properties read so far."""
 
     context: Context
     body: BodyBuilder
@@ -51,7 +51,7 @@ class _JointElement:
     parameters: Parameters = NO_PARAMETERS
 
     def read_body(self, element: Element) -> None:
-        """Take the first name for the first link and every later one for the second, in any letter case (errors-50)."""
+        """Read the name of a link, in any letter case (errors-50): the first, and for later names the second one."""
         name = word(element, self.context.diagnostics)
         link = self.body.find_link_any_case(name)
         if link is None:
@@ -70,7 +70,7 @@ class _JointElement:
         self.anchor = hadamard(self.scale, vector(element, self.context.diagnostics, self.anchor))
 
     def read_direction(self, element: Element) -> None:
-        """Read an axis: ``axis1`` and ``axis2``, in this order, of a joint with two (random-xml-127), else ``axis``."""
+        """Read an axis: ``axis``, or for joints with two axes ``axis1`` and then ``axis2`` (random-xml-127)."""
         index = 1 if element.tag == "axis2" else 0
         if self.kind == "hinge2" and index == 1 and 0 not in self.directions:
             raise SourceError(
@@ -106,7 +106,7 @@ class _JointElement:
                 self.context.diagnostics.warn("ignored-tag", message, element.source)
 
     def read_stop(self, element: Element) -> None:
-        """Read one of the deprecated limits, in degrees but for sliders; they also turn every axis round (joint-17)."""
+        """Read a deprecated limit, in degrees except for sliders; it also reverses every axis (joint-17)."""
         factor = 1.0 if self.kind == "slider" else math.pi / 180
         limit = "lower" if element.tag == "lostop" else "upper"
         before = [axis[limit] for axis in self.axes]
@@ -133,7 +133,7 @@ class _JointElement:
         self.parameters = self.context.with_parameter(self.parameters, element)
 
     def _set_all(self, element: Element, name: str, factor: float) -> None:
-        """Read a number for each axis; those that are missing keep their values, times the factor (gap-38)."""
+        """Read a number for each axis; missing numbers are the previous values times the factor (gap-38)."""
         before = [axis[name] if name in axis else float(getattr(_PLAIN_AXIS, name)) for axis in self.axes]
         values = numbers(element, len(self.axes), self.context.diagnostics, before)
         if name in _NOT_NEGATIVE:
@@ -151,7 +151,7 @@ OTHER_NUMBERS = {
     "hardmaxjerk": "hard_max_jerk",
     "wrapoffset": "wrap_offset",
 }
-"""Tags of numbers that most files lack, all but the first our own, and the fields of an axis that they fill."""
+"""Tags of rare numbers, all but the first ravemj's own, and the fields of an axis for them."""
 
 _NUMBERS = {
     "initial": "reference",
@@ -215,7 +215,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     """Read a ``<Joint>`` and append it to the body.
 
     Raises:
-        SourceError: it names bodies that are not there, or has impossible numbers.
+        SourceError: it names links that do not exist, or has impossible numbers.
     """
     context.check_attributes(element, JOINT_ATTRIBUTES, {})
     if element.attributes.get("type", "").lower() == "universal":  # the body stays (joint-22)
@@ -269,9 +269,9 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
 
 
 def _direction(reader: _JointElement, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
-    """Return an axis in the first link's frame; if it is not given, OpenRAVE's default for any order of links.
+    """Return an axis in the first link's frame; by default OpenRAVE's, whatever the order of the links.
 
-    That is z of the first link (errors-26); a slider without an axis does not move.
+    The default is z of the first link (errors-26); a slider without an axis does not move.
     """
     direction = _UNIT[index] if reader.kind == "spherical" else reader.directions.get(index)
     if direction is not None:
@@ -283,7 +283,7 @@ def _direction(reader: _JointElement, index: int, frame: Pose, *, exchanged: boo
 
 
 def frame_of_link(body: BodyBuilder, element: Element, context: Context) -> Pose:
-    """Return the pose of the link that an ``<offsetfrom>`` names; an unknown one counts as absent (errors-29, -30)."""
+    """Return the pose of the link named by an ``<offsetfrom>``; an unknown name is ignored (errors-29, -30)."""
     name = word(element, context.diagnostics)
     link = body.find_link(name)
     if link is None:

@@ -1,4 +1,4 @@
-"""The writer of ``<Joint>``, and of the poses of links that joints are measured from."""
+"""Writer of ``<Joint>``, and the link poses relative to which joint values are defined."""
 
 import math
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ _FIRST_AXES: dict[JointKind, JointKind] = {"rp": "slider", "pr": "hinge", "pp": 
 
 
 def listed_poses(body: KinBody) -> list[Pose]:
-    """Return the poses of the links as a document lists them: every joint that moves has its ``<initial>`` value."""
+    """Return the written poses of the links, at which every moving joint has its ``<initial>`` value."""
     if not body.joints:
         return [link.T_world_link for link in body.links]
     joints = enumerate(body.all_joints)
@@ -31,18 +31,18 @@ def listed_poses(body: KinBody) -> list[Pose]:
 
 
 def needs_values(body: KinBody) -> bool:
-    """Return whether a joint value differs from the ``<initial>`` one, clamped to the limits."""
+    """Return whether a joint value differs from the ``<initial>`` value, clamped to the limits."""
     axes = (axis for joint in body.joints if not joint.static for axis in joint.axes)
     return any(axis.value != clamp(axis, axis.reference) for axis in axes)
 
 
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
-    """Return the value at the listed poses; a joint without DOFs and mimic equation keeps its value."""
+    """Return the value at the written poses; a joint without DOFs and mimic equation keeps its value."""
     return axis.value if rests(body, index) else axis.reference
 
 
 def writable(body: KinBody, diagnostics: Diagnostics) -> KinBody:
-    """Return a body whose joints the format knows: of two axes of which one slides the first is kept."""
+    """Return a body with supported joints: of a revolute and a prismatic axis of one joint, the first is kept."""
     joints: list[Joint] = []
     for joint in body.all_joints:
         if joint.kind in _FIRST_AXES:
@@ -90,7 +90,7 @@ class JointWriter:
             write_parameters(self._out, joint.parameters)
 
     def _write_frame(self, body: KinBody, joint: Joint) -> None:
-        """Write anchor and directions, in the frame of the parent; of a slider OpenRAVE takes that frame's origin."""
+        """Write anchor and directions, in the frame of the parent; OpenRAVE anchors a slider at the frame's origin."""
         frame = self._slider_frame(joint) if joint.kind == "slider" else joint.parent
         self._out.element("offsetfrom", self._names.links[frame])
         turns_with_child = joint.static and len(body.joints) > 0  # OpenRAVE moves the frame of a weld to its child
@@ -107,7 +107,7 @@ class JointWriter:
                 self._out.element(tag, settled.direction(in_frame))
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn of a weld with another axis than OpenRAVE gives those of XML files: the z axis of the child."""
+        """Warn of a weld whose axis is not that which OpenRAVE gives welds in XML files: the z axis of the child."""
         if not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in OpenRAVE XML it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)

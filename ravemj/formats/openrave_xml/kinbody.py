@@ -1,7 +1,7 @@
 """``<Robot>``, ``<KinBody>`` and ``<Body>``: scopes that fill one body, in document order.
 
-A nested ``<KinBody>`` or ``<Robot>`` and an included file add to the body of the outermost element. The transform
-of an element acts at its end, once, on the links that were made inside it.
+Nested ``<KinBody>`` and ``<Robot>`` elements and included files add to the body of the outermost element. The transform
+of an element is applied once, at its end, to the links created inside it.
 """
 
 from dataclasses import replace
@@ -54,7 +54,7 @@ class _Scope(Placed):
         self.transparency: float | None = None
 
     def read(self, element: Element) -> None:
-        """Read a whole element: its file, its children, and what its end tag does."""
+        """Read an element: its file, its children, and the effects of its end tag."""
         first_link = len(self.body.links)
         if "file" in element.attributes:
             self._include(element)
@@ -112,7 +112,7 @@ class _Scope(Placed):
             self.body.set_parts(before)
 
     def _join_links(self, element: Element) -> None:
-        """Decide whether joined links are adjacent, by a whole number; the last KinBody to open decides.
+        """Read whether joined links are adjacent, as an integer; the last KinBody that opens has precedence.
 
         An element that includes a file opens after the root of the file. See gap-17, gap-18 and gap-19.
         """
@@ -182,7 +182,7 @@ class _Scope(Placed):
         read_attached_sensor(self.body, element, self.context)
 
     def read_controller(self, element: Element) -> None:
-        """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints (robot-24)."""
+        """Report a ``<Controller>``; after joints, it is an error in OpenRAVE (robot-24)."""
         if self.body.joints:
             hint = "leave it out: robots have a controller without asking"
             raise SourceError("OpenRAVE cannot attach a controller while it reads a robot", element.source, hint)
@@ -241,17 +241,17 @@ SCOPE_ATTRIBUTES = {
 
 
 _PLUGIN_CLASSES = {"collisionmaprobot", "conveyor"}
-"""Classes of bodies that every installation of OpenRAVE has, and that are plain bodies here."""
+"""Classes of bodies that every OpenRAVE installation has, which are read as plain bodies."""
 
 
 def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError | None]:
     """Read an outermost ``<Robot>`` or ``<KinBody>``.
 
     Returns:
-        The body, and what OpenRAVE refuses about it when it is already in the environment, if anything.
+        The body, and the error that OpenRAVE raises after adding it to the environment, if any.
 
     Raises:
-        SourceError: OpenRAVE refuses the body before it is in the environment.
+        SourceError: OpenRAVE refuses the body before adding it to the environment.
     """
     context.check_attributes(element, SCOPE_ATTRIBUTES, {})
     body = BodyBuilder(element.tag == "robot", element.source)
@@ -266,7 +266,7 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
 
 
 def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
-    """Take the kinds that every OpenRAVE has for plain bodies, and report the others."""
+    """Accept the body types that every OpenRAVE has as plain bodies, and report others."""
     kind = element.attributes.get("type")
     if kind is None:
         return

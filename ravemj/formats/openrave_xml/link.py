@@ -1,4 +1,4 @@
-"""``<Body>``: a link, new or re-opened by its name."""
+"""``<Body>``: a new link, or more content of an existing one."""
 
 from dataclasses import replace
 
@@ -39,7 +39,7 @@ class _LinkScope(Placed):
         self.skip_geometry = skip_geometry
 
     def read(self, element: Element) -> None:
-        """Read the attributes, the file that they name, and the children."""
+        """Read the attributes, the included file, and the children."""
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
         self.link.enabled = not is_false(element.attributes.get("enable", "true"))
         self.link.self_collision_ignored = is_false(element.attributes.get("selfcollision", "true"))
@@ -54,7 +54,7 @@ class _LinkScope(Placed):
         self.context.walk(element, LINK_TAGS, {}, self)
 
     def _include(self, element: Element) -> None:
-        """Read the file of a Body as a Body in this one."""
+        """Read the file of a Body like a nested Body."""
         root = self.context.include(element)
         if root is not None and root.tag == "body":
             self.read_nested(root)
@@ -64,7 +64,7 @@ class _LinkScope(Placed):
 
     @property
     def pose(self) -> Pose:
-        """The pose that the elements so far make."""
+        """The pose defined by the elements read so far."""
         pose = self.placement.pose
         return pose if self.T_scope_offset is None else self.T_scope_offset @ pose
 
@@ -141,7 +141,7 @@ def read_link(
     *,
     skip_geometry: bool,
 ) -> None:
-    """Read a ``<Body>``: a new link, or one more piece of the link of that name."""
+    """Read a ``<Body>``: a new link, or more content of the existing link with this name."""
     name = element.attributes.get("name")
     existing = None if name is None else body.find_link(name)
     # A known name, also an empty one, goes on with that link; a Body without the attribute is new (transform-26).
@@ -183,7 +183,7 @@ def _scaled(scope: GeometryScope, element: Element, diagnostics: Diagnostics) ->
 
 
 def _check_density(link: LinkBuilder, rule: MassRule | None, element: Element, context: Context) -> None:
-    """Warn of a density without effect, since no shape of the link has a volume."""
+    """Warn of a density without effect because no shape of the link has a volume."""
     fills = rule is not None and rule.kind == "mimicgeom" and not rule.by_total and rule.density > 0
     if fills and link.geometries and not link.inertial.mass:
         message = f"link '{link.name}' weighs nothing: no shape of it has a volume that its density could fill"

@@ -1,7 +1,7 @@
-"""``<Mass>`` in a Body and in a KinBody: from densities, totals and shapes to the inertia of a link.
+"""``<Mass>`` in a Body and in a KinBody: the inertia of a link from densities, totals and shapes.
 
-OpenRAVE's rules, quirks included: old models were tuned on them. Densities and totals are kept in single precision
-there, so they are rounded to it here.
+The rules are OpenRAVE's, including quirks to which old models were tuned. OpenRAVE stores densities and totals in
+single precision, so they are rounded here.
 """
 
 import math
@@ -25,15 +25,15 @@ TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is give
 
 @dataclass(slots=True)
 class MassRule:
-    """How the mass properties of a link are computed.
+    """Rule for computing the mass properties of a link.
 
     Attributes:
         kind: ``mimicgeom``, ``sphere``, ``box`` or ``custom``.
         density: Density [kg/m^3].
-        total: Total mass [kg], which counts ``by_total``.
-        by_total: Whether the mass follows from the total and not from the density.
-        half_extents: Half sizes of the box; the first is the radius of the sphere.
-        custom_mass: Mass of a ``custom`` mass [kg]: the last total of the Body, which a KinBody does not give.
+        total: Total mass [kg], which is used ``by_total``.
+        by_total: Whether the mass is given by the total instead of the density.
+        half_extents: Half extents of the box; the first is the radius of the sphere.
+        custom_mass: Mass of a ``custom`` mass [kg]: the last total in the Body, not that of a KinBody.
         com: Its centre of mass.
         inertia: Its inertia about the centre of mass.
         axes: The orientation of its principal axes, or None for any that fit the inertia.
@@ -59,7 +59,7 @@ class _Mass:
     scale: Vec3
 
     def density(self, element: Element) -> None:
-        """Read a ``<density>``; it has no effect on a custom mass (gap-21), but on a Mass after it."""
+        """Read a ``<density>``; it has no effect on a custom mass, but on the next Mass (gap-21)."""
         self.rule.density = single(number(element, self.diagnostics, self.rule.density))
         self.rule.by_total = False
 
@@ -78,7 +78,7 @@ class _Mass:
         self.rule.com = hadamard(self.scale, vector(element, self.diagnostics, self.rule.com))
 
     def inertia(self, element: Element) -> None:
-        """Read the inertia of a custom mass; only its upper triangle counts."""
+        """Read the inertia of a custom mass; only its upper triangle is used."""
         before = [value for row in self.rule.inertia for value in row]
         xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers(element, 9, self.diagnostics, before)
         if max(abs(xy - yx), abs(xz - zx), abs(yz - zy)) > _ROUNDING * max(abs(xx), abs(yy), abs(zz)):
@@ -113,7 +113,7 @@ MASS_TAGS: dict[str, Tag[_Mass]] = {
 
 
 def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: Context) -> MassRule:
-    """Read a ``<Mass>`` of a Body and update the previous rule, or a new one; omitted values do not change."""
+    """Read a ``<Mass>`` of a Body; update the rule ``before``, or a new one. Omitted values do not change."""
     context.check_attributes(element, MASS_ATTRIBUTES, {})
     kind = element.attributes.get("type", "sphere").lower()
     if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
@@ -131,7 +131,7 @@ def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: C
 
 @dataclass(slots=True)
 class DefaultMass:
-    """Default mass of following Bodies, from the ``<Mass>`` elements of a KinBody."""
+    """Default mass of subsequent Bodies, from the ``<Mass>`` elements of a KinBody."""
 
     context: Context
     kind: str = ""  # before the first
@@ -159,7 +159,7 @@ class DefaultMass:
             self.context.diagnostics.warn("openrave-bug", message, element.source, "write <density>")
 
     def read_number(self, element: Element) -> None:
-        """Read a ``<density>`` or a ``<total>``; both land in the same place (mass-21)."""
+        """Read a ``<density>`` or a ``<total>``, which are stored in the same variable (mass-21)."""
         self.number = single(number(element, self.context.diagnostics, self.number))
         self.is_total = element.tag == "total"
 
@@ -169,7 +169,7 @@ class DefaultMass:
         self.half_extents = (number(element, self.context.diagnostics, before), y, z)
 
     def extents(self, element: Element) -> None:
-        """Read the half sizes of a box; of other kinds and behind a total they have no effect (gap-24)."""
+        """Read the half extents of a box; for other kinds and after a total they have no effect (gap-24)."""
         half_extents = vector(element, self.context.diagnostics, self.half_extents)
         if self.kind == "box" and not self.is_total:
             self.half_extents = half_extents
@@ -203,8 +203,8 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
 def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     """Combine the solids of all shapes by the parallel axis theorem.
 
-    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias (mass-06). It divides a total
-    by 0 where there are shapes and none has a volume (random-xml-132), and not where there are none (gap-25).
+    With a total mass, OpenRAVE scales the masses of the parts but not their inertias (mass-06). It divides a total
+    by 0 if there are shapes without any volume (random-xml-132), and not if there are no shapes (gap-25).
     """
     density = TOTAL_DENSITY if rule.by_total else rule.density
     solids = [geometry.shape.mass_moments(density) for geometry in geometries]
@@ -243,7 +243,7 @@ def _rotated(moments: Vec3, wxyz: Wxyz) -> Rows:
 
 
 def _point_inertia(mass: float, arm: Vec3) -> Rows:
-    """Return the inertia of a point mass at the end of an arm."""
+    """Return the inertia of a point mass at a displacement."""
     x, y, z = arm
     square = dot(arm, arm)
     return (

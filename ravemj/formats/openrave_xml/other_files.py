@@ -1,4 +1,4 @@
-"""Other files in place of a body: the first body of a COLLADA file joins the one that is open, a mesh is one link."""
+"""Other files as bodies: the first body of a COLLADA file is merged into the open one, a mesh is one link."""
 
 import os
 from dataclasses import replace
@@ -18,7 +18,7 @@ from ravemj.model.shape_bodies import MASSLESS
 def add_collada(
     body: BodyBuilder, uri: str, source: Source, context: Context, scale: Vec3, *, skip_geometry: bool
 ) -> None:
-    """Fill a body with the first one of a COLLADA file, all joints at 0; a broken file is reported.
+    """Fill a body with the first body of a COLLADA file, all joints at 0; a malformed file is reported.
 
     Args:
         body: The body.
@@ -26,7 +26,7 @@ def add_collada(
         source: Source of the reference.
         context: Receives diagnostics.
         scale: Factors of lengths along x, y and z.
-        skip_geometry: Whether the shapes are left out.
+        skip_geometry: Whether to omit the shapes.
     """
     path, wanted = collada.split_uri(uri)
     found_path = context.find(path, source)
@@ -58,14 +58,14 @@ def add_collada(
 
 
 def add_urdf(body: BodyBuilder, root: Element, element: Element, context: Context, *, skip_geometry: bool) -> None:
-    """Fill a body with a URDF; a broken one is reported. A KinBody gets no manipulators.
+    """Fill a body with a URDF; a malformed one is reported. A KinBody gets no manipulators.
 
     Args:
         body: The body.
         root: The root element of the URDF.
         element: The element that names the file; its attributes may name the SRDF.
-        context: Takes findings.
-        skip_geometry: Whether the shapes are left out.
+        context: Receives diagnostics.
+        skip_geometry: Whether to omit the shapes.
     """
     from ravemj.formats.urdf.robot import read_robot  # noqa: PLC0415 - rarely wanted
 
@@ -87,7 +87,7 @@ def add_urdf(body: BodyBuilder, root: Element, element: Element, context: Contex
 
 
 def uniform(scale: Vec3, source: Source, context: Context) -> float:
-    """Return the one factor of lengths that a COLLADA file can have; report that others are left out."""
+    """Return the single scale factor that a COLLADA file can have; report others as ignored."""
     if len(set(scale)) > 1:
         message = f"scalegeometry scales a COLLADA file by {scale[0]:g} in all directions"
         context.diagnostics.warn("ignored-attribute", message, source)
@@ -120,7 +120,7 @@ def _join(body: BodyBuilder, other: BodyBuilder) -> None:
 
 
 def is_mesh(name: str) -> bool:
-    """Return whether a file in place of a body is a mesh; COLLADA files are robots there."""
+    """Return whether a file named as a body is a mesh; COLLADA files are robots."""
     lowered = name.lower()
     return lowered.endswith(MESH_SUFFIXES) and not lowered.endswith(collada.SUFFIXES)
 
@@ -132,8 +132,8 @@ def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context:
         body: The body.
         path: The file.
         scale: Factors along x, y and z.
-        source: Where the file is named.
-        context: Takes findings.
+        source: The position of its name.
+        context: Receives diagnostics.
     """
     geometries = [
         Geometry(

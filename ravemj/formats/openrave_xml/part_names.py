@@ -6,10 +6,10 @@ from ravemj.model.scene import Joint, KinBody, Link
 
 
 class PartNames:
-    """The names in the document: the parts' own, unless the reader would take one part for another.
+    """Names in the document: the parts' own, unless the reader would confuse two parts.
 
-    It finds links by a word, in any letter case, and goes on with a link of a name that it has met; joints with DOFs
-    need names of their own.
+    The reader finds links by a single word in any letter case, and merges links of equal names; joints with DOFs need
+    different names.
 
     Attributes:
         links: The name of each link.
@@ -55,7 +55,7 @@ class PartNames:
 
 
 def _renamed(kind: str, part: Link | Joint, body: KinBody, known: set[str], diagnostics: Diagnostics) -> str:
-    """Return a name for a part that no known name, in lower case, is; it is known from now on."""
+    """Return a name for a part whose lower-case form is not in ``known``, and add it."""
     name = "_".join(words(part.name)) or kind
     numbered = (f"{name}_{count}" for count in range(1, len(known) + 2))
     given = next(other for other in numbered if other.lower() not in known)

@@ -1,4 +1,4 @@
-"""Prefixing and ordering of the parts that were added to a body since some moment."""
+"""Prefixing and ordering of the parts added to a body since a snapshot."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,13 +26,13 @@ class Marks(NamedTuple):
 
 
 def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> None:
-    """Put a prefix before the names of the parts that a body got since some moment.
+    """Put a prefix before the names of the parts added to a body since a snapshot.
 
     Args:
         prefix: The prefix.
         body: The body.
-        marks: That moment.
-        whole: Whether to rename, beside links and joints, joints in equations, manipulators and sensors as well:
+        marks: The snapshot.
+        whole: Whether to rename, besides links and joints, joints in equations, manipulators and sensors as well:
             OpenRAVE does so in a Robot, and not in a KinBody (mimic-13, environment-07).
     """
     joints = body.joints[marks.joints :]
@@ -68,7 +68,7 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
 def youngest_first(parts: list[Part], older: Sequence[Part]) -> list[Part]:
     """Return the new parts in reverse order, followed by the older ones (gap-44, gap-45).
 
-    Without older ones the order is kept (gap-43), and so is that of parts of a COLLADA file (gap-75).
+    If there are no older ones, the order is kept (gap-43), and so is that of parts of a COLLADA file (gap-75).
     """
     return [*reversed(_newer(parts, older)), *older] if older else parts
 

@@ -1,4 +1,4 @@
-"""``<Manipulator>`` and ``<AttachedSensor>``, which only robots have."""
+"""``<Manipulator>`` and ``<AttachedSensor>``, which occur only in robots."""
 
 from ravemj.errors import Diagnostics
 from ravemj.formats.openrave_xml.context import PLACEMENT_TAGS, Context, Placed
@@ -12,7 +12,7 @@ from ravemj.model.scene import AttachedSensor
 
 
 def named_link(body: BodyBuilder, element: Element, owner: str, context: Context) -> str:
-    """Return the name of a link. It must exist already, although the file may define it later (gap-29)."""
+    """Return the name of a link. It should already exist, although the file may define it later (gap-29)."""
     name = word(element, context.diagnostics)
     if body.find_link(name) is None:
         message = f"there is no Body '{name}' for the <{element.spelled}> of {owner}"

@@ -1,4 +1,4 @@
-"""``<Sensor>``: the type of a sensor and its fixed properties."""
+"""``<Sensor>``: type and constant properties of a sensor."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -26,11 +26,11 @@ class SensorElement(NamedTuple):
     """A parsed ``<Sensor>``.
 
     Attributes:
-        type: OpenRAVE's name of its kind, or None for a frame without a device.
-        device: Its fixed properties.
+        type: OpenRAVE's name of the sensor type, or None for a frame without a device.
+        device: Its constant properties.
         is_on: Whether it measures from the start.
         color: Colour in which viewers draw it.
-        pose: Its own pose; for a sensor on a robot the pose of the ``<AttachedSensor>`` counts.
+        pose: Its own pose; sensors on a robot have that of the ``<AttachedSensor>`` instead.
         name: Its name.
     """
 
@@ -52,7 +52,7 @@ class _SensorScope(Placed):
         self.color = SENSOR_COLOR
 
     def describe(self, element: Element, tag: SensorTag) -> None:
-        """Read an element that the tables shared with COLLADA describe."""
+        """Read an element described in the tables shared with COLLADA."""
         if is_text(self.device, tag):
             self.device = described(self.device, tag, " ".join(element.text.split()))
         elif tag.numbers:
@@ -92,23 +92,23 @@ _IN_FILE = dict.fromkeys(
 
 
 def device_tags(kind: SensorKind) -> Mapping[str, Tag[_SensorScope]]:
-    """Return the tags specific to a kind of sensor."""
+    """Return the tags specific to a sensor type."""
     shared = sensor_tags(kind.device).items()
     return {name.lower(): Tag(partial(_SensorScope.describe, tag=tag), tag.meaning) for name, tag in shared}
 
 
 def device_ignored(kind: SensorKind) -> Mapping[str, str]:
-    """Return the ignored tags specific to a kind of sensor, with reasons."""
+    """Return the ignored tags specific to a sensor type, with reasons."""
     return _CAMERA_IGNORED if isinstance(kind.device, Intrinsics) else {}
 
 
 def read_device(element: Element, context: Context) -> SensorElement:
-    """Read the ``<Sensor>`` of an ``<AttachedSensor>``; with ``file``, that of the file."""
+    """Read the ``<Sensor>`` of an ``<AttachedSensor>``; if it has a ``file``, that of the file."""
     return _read(element, context, {}, reasons("the AttachedSensor says where it is", *PLACEMENT_TAGS))
 
 
 def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
-    """Read a ``<Sensor>`` that no robot carries; None, with an error, if its type is unknown."""
+    """Read a ``<Sensor>`` without a robot; None, with an error, if its type is unknown."""
     sensor = _read(element, context, PLACEMENT_TAGS, {})
     if sensor.device is None:
         if "type" not in element.attributes:
@@ -134,7 +134,7 @@ def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
 def _read(
     element: Element, context: Context, placement: Mapping[str, Tag[_SensorScope]], ignored: Mapping[str, str]
 ) -> SensorElement:
-    """Read a ``<Sensor>``; with ``file`` and without a type, that of the file, in the pose of the element."""
+    """Read a ``<Sensor>``; if it has a ``file`` and no type, that of the file, at the pose of the element."""
     context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
     root = context.include(element)
     from_file = SensorElement() if root is None or root.tag != "sensor" else _read(root, context, placement, ignored)

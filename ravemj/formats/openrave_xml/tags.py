@@ -1,6 +1,6 @@
 """Tables of tags: the reader function and the meaning of each tag.
 
-The same tables drive the reader and make ``docs/coverage.md``. A tag that is in no table is unknown.
+The reader and ``docs/coverage.md`` are based on these tables. A tag that is in no table is unknown.
 """
 
 from collections.abc import Callable
@@ -15,13 +15,13 @@ NO_EFFECT_HERE = "it has no effect on the model"
 
 
 class Tag(NamedTuple, Generic[Target_contra]):
-    """A child element that the reader knows.
+    """A child element that the reader supports.
 
     Attributes:
         read: Function that reads the element into its parent's object.
-        meaning: What the element means, or why it is left out, in a few words.
+        meaning: Meaning of the element, or the reason why it is ignored, in a few words.
         left_out: Whether it has no effect on the model.
-        once: Whether only the last one of an element counts, among all tags with this ``read``; or of this name.
+        once: Whether only the last element is used: among all tags with this ``read``, or among those of this name.
     """
 
     read: Callable[[Target_contra, Element], None]

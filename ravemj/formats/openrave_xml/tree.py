@@ -1,7 +1,7 @@
-"""Syntax: a file becomes a tree of elements with lower-case names and the line that each starts on.
+"""XML syntax: a file is parsed to a tree of elements with lower-case names and line numbers.
 
-OpenRAVE's parser knows no namespaces, stops at the end tag of the root, and has handed out everything before a syntax
-error by the time it meets it. Expat shows all of that as it is, and where a tag starts.
+OpenRAVE's parser does not support namespaces, stops at the end tag of the root, and has processed everything before a
+syntax error when it reports the error. Expat allows all this, and gives the positions of tags.
 """
 
 import codecs
@@ -19,17 +19,17 @@ DEEPEST = 200
 
 @dataclass(slots=True)
 class Element:
-    """An XML element as OpenRAVE sees it.
+    """An XML element as OpenRAVE interprets it.
 
     Attributes:
         tag: Name in lower case; OpenRAVE ignores the letter case of names.
-        spelled: The name as the author wrote it.
+        spelled: The name as written.
         attributes: Values by lower-case name.
-        source: Where its start tag begins.
-        text: The text behind the last child element; what stands before a child is discarded.
+        source: Start of its start tag.
+        text: The text after the last child element; text before a child is discarded.
         children: Child elements in document order.
-        complete: False where the file breaks off before its end tag.
-        checked: Whether its attributes were looked at.
+        complete: False if the file ends before its end tag.
+        checked: Whether its attributes were checked.
     """
 
     tag: str
@@ -47,8 +47,8 @@ class Document(NamedTuple):
 
     Attributes:
         root: The root element.
-        error: What ended the parsing before the root's end tag, or None.
-        unread: Where something stands behind that tag, or None.
+        error: The error that ended the parsing before the root's end tag, or None.
+        unread: Position of content after the root's end tag, or None.
     """
 
     root: Element
@@ -62,7 +62,7 @@ def parse_file(path: str, included_from: Source | None = None, budget: ParsingBu
     Args:
         path: The file.
         included_from: The element that includes it, for messages.
-        budget: Counts what the model has read; None if this file is all of it.
+        budget: Counts what the model has read; None if this file is the whole model.
 
     Raises:
         SourceError: the file cannot be read, is too large, or has no root element.
@@ -89,7 +89,7 @@ def parse(
         content: The bytes.
         path: Its name in messages.
         included_from: The element that includes it, for messages.
-        budget: Counts what the model has read; None if this is all of it.
+        budget: Counts what the model has read; None if this is the whole model.
 
     Raises:
         SourceError: there is no root element, or the content is too large.
@@ -156,7 +156,7 @@ class _TreeBuilder:
         return None
 
     def _explained(self, error: expat.ExpatError) -> SourceError:
-        """Return a syntax error in words. An invalid token may be a byte of another encoding, or no XML at all."""
+        """Return an explained syntax error. An invalid token may be in another encoding, or not XML at all."""
         source = Source(self._path, error.lineno, self._included_from)
         if not self._content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):  # half of whose bytes are 0
             if b"\0" in self._content:
@@ -220,7 +220,7 @@ class _TreeBuilder:
             self._entities.append(f"&{name};")
 
     def _refuse_entities(self) -> None:
-        """Refuse a start tag with entities of the file's own in it: expat has replaced them without a word."""
+        """Refuse a start tag that contains entities defined in the file, which expat replaces silently."""
         start = self._expat.CurrentByteIndex
         end = self._content.find(b"<", start + 1)  # values may hold a ">", never a "<"
         tag = self._content[start:end].replace(b"\0", b"")  # UTF-16 has zeros

@@ -1,4 +1,4 @@
-"""Numbers and rotations in the text of an element, by OpenRAVE's rules, with a warning where these are surprising."""
+"""Numbers and rotations in the text of an element, by OpenRAVE's rules, with warnings if these are surprising."""
 
 import math
 import re
@@ -25,7 +25,7 @@ from ravemj.formats.openrave_xml.tree import Element
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))", re.ASCII)
 _WORD = re.compile(r"\S+", re.ASCII)
-"""C++ takes only ASCII's digits for digits and only ASCII's spaces for spaces."""
+"""Pattern of words: in C++, only ASCII digits are digits and only ASCII white space is space."""
 
 _OF_FEW_DIGITS = 0.01
 """Maximum deviation of an entry of a rotation matrix that was written with two digits."""
@@ -36,7 +36,7 @@ class Numbers(NamedTuple):
 
     Attributes:
         values: The numbers, in order.
-        rest: What follows them; empty in a sane file.
+        rest: The text after the numbers, normally empty.
     """
 
     values: list[float]
@@ -70,14 +70,14 @@ def _plain_numbers(text: str) -> list[float] | None:
 def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequence[float] = ZERO) -> list[float]:
     """Return exactly ``count`` numbers from an element's text.
 
-    A word that is no number counts as 0 and ends the reading (``bad-number``); numbers that are missing keep their
-    values (gap-14, gap-15), and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
+    A word that is not a number is read as 0 and ends the reading (``bad-number``); missing numbers keep their values
+    (gap-14, gap-15), and excess numbers are ignored (``number-count``). OpenRAVE reports neither.
 
     Args:
         element: The element.
-        count: How many numbers it should hold.
-        diagnostics: Takes a warning.
-        before: The values that missing numbers keep; behind its end 0.
+        count: The expected number of numbers.
+        diagnostics: Receives a warning.
+        before: The values of missing numbers; 0 beyond its end.
     """
     plain = _plain_numbers(element.text)
     if plain is not None and len(plain) == count:
@@ -102,7 +102,7 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
 
 
 def number_list(element: Element, diagnostics: Diagnostics) -> list[float]:
-    """Return the numbers that an element's text begins with; a word behind them ends the list (``bad-number``)."""
+    """Return the numbers at the start of an element's text; a following word is reported (``bad-number``)."""
     values, rest = leading_numbers(element.text)
     if rest:
         taken = " ".join(f"{value:g}" for value in values) or "none"
@@ -112,7 +112,7 @@ def number_list(element: Element, diagnostics: Diagnostics) -> list[float]:
 
 
 def number(element: Element, diagnostics: Diagnostics, before: float = 0.0) -> float:
-    """Return the one number in an element's text."""
+    """Return the single number in an element's text."""
     return numbers(element, 1, diagnostics, (before,))[0]
 
 
@@ -123,7 +123,7 @@ def vector(element: Element, diagnostics: Diagnostics, before: Vec3 = ZERO) -> V
 
 
 def scale_attribute(element: Element, diagnostics: Diagnostics) -> Vec3:
-    """Return the ``scalegeometry`` of an element: one number for all axes, or three; of others the first counts."""
+    """Return the ``scalegeometry`` of an element: one number for all axes, or three; of two, the first is used."""
     if "scalegeometry" not in element.attributes:
         return UNSCALED
     text = element.attributes["scalegeometry"]
@@ -143,7 +143,7 @@ def words(text: str) -> list[str]:
 
 
 def word(element: Element, diagnostics: Diagnostics) -> str:
-    """Return the first word of an element's text, a name; more words have no effect (``extra-words``)."""
+    """Return the first word of an element's text, a name; further words are ignored (``extra-words``)."""
     given = words(element.text) or [""]
     if len(given) > 1:
         message = (
@@ -154,12 +154,12 @@ def word(element: Element, diagnostics: Diagnostics) -> str:
 
 
 def is_true(value: str) -> bool:
-    """Return True for the two spellings that OpenRAVE takes for true, where only those count."""
+    """Return whether a text is one of the two spellings of true in OpenRAVE, if all else is false."""
     return value.lower() in {"true", "1"}
 
 
 def is_false(value: str) -> bool:
-    """Return True for the two spellings that OpenRAVE takes for false."""
+    """Return whether a text is one of the two spellings of false in OpenRAVE."""
     return value.lower() in {"false", "0"}
 
 
@@ -169,10 +169,10 @@ def hadamard(a: Vec3, b: Vec3) -> Vec3:
 
 
 class ChildTransform:
-    """The transform that the children of an element make, applied in document order.
+    """The transform defined by the children of an element, applied in document order.
 
-    Translations add up and are never rotated; rotations multiply from the left. The order between the two
-    kinds does not matter.
+    Translations are added without rotation; rotations multiply from the left. The order of translations relative to
+    rotations does not matter.
     """
 
     __slots__ = ("_position", "_scale", "_wxyz")

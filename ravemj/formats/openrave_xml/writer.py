@@ -1,7 +1,7 @@
-"""The writer of OpenRAVE XML: a scene as a document, with the files of its meshes.
+"""Writer of OpenRAVE XML: a scene as a document, with its mesh files.
 
-The reader's rules decide what stands where: links are placed as if every joint had its ``<initial>`` value, joints are
-given in the frame of their parent, and ``<jointvalues>`` moves them from there. What the format cannot say is reported.
+As the reader requires, links are written as if every joint had its ``<initial>`` value, joints in the frame of their
+parent, and ``<jointvalues>`` are the present values. What the format cannot represent is reported.
 """
 
 from dataclasses import dataclass, replace
@@ -46,12 +46,12 @@ class WrittenScene:
 
 
 def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") -> WrittenScene:
-    """Write a scene: an ``<Environment>``, or the one body of a scene without a view as the root.
+    """Write a scene: an ``<Environment>``, or the only body of a scene without a view as the root.
 
     Args:
-        scene: What to write.
-        diagnostics: Takes a warning for everything that the format cannot say.
-        meshes: The kind of the mesh files.
+        scene: The scene.
+        diagnostics: Receives a warning for everything that the format cannot represent.
+        meshes: The format of the mesh files.
 
     Raises:
         OutputError: A name or a number cannot be written.
@@ -178,7 +178,7 @@ class _Writer:
             write_pose(self.out, settled.pose(manipulator.T_effector_tool))
 
     def write_sensor(self, sensor: AttachedSensor) -> None:
-        """Write a sensor that no robot carries."""
+        """Write a sensor without a robot."""
         _check_name("sensor", sensor.name)
         kind = None if sensor.type is None else sensor_kind(sensor.type)
         if kind is None:

@@ -1,9 +1,9 @@
-"""URDF and SRDF: the robots of ROS become bodies.
+"""Reader of URDF and SRDF, the robot formats of ROS.
 
-``robot`` walks over a document and fills a ``BodyBuilder``; ``link``, ``shapes`` and ``joint`` each read one kind of
-element, ``packages`` finds the files that URIs name, ``srdf`` reads what MoveIt and or_urdf keep in a second file, and
-``arms`` guesses manipulators without one. urdfdom, the parser of ROS, decides what a document means; where it stops at
-a mistake that leaves the robot usable, the robot is read and the mistake is reported.
+``robot`` traverses a document and fills a ``BodyBuilder``; ``link``, ``shapes`` and ``joint`` each read one kind of
+element, ``packages`` finds the files of URIs, ``srdf`` reads the second file of MoveIt and or_urdf, and ``arms``
+guesses manipulators if there is none. The interpretation is that of urdfdom, the parser of ROS; if urdfdom refuses a
+mistake that leaves the robot usable, the robot is read and the mistake is reported.
 """
 
 from typing import TYPE_CHECKING
@@ -20,17 +20,17 @@ GIVEN = {
     "args": "of a xacro: its arguments, `name:=value`, separated by blanks",
     "like": "of a URDF: `or_urdf` sorts links and joints by name, and makes no robot without an SRDF that is named",
 }
-"""Attributes that a caller may give with a URDF, with their meanings."""
+"""Attributes that a caller may pass with a URDF, with their meanings."""
 
 OR_URDF = "or_urdf"
-"""OpenRAVE's plugin for URDF, whose bodies scripts expect of its module."""
+"""OpenRAVE's plugin for URDF; scripts expect bodies with its properties from its module."""
 
 GUESSES = "guessed-manipulators"
-"""Code of the note that names guessed manipulators, which commands print."""
+"""Code of the note that names guessed manipulators; commands print the note."""
 
 
 def is_urdf(root: "Element") -> bool:
-    """Return whether a ``<robot>`` is URDF's and not OpenRAVE's.
+    """Return whether a ``<robot>`` is that of URDF and not that of OpenRAVE.
 
     It is if a joint names its parent by an attribute, or if it has links and no ``<kinbody>``.
     """
@@ -44,7 +44,7 @@ def is_urdf(root: "Element") -> bool:
 
 
 def check_robot(root: "Element") -> None:
-    """Refuse a ``<robot>`` that is neither URDF's nor OpenRAVE's.
+    """Refuse a ``<robot>`` that belongs neither to URDF nor to OpenRAVE.
 
     Raises:
         SourceError: it is a xacro, or the root of an SRDF.

@@ -1,4 +1,4 @@
-"""Manipulators of robots without an SRDF: guessed from the tree of links and their names."""
+"""Manipulators of robots without an SRDF, guessed from the link tree and names."""
 
 import re
 
@@ -26,7 +26,7 @@ def guess(
     reason: str = "no SRDF describes the arms",
     hint: str = "--srdf FILE gives the robot's own",
 ) -> list[ManipulatorBuilder]:
-    """Return guessed manipulators: links with the name of a tool at the end of three or more DOFs.
+    """Return guessed manipulators: links with the name of a tool after three or more DOFs.
 
     If no link has the name of a tool, the ends of the longest chains are used. Joints beyond the tool belong to the
     gripper. A note names the guessed manipulators, with ``reason`` and ``hint``.
@@ -41,7 +41,7 @@ def guess(
 
 
 def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
-    """Return one arm for each joint that is the last one before a tool, in the order of the file."""
+    """Return one arm for each joint that is the last joint before a tool, in the order of the file."""
     arms: dict[str, ManipulatorBuilder] = {}  # by the last joint
     dofs = {link: _dofs(link, tree) for link in tools}
     for link in tools:
@@ -85,6 +85,6 @@ def base_of(tree: RobotTree, link: str) -> str:
 
 
 def _is_beyond(link: str, dofs: dict[str, list[UrdfJoint]], tree: RobotTree) -> bool:
-    """Return whether a link is moved by gripper joints: it hangs on another tool that an arm moves."""
+    """Return whether gripper joints move a link: whether it is below another tool that an arm moves."""
     above = {joint.parent for joint in tree.path(link) or []} & dofs.keys()
     return any(len(dofs[other]) >= _LEAST_DOFS and dofs[other][-1] is not dofs[link][-1] for other in above)

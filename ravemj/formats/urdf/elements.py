@@ -20,12 +20,12 @@ from ravemj.formats.openrave_xml.values import leading_numbers
 
 
 def children(element: Element, tag: str) -> list[Element]:
-    """Return the child elements with a tag; URDF distinguishes upper and lower case."""
+    """Return the child elements with a tag; URDF is case-sensitive."""
     return [child for child in element.children if child.spelled == tag]
 
 
 def only(element: Element, tag: str, context: Context) -> Element | None:
-    """Return the first child element with a tag, or None; further ones are reported and left out."""
+    """Return the first child element with a tag, or None; further ones are reported and ignored."""
     elements = children(element, tag)
     for other in elements[1:]:
         message = f"<{tag}> is left out: the first one, in line {elements[0].source.line}, counts"
@@ -36,7 +36,7 @@ def only(element: Element, tag: str, context: Context) -> Element | None:
 def check_children(
     element: Element, known: Iterable[str], context: Context, ignored: Iterable[str] = (), language: str = "URDF"
 ) -> None:
-    """Report child elements that URDF does not know. Extensions with a namespace belong to other programs."""
+    """Report child elements that are not part of URDF. Extensions with a namespace belong to other programs."""
     known = set(known)
     for child in element.children:
         if child.spelled not in known and child.spelled not in ignored and ":" not in child.spelled:
@@ -65,7 +65,7 @@ def numbers_of(element: Element, name: str, count: int) -> list[float]:
     """Return the numbers in an attribute.
 
     Raises:
-        SourceError: it is missing, or holds anything but ``count`` finite numbers separated by spaces.
+        SourceError: it is missing, or is anything but ``count`` finite numbers separated by spaces.
     """
     text = attribute(element, name)
     values, rest = leading_numbers(text)
@@ -84,7 +84,7 @@ def vector_of(element: Element, name: str, default: Vec3) -> Vec3:
 
 
 def origin_of(element: Element, context: Context) -> Pose:
-    """Return the pose that the ``<origin>`` of an element gives; without one, no displacement.
+    """Return the pose of an element's ``<origin>``; the identity if it has none.
 
     ``rpy`` are rotations about the fixed axes x, y and z, in this order; URDF 1.1 has ``quat_xyzw`` instead.
     """
@@ -103,7 +103,7 @@ def origin_of(element: Element, context: Context) -> Pose:
 
 
 def wxyz_from_rpy(rpy: Vec3) -> Wxyz:
-    """Return Rz(yaw) Ry(pitch) Rx(roll) of angles [rad] as a quaternion."""
+    """Return the quaternion of Rz(yaw) Ry(pitch) Rx(roll) for angles [rad]."""
     if rpy == ZERO:
         return UNMOVED.wxyz
     roll, pitch, yaw = (

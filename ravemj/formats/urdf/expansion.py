@@ -1,6 +1,6 @@
-"""The program that expands a xacro; ``xacro.expand`` runs it in a process of its own.
+"""Program that expands a xacro; ``xacro.expand`` runs it in a separate process.
 
-It reads a request from standard input and writes the text, and the files that it includes, to standard output.
+It reads a request from standard input and writes the text and the names of included files to standard output.
 """
 
 import contextlib

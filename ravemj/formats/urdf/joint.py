@@ -1,4 +1,4 @@
-"""``<joint>``: frames, axes, limits, and joints that follow others."""
+"""``<joint>``: frames, axes, limits, and mimic joints."""
 
 import math
 from collections.abc import Mapping
@@ -46,7 +46,7 @@ class UrdfJoint:
     Attributes:
         element: Its element.
         name: Its name.
-        type: Its type, as URDF calls it.
+        type: Its URDF type.
         parent: Name of the link that carries it.
         child: Name of the link that it moves.
         T_parent_child: Pose of the child at the value 0.
@@ -170,7 +170,7 @@ def _rates(joint: UrdfJoint, element: Element, context: Context) -> dict[str, fl
 
 
 def follow(joints: Mapping[str, UrdfJoint], built: Mapping[str, JointBuilder], context: Context) -> None:
-    """Connect joints with ``<mimic>`` to their leaders."""
+    """Set the mimic equations of joints with ``<mimic>``."""
     for name, joint in joints.items():
         element = only(joint.element, "mimic", context)
         if element is None or joint.type in {"fixed", "floating"}:
@@ -187,7 +187,7 @@ def follow(joints: Mapping[str, UrdfJoint], built: Mapping[str, JointBuilder], c
 
 
 def _with_room(axis: Axis, leader: Axis, factor: float, offset: float) -> Axis:
-    """Return the axis of a follower; if it has no range of its own, with the one that its leader gives it."""
+    """Return the axis of a mimic joint; if its range is empty, with the range that follows from its leader."""
     if axis.circular or axis.lower < axis.upper:
         return axis
     lower, upper = sorted((leader.lower * factor + offset, leader.upper * factor + offset))

@@ -13,7 +13,7 @@ from ravemj.model.scene import Geometry, Inertial
 from ravemj.model.shape_bodies import MASSLESS
 
 VISUAL_GROUP, SPHERES_GROUP = "visual", "spheres"
-"""Geometry groups that every link has, as or_urdf makes them."""
+"""Geometry groups that every link has, as in or_urdf."""
 
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _KNOWN = ("inertial", "visual", "collision", "geometry_group")
@@ -44,7 +44,7 @@ def read_groups(element: Element, shapes: UrdfShapeReader) -> dict[str, list[Geo
 
 
 def _inertial(element: Element, context: Context) -> Inertial:
-    """Return the mass properties of a link; without ``<inertial>`` almost none."""
+    """Return the mass properties of a link; almost none if it has no ``<inertial>``."""
     inertial = only(element, "inertial", context)
     if inertial is None:
         return MASSLESS
@@ -63,7 +63,7 @@ def _inertial(element: Element, context: Context) -> Inertial:
 
 
 def _turned(moments: list[float], wxyz: Wxyz) -> Rows:
-    """Return a tensor with moments xx xy xz yy yz zz in turned axes: R I R^T."""
+    """Return the tensor R I R^T in rotated axes, for moments xx xy xz yy yz zz."""
     xx, xy, xz, yy, yz, zz = moments
     tensor: Rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
     if wxyz == UNMOVED.wxyz:

@@ -1,4 +1,4 @@
-"""Files that URIs of a URDF name: ``package://``, ``model://``, ``file://``, and paths relative to the URDF."""
+"""Files named by URIs in a URDF: ``package://``, ``model://``, ``file://``, and paths relative to the URDF."""
 
 import glob
 import os
@@ -14,10 +14,10 @@ from ravemj.formats.data_folders import data_folders
 from ravemj.formats.file_access import FileAccess
 
 SCHEMES = ("package", "model")
-"""Schemes of URIs whose first part is the name of a package."""
+"""Schemes of URIs that start with the name of a package."""
 
 _MOST_ABOVE = 12
-"""Folders above a URDF in which a package is looked for."""
+"""Number of folders above a URDF in which a package is searched."""
 
 _LONGEST_MANIFEST = 1 << 20
 _MANIFEST_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
@@ -67,14 +67,14 @@ class Packages:
         return self._first([os.path.join(folder, uri) for folder in (self._folder, *data_folders())])
 
     def _first(self, paths: list[str], searched: tuple[str, ...] = ()) -> ResolvedPath:
-        """Return the first path that is a permitted file."""
+        """Return the first path of a permitted, existing file."""
         for path in paths:
             if self._access.permits(path) and os.path.isfile(path):
                 return ResolvedPath(os.path.normpath(path))
         return ResolvedPath(None, searched or tuple(paths))
 
     def roots(self, package: str) -> tuple[str, ...]:
-        """Return the folders that may be a package, in the order in which they are searched."""
+        """Return the possible folders of a package, in the order of search."""
         if package not in self._roots:
             folders = (os.path.normpath(folder) for folder in self._candidates(package))
             self._roots[package] = tuple(
@@ -109,7 +109,7 @@ class Packages:
 
     @cached_property
     def _manifests(self) -> dict[str, str]:
-        """The name that the ``package.xml`` of each folder above gives; empty without one."""
+        """For each folder above, the name in its ``package.xml``; empty if there is none."""
         return {folder: _manifest_name(os.path.join(folder, "package.xml")) for folder in self._above}
 
     def _variable(self, name: str) -> list[str]:
@@ -117,7 +117,7 @@ class Packages:
 
 
 def given_packages(text: str) -> dict[str, str]:
-    """Return the folders by package of a text ``NAME=FOLDER``, several with ``os.pathsep`` between.
+    """Return the folders by package in a text ``NAME=FOLDER``, with ``os.pathsep`` between several ones.
 
     Raises:
         ValueError: a part of it has another form.

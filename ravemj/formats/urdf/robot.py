@@ -1,4 +1,4 @@
-"""``<robot>``: a URDF becomes a body."""
+"""``<robot>``: conversion of a URDF to a body."""
 
 import os
 from collections import Counter
@@ -32,10 +32,10 @@ def read_robot(root: Element, context: Context, given: Mapping[str, str]) -> Bod
     Args:
         root: The element ``<robot>``.
         context: The context of the reading.
-        given: What the caller gave with the file; see ``ravemj.formats.urdf.GIVEN``.
+        given: Attributes passed by the caller; see ``ravemj.formats.urdf.GIVEN``.
 
     Raises:
-        SourceError: the document cannot be a robot.
+        SourceError: the document is not a valid robot.
     """
     check_robot(root)
     check_children(root, _KNOWN, context, _LEFT_OUT)
@@ -59,7 +59,7 @@ def read_robot(root: Element, context: Context, given: Mapping[str, str]) -> Bod
 
 
 def settle(body: BodyBuilder, context: Context) -> KinBody:
-    """Return the frozen body; report initial values that limits change together, since legged robots have many."""
+    """Return the frozen body; clamped initial values are reported together, since legged robots have many."""
     findings = Diagnostics()
     frozen = body.freeze(findings)
     moved = [finding for finding in findings if finding.code == "value-outside-limits"]
@@ -73,7 +73,7 @@ def settle(body: BodyBuilder, context: Context) -> KinBody:
 
 
 def _name(root: Element, context: Context) -> str:
-    """Return the name of the robot, which OpenRAVE wants as one word."""
+    """Return the name of the robot as one word, as OpenRAVE requires."""
     name = root.attributes.get("name", "").strip()
     if not name:
         name = Path(root.source.file).stem
@@ -96,10 +96,10 @@ def _note_left_out(root: Element, context: Context) -> None:
 
 
 def _floating(frames: list[UrdfJoint], elements: Mapping[str, Element], context: Context) -> dict[str, UrdfJoint]:
-    """Return the floating joints by child link; they are left out, since bodies of OpenRAVE float by default.
+    """Return the floating joints by child link; they are omitted, since bodies of OpenRAVE float by default.
 
     Raises:
-        SourceError: a floating joint hangs on a link that has shapes, or that another joint carries.
+        SourceError: the parent of a floating joint has shapes, or another joint carries it.
     """
     carried = {joint.child for joint in frames}
     for joint in frames:
@@ -175,7 +175,7 @@ def _packages(root: Element, given: Mapping[str, str]) -> dict[str, str]:
 
 
 def _add_srdf(body: BodyBuilder, tree: RobotTree, root: Element, context: Context, given: Mapping[str, str]) -> None:
-    """Add the data of the SRDF; without one, guessed manipulators."""
+    """Add the data of the SRDF, or guessed manipulators if there is none."""
     wanted, state, like = given.get("srdf", ""), given.get("state", ""), given.get("like", "")
     if like == OR_URDF and not wanted:
         wanted, body.is_robot = NO_SRDF, False
@@ -196,7 +196,7 @@ def _add_srdf(body: BodyBuilder, tree: RobotTree, root: Element, context: Contex
 
 
 def _srdf(wanted: str, root: Element, context: Context) -> Document | None:
-    """Return the SRDF that a caller names or writes, or the one beside the URDF; None if there is none."""
+    """Return the SRDF that a caller names or passes as text, or the one beside the URDF; None if there is none."""
     if wanted == NO_SRDF:
         return None
     budget = context.documents.budget
@@ -210,7 +210,7 @@ def _srdf(wanted: str, root: Element, context: Context) -> Document | None:
 
 
 def _srdf_beside(root: Element, context: Context) -> str | None:
-    """Return the path of the SRDF that lies beside a URDF, or in the folder ``srdf`` beside that of the URDF."""
+    """Return the path of the SRDF beside a URDF, or in the folder ``srdf`` beside the URDF's folder."""
     folder, file = os.path.split(root.source.file)
     name = f"{file.partition('.')[0]}.srdf"
     for path in (os.path.join(folder, name), os.path.join(folder, os.pardir, "srdf", name)):

@@ -1,4 +1,4 @@
-"""Poses as URDF has them: positions, and angles about fixed axes.
+"""Poses in URDF's form: positions, and angles about fixed axes.
 
 Numbers are rounded to fourteen decimals. Rounding errors of the computation are far below half of the last decimal, so
 reading and writing a file again reproduces it.
@@ -19,12 +19,12 @@ _LOCKED = 1e-10
 
 
 def numbers(vector: Iterable[float]) -> str:
-    """Return numbers as text, rounded, whole ones without a point."""
+    """Return numbers as rounded text; integers have no point."""
     return " ".join(repr(round(part, _DECIMALS) + 0.0).removesuffix(".0") for part in vector)
 
 
 def origin_attributes(pose: Pose) -> dict[str, Content]:
-    """Return ``xyz`` and ``rpy`` of a pose; a rotation that does nothing is left out."""
+    """Return ``xyz`` and ``rpy`` of a pose; an identity rotation is omitted."""
     attributes: dict[str, Content] = {"xyz": numbers(pose.position)}
     angles = numbers(roll_pitch_yaw(pose)) if pose.wxyz != UNIT_WXYZ else NOTHING
     return attributes if angles == NOTHING else {**attributes, "rpy": angles}

@@ -32,7 +32,7 @@ class ShapeWriter:
     def elements(self, link: Link, lose: Callable[[str, str], None]) -> list[XmlText]:
         """Return the visual elements of a link, then its collision elements.
 
-        ``lose`` receives the kind of a property that is left out, and a name.
+        ``lose`` receives the kind of each omitted property, and a name.
         """
         groups = dict(link.groups)
         lost = [name for name in groups if name not in {VISUAL_GROUP, "spheres"}]

@@ -49,7 +49,7 @@ class Material(NamedTuple):
 
 
 class UrdfShape(NamedTuple):
-    """Shape that a ``<geometry>`` describes.
+    """Shape described by a ``<geometry>``.
 
     Attributes:
         shape: The shape.
@@ -80,7 +80,7 @@ class UrdfShapeReader:
     _meshes: dict[tuple[str, Vec3], Mesh] = field(default_factory=lambda: {})
 
     def define(self, element: Element) -> Material | None:
-        """Read a ``<material>``, and return its own colour. Names are global, and their first colour counts."""
+        """Read a ``<material>``, and return its own colour. Names are global; the first colour of a name is used."""
         color = only(element, "color", self.context)
         texture = only(element, "texture", self.context)
         self.textures = self.textures or (texture and texture.source)
@@ -101,7 +101,7 @@ class UrdfShapeReader:
         """Read a ``<visual>``.
 
         Returns:
-            What is drawn of the link, and the shape for the link's group ``visual``; None without a shape.
+            The drawn geometry of the link, and the shape for the link's group ``visual``; None if there is no shape.
         """
         form, material = self._form(element), self._material(element)
         if form is None:
@@ -134,7 +134,7 @@ class UrdfShapeReader:
         return drawn, shaped
 
     def collision(self, element: Element) -> Geometry | None:
-        """Read a ``<collision>``, which is not drawn; None without a shape."""
+        """Read a ``<collision>``, which is not drawn; None if it has no shape."""
         form = self._form(element)
         if form is None:
             return None
@@ -179,7 +179,7 @@ class UrdfShapeReader:
         return self._shape(shapes[0]) if shapes else None
 
     def _shape(self, element: Element) -> UrdfShape | None:
-        """Return the shape of an element in ``<geometry>``; None, with a finding, for a mesh that cannot be read."""
+        """Return the shape of an element in ``<geometry>``; None, with a diagnostic, for an unreadable mesh."""
         if element.spelled == "mesh":
             return self._mesh(element)
         sizes = [
@@ -221,7 +221,7 @@ class UrdfShapeReader:
         return UrdfShape(TriMesh(mesh), parts, MeshFile(path, factors))
 
     def _find(self, uri: str, source: Source) -> str | None:
-        """Return the path of a mesh file; None, with a finding, if it is missing or must not be read."""
+        """Return the path of a mesh file; None, with a diagnostic, if it is missing or must not be read."""
         package_file, diagnostics = self.packages.find(uri), self.context.diagnostics
         if package_file.path is not None:
             return package_file.path

@@ -29,13 +29,13 @@ def add_srdf(body: BodyBuilder, tree: RobotTree, document: Document, context: Co
 
     Args:
         body: The body, with its links and joints.
-        tree: Its tree.
+        tree: Its link tree.
         document: The SRDF.
         context: The context of the reading.
         state: Name of the group state that gives the joint values; empty for none.
 
     Raises:
-        SourceError: the SRDF is not well-formed, or has no such state.
+        SourceError: the SRDF is not well-formed, or does not have the state.
     """
     if document.error is not None:
         raise document.error
@@ -61,7 +61,7 @@ class SrdfGroup:
         element: Its element.
         joints: Names of its joints.
         links: Names of its links.
-        tip: End link of its only chain; empty if it has no chain.
+        tip: End link of its only chain; empty if it has no chain or several.
     """
 
     element: Element
@@ -92,7 +92,7 @@ class _Srdf:
         self.context.diagnostics.warn(f"unknown-{what}", message, element.source, did_you_mean(name, [*known]))
 
     def _link(self, element: Element, name: str) -> str | None:
-        """Return the link that an attribute names, or None, with a finding."""
+        """Return the link named by an attribute, or None, with a diagnostic."""
         link = attribute(element, name)
         if link in self.tree.links:
             return link
@@ -102,7 +102,7 @@ class _Srdf:
     # Pairs of links
 
     def _add_pairs(self) -> None:
-        """Make the links adjacent whose collisions are disabled."""
+        """Make links whose collisions are disabled adjacent."""
         names = {link.name: index for index, link in enumerate(self.body.links)}
         pairs = self._pairs("disable_collisions", ("link1", "link2"))
         silent = [
@@ -126,7 +126,7 @@ class _Srdf:
         return pairs
 
     def _add_spheres(self) -> None:
-        """Fill the groups ``spheres``; centres are in the frame of the first collision shape, as or_urdf reads them."""
+        """Fill the groups ``spheres``; as in or_urdf, centres are in the frame of the first collision shape."""
         for element in children(self.root, "link_sphere_approximation"):
             name = self._link(element, "link")
             if name is None:
@@ -220,8 +220,8 @@ class _Srdf:
     def _parent_group(self, element: Element, link: str, own: str) -> str | None:
         """Return the group of the arm of an end effector.
 
-        It is the ``parent_group``, which or_urdf required. If it is missing, as in current files, it is the end
-        effector's group if that leads to its link, else the group with the longest chain that ends there.
+        It is the ``parent_group``, which or_urdf required. If this is missing, as in current files, it is the end
+        effector's group if that leads to its link, else the group with the longest chain that ends at the link.
         """
         given = element.attributes.get("parent_group", "")
         if given:
@@ -292,7 +292,7 @@ _PARTS = {"chain": _Srdf.add_chain, "joint": _Srdf.add_joint, "link": _Srdf.add_
 
 
 def _values(body: BodyBuilder, state: Mapping[str, float]) -> list[float]:
-    """Return the values of all DOFs: those of a state, and for the others the legal ones nearest to 0."""
+    """Return the values of all DOFs: those of a state, and for other DOFs the value nearest to 0 within limits."""
     axes = {joint.name: joint.axes[0] for joint in body.joints if joint.active}
     nearest = {name: 0.0 if axis.circular else min(max(axis.lower, 0.0), axis.upper) for name, axis in axes.items()}
     return [state.get(name, value) for name, value in nearest.items()]

@@ -1,4 +1,4 @@
-"""SRDF out: manipulators as groups and end effectors, named configurations, pairs of links that may touch."""
+"""Writer of SRDF: manipulators as groups and end effectors, named configurations, pairs of links that may touch."""
 
 from collections.abc import Callable, Sequence
 
@@ -18,10 +18,10 @@ def srdf_text(
 
     Args:
         body: The body.
-        links: Names of its links in the URDF; effectors of ``arms`` may be links that the URDF has in addition.
-        joints: Names of its joints there.
+        links: Names of its links in the URDF; effectors of ``arms`` may be additional links of the URDF.
+        joints: Names of its joints in the URDF.
         arms: Its manipulators.
-        lose: Takes a kind of what is left out, and a name.
+        lose: Receives the kind of each omitted property, and a name.
     """
     out = XmlText()
     with out.inside("robot", name=body.name):

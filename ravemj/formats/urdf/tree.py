@@ -1,4 +1,4 @@
-"""The tree of links and joints of a URDF."""
+"""Tree of links and joints of a URDF."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -7,16 +7,16 @@ from ravemj.formats.urdf.joint import UrdfJoint
 
 
 class RobotTree:
-    """The tree that the joints of a URDF make of its links.
+    """Link tree of a URDF.
 
     Attributes:
-        links: Names of the links with their places, in the order of the file.
-        joints: The joints by name, in the order of the file; without floating ones.
+        links: Source of each link by its name, in the order of the file.
+        joints: The joints by name, in the order of the file, without floating joints.
         above: Parent joint of a link, by the link's name.
         below: Child joints of a link, by the link's name.
-        floating: The floating joints, by the links that they carry.
+        floating: The floating joints, by their child links.
         roots: Names of the links without a parent joint.
-        followers: Names of the joints that follow others.
+        followers: Names of the mimic joints.
     """
 
     def __init__(
@@ -25,7 +25,7 @@ class RobotTree:
         """Arrange the links.
 
         Raises:
-            SourceError: two joints carry the same link, or joints make a loop.
+            SourceError: two joints carry the same link, or joints form a loop.
         """
         self.links = links
         self.floating = floating
@@ -63,7 +63,7 @@ class RobotTree:
         return joints[::-1] if base in {None, link} else None
 
     def is_dof(self, joint: UrdfJoint) -> bool:
-        """Return whether a joint moves and does not follow another one."""
+        """Return whether a joint moves and is not a mimic joint."""
         return joint.type != "fixed" and joint.name not in self.followers
 
     def dofs_below(self, link: str) -> Iterator[UrdfJoint]:

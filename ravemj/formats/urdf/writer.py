@@ -1,7 +1,7 @@
-"""URDF and SRDF out: a body becomes the text of a robot, its SRDF, and its meshes as STL.
+"""Writer of URDF: a body becomes the text of a robot, its SRDF, and its meshes as STL.
 
-URDF's joints rotate about the origin of their child and have one axis, so some joints need massless links in between.
-Properties that it cannot represent are reported once for each kind.
+URDF's joints rotate about the origin of their child and have one axis, so some joints need additional massless links.
+Properties that URDF cannot represent are reported once for each kind.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,7 +26,7 @@ _DEFAULTS = Axis((1.0, 0.0, 0.0))
 
 
 class UrdfDocument(NamedTuple):
-    """A robot as text: URDF, SRDF, and the content of its meshes by their names."""
+    """A robot as text: URDF, SRDF, and the content of its meshes by name."""
 
     urdf: str
     srdf: str
@@ -40,7 +40,7 @@ class Losses:
     kinds: dict[str, list[str]] = field(default_factory=dict[str, list[str]])
 
     def add(self, kind: str, name: str) -> None:
-        """Record that a property of a part is left out."""
+        """Record an omitted property of a part."""
         self.kinds.setdefault(kind, []).append(name)
 
     def report(self, source: Source, diagnostics: Diagnostics) -> None:
@@ -51,7 +51,7 @@ class Losses:
 
 
 class _MimicRelation(NamedTuple):
-    """A joint that follows a multiple of another one."""
+    """Mimic joint whose value is a multiple of another joint's value plus an offset."""
 
     leader: str
     multiplier: float
@@ -59,10 +59,10 @@ class _MimicRelation(NamedTuple):
 
 
 def write(scene: Scene, diagnostics: Diagnostics) -> UrdfDocument:
-    """Translate the first robot of a scene; without one, the first body.
+    """Translate the first robot of a scene or, if there is none, the first body.
 
     Args:
-        scene: What to translate.
+        scene: The scene.
         diagnostics: Receives a warning for each kind of property that URDF cannot represent.
 
     Raises:
@@ -124,7 +124,7 @@ class _UrdfWriter:
         return UrdfDocument(document.document(), srdf, self._shapes.meshes)
 
     def _with_welds(self) -> KinBody:
-        """Return the body as a URDF has it: joints that do not move are welds, and joined links adjacent."""
+        """Return the body as represented in URDF: joints that do not move are welds, and joined links adjacent."""
         joints = [
             joint if index in self._moving else replace(joint, axes=tuple(map(_without_room, joint.axes)))
             for index, joint in enumerate(self.body.all_joints)
@@ -266,7 +266,7 @@ class _UrdfWriter:
                 out.element("mimic", joint=mimic.leader, multiplier=mimic.multiplier, offset=mimic.offset)
 
     def _tool(self, arm: Manipulator) -> Manipulator:
-        """Return a manipulator whose tool is the frame of its effector, a new link if need be."""
+        """Return a manipulator whose tool is the frame of its effector, which is a new link if necessary."""
         if arm.effector is None or arm.T_effector_tool == UNMOVED:
             return arm
         name = f"{arm.name}_tool"
@@ -293,7 +293,7 @@ def _without_room(axis: Axis) -> Axis:
 
 
 def _turns_at_origin(joint: Joint, zero: Pose) -> bool:
-    """Return whether the origin of the child lies on the axis at the value 0."""
+    """Return whether the axis passes through the origin of the child at the value 0."""
     if joint.slides():
         return True
     arm = add(zero.position, scale(joint.anchor, -1.0))

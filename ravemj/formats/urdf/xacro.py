@@ -1,7 +1,7 @@
-"""xacro: files that a program expands to a URDF.
+"""Expansion of xacro files to URDF.
 
-An expansion evaluates expressions of Python, so it is for files that their user opens, in a process of its own, and for
-a limited time.
+It evaluates Python expressions, so it is restricted to files that the user opens, in a separate process, for a limited
+time.
 """
 
 import importlib.util
@@ -27,7 +27,7 @@ _HEAD = 20_000  # bytes in which the first element of xacro stands
 
 
 def is_xacro(path: str, content: bytes) -> bool:
-    """Return whether a file is a xacro: by its suffix, or because it has elements of xacro."""
+    """Return whether a file is a xacro: by its suffix, or because it contains xacro elements."""
     if path.lower().endswith(SUFFIX):
         return True
     return b"<xacro:" in content and b"<robot" in content[:_HEAD] and b"<xacro:" in _COMMENT.sub(b"", content)
@@ -38,7 +38,7 @@ def expand(path: str, given: Mapping[str, str], access: FileAccess) -> bytes:
 
     Args:
         path: The file.
-        given: What the caller gave with it: ``args`` and ``packages``, see ``ravemj.formats.urdf.GIVEN``.
+        given: Attributes passed by the caller: ``args`` and ``packages``, see ``ravemj.formats.urdf.GIVEN``.
         access: The access of the reading.
 
     Raises:

@@ -1,4 +1,4 @@
-"""The reader of COLLADA files as meshes: it flattens the visual scene to one part for each material.
+"""Reader of COLLADA files as meshes: flattens the visual scene to one part per material.
 
 As in OpenRAVE's importer, the file is scaled by its unit and rotated to y up; for a URDF it is not rotated. The reader
 of COLLADA robots does neither, and shares the modules ``triangles``, ``materials`` and ``node_transforms``.
@@ -35,10 +35,10 @@ _Y_UP_FROM = {
 
 
 def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
-    """Read a COLLADA file: one part for each material that is used, in the order of the materials' ids.
+    """Read a COLLADA file: one part for each used material, in the order of the materials' ids.
 
     Raises:
-        SourceError: The file is not well-formed XML, not COLLADA, or too large to be meant.
+        SourceError: The file is not well-formed XML, not COLLADA, or too large.
     """
     document = ColladaDocument(file.data, file.path)
     flattening = _Flattening(document)
@@ -54,7 +54,7 @@ def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 def _colours(material: ColladaMaterial) -> tuple[Rgb, Rgb, float]:
-    """Return the diffuse and the ambient colour and the transparency of a part."""
+    """Return diffuse colour, ambient colour and transparency of a part."""
     diffuse = WHITE if material.textured else rgb(material.diffuse or GRAY)
     is_bare = material == ColladaMaterial()
     ambient = rgb(material.ambient or (GRAY if is_bare else _AMBIENT))
@@ -73,7 +73,7 @@ def _root_transform(document: ColladaDocument, *, turns: bool) -> Floats:
 
 
 class _Flattening:
-    """Triangles collected from a visual scene, by the id of their material."""
+    """Triangles collected from a visual scene, by material id."""
 
     def __init__(self, document: ColladaDocument) -> None:
         self._document = document
@@ -86,11 +86,11 @@ class _Flattening:
         self.pieces: dict[str, list[Floats]] = {}
 
     def material(self, name: str) -> ColladaMaterial:
-        """Return a material; a plain one for a name that is not in the file."""
+        """Return a material; a default one if the file has none of this name."""
         return self._materials.get(name, ColladaMaterial())
 
     def nodes(self, parent: Element, matrix: Floats, depth: int) -> None:
-        """Collect from the nodes of a scene or node."""
+        """Collect triangles from the child nodes of a scene or node."""
         self._nodes_left -= 1
         if depth > _MAX_DEPTH or self._nodes_left < 0:
             raise SourceError("the nodes are nested too deep or repeated too often", self._document.source(parent))
@@ -120,7 +120,7 @@ class _Flattening:
             self.pieces.setdefault(self._material_of(element.get("material", ""), bound), []).append(placed)
 
     def _geometry(self, instance: Element) -> Element | None:
-        """Return the geometry of an instance; that of a controller is the shape that it deforms."""
+        """Return the geometry of an instance; for a controller, the shape that it deforms."""
         url = instance.get("url")
         for _ in range(10):  # controllers of controllers
             geometry = self._document.find("geometry", url)
@@ -132,7 +132,7 @@ class _Flattening:
         return None
 
     def _material_of(self, symbol: str, bound: dict[str, str]) -> str:
-        """Return the id of a group's material: that bound to its symbol, else any that is bound, else the first."""
+        """Return the id of the material bound to a symbol, else any bound one, else the first."""
         url = bound.get(symbol, bound[min(bound)] if bound else symbol)
         name = url.strip().removeprefix("#")
         return name if name in self._materials else min(self._materials, default="")

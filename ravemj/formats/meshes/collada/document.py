@@ -1,4 +1,4 @@
-"""A COLLADA file as a tree in which elements are found by their kind and id."""
+"""A COLLADA file as a tree of elements with look-up by kind and id."""
 
 import functools
 import hashlib
@@ -18,13 +18,13 @@ Element = etree._Element  # pyright: ignore[reportPrivateUsage] - lxml's name fo
 
 
 class ColladaDocument:
-    """A parsed file; namespaces do not count.
+    """A parsed file; namespaces are ignored.
 
     Attributes:
-        path: Where the file lies.
+        path: Its path.
         root: The outermost element.
         digest: Hash of the content.
-        elements: The number of elements, or a little more.
+        elements: Upper bound of the number of elements.
         meshes: Cache of triangles.
     """
 
@@ -33,8 +33,8 @@ class ColladaDocument:
 
         Args:
             data: Its content.
-            path: Where it lies.
-            budget: Counts what the model has read; None if this file is all of it.
+            path: Its path.
+            budget: Counts what the model has read; None if this file is the whole model.
 
         Raises:
             SourceError: It is not well-formed XML, its root is not COLLADA, or it is too large.
@@ -66,9 +66,9 @@ class ColladaDocument:
         return self._places[geometry]
 
     def find(self, kind: str, url: str | None) -> Element | None:
-        """Return the element of a kind that a URL such as ``#id`` names.
+        """Return the element of a kind with the id in a URL such as ``#id``.
 
-        One id may belong to elements of several kinds: some writers give a geometry and an effect the same one.
+        Elements of several kinds may share an id: some writers give a geometry and an effect the same one.
         """
         return self._by_id.get((kind, (url or "").strip().removeprefix("#")))
 
@@ -91,7 +91,7 @@ _COUNTABLE = re.compile(
 
 
 def parse_tree(data: bytes, path: str) -> Element | None:
-    """Parse XML with lxml, entities left alone.
+    """Parse XML with lxml, without expanding entities.
 
     Raises:
         SourceError: It is not well-formed, or has an unusual encoding.
@@ -114,7 +114,7 @@ def local_name(element: Element) -> str:
 
 
 def children(element: Element | None, *kinds: str) -> Iterator[Element]:
-    """Yield the children of some kinds, or all elements if none is named; nothing for no element."""
+    """Yield the children of some kinds, by default of all; none if ``element`` is None."""
     if element is None:
         return iter(())
     return element.iterchildren(*_patterns(kinds)) if kinds else element.iterchildren(etree.Element)
@@ -156,7 +156,7 @@ def _leading_number(word: str) -> float:
 
 
 def attribute_number(element: Element | None, name: str, default: float) -> float:
-    """Return the number in an attribute, or ``default`` without one."""
+    """Return the number in an attribute, or ``default`` if it is missing."""
     try:
         value = float((None if element is None else element.get(name)) or default)
     except ValueError:

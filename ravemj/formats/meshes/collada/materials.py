@@ -1,4 +1,4 @@
-"""The colours of COLLADA materials; shared by mesh files and robots."""
+"""Colours of COLLADA materials; shared by mesh files and robots."""
 
 from dataclasses import dataclass
 
@@ -11,17 +11,17 @@ _LUMINANCE = (0.212671, 0.71516, 0.072169)  # of red, green and blue, as COLLADA
 
 @dataclass(frozen=True, slots=True)
 class ColladaMaterial:
-    """A material's colours as far as the file gives them.
+    """A material's colours; None for those that the file does not specify.
 
     Attributes:
-        diffuse: Colour; None where the file has none.
-        ambient: Colour in the shade; None where the file has none.
-        textured: True where the diffuse colour comes from a picture.
-        transparency: The number in ``<transparency>``, which writers mean in opposite ways; None without one.
-        transparent: The red, green, blue and alpha that it multiplies; None where the file has none.
-        opaque: Which of them counts, and in which sense: ``A_ONE`` unless the file says otherwise.
+        diffuse: Colour.
+        ambient: Ambient colour.
+        textured: Whether the diffuse colour is a texture.
+        transparency: The number in ``<transparency>``, which some writers invert.
+        transparent: The red, green, blue and alpha that it multiplies.
+        opaque: Interpretation of ``transparent``: ``A_ONE`` by default.
         is_phong: True if the shader is a ``<phong>``.
-        alpha: Fourth number of the diffuse colour of a ``<phong>``, else of its ambient colour; 1 without one.
+        alpha: Fourth number of the diffuse colour of a ``<phong>``, else of the ambient colour; 1 by default.
     """
 
     diffuse: Rgb | None = None
@@ -35,7 +35,7 @@ class ColladaMaterial:
 
     @property
     def opacity(self) -> float:
-        """How opaque the material is, by the letter of the standard; 1 where nothing sensible is said."""
+        """Opacity of the material by the standard; 1 if the values make no sense."""
         amount = 1.0 if self.transparency is None else self.transparency
         red, green, blue, alpha = self.transparent or (1.0, 1.0, 1.0, 1.0)
         by_colour = self.opaque.startswith("RGB")

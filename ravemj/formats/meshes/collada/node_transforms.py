@@ -11,10 +11,10 @@ LENGTHS = {"translate": 3, "rotate": 4, "scale": 3, "matrix": 16, "lookat": 9}
 
 
 def local_transform(element: Element) -> Floats | None:
-    """Return the 4x4 matrix of one child of a node, or None if it is no transform that counts.
+    """Return the 4x4 matrix of a child of a node; None if it is not a supported transform.
 
-    Angles are in degrees in the file, matrices are written row by row. A transform with too few numbers does not
-    count, and neither does ``<skew>``.
+    Angles are in degrees in the file, matrices are written row by row. A transform with too few numbers and ``<skew>``
+    are ignored.
     """
     kind = local_name(element)
     values = numbers(element)
@@ -34,7 +34,7 @@ def local_transform(element: Element) -> Floats | None:
 
 
 def _look_at(rows: Floats) -> Floats:
-    """Return the frame at the first point that looks along -z at the second, with y near the third vector."""
+    """Return the frame at the first point that looks along -z at the second, with y close to the third vector."""
     eye, interest, up = rows
     back = _unit(eye - interest)
     right = _unit(cross_rows(up, back))

@@ -1,4 +1,4 @@
-"""The triangles of one COLLADA ``<geometry>``; shared by mesh files and robots."""
+"""Triangles of one COLLADA ``<geometry>``; shared by mesh files and robots."""
 
 import numpy as np
 
@@ -27,17 +27,17 @@ def primitive_groups(
 ) -> list[tuple[Element, Floats]]:
     """Read a ``<geometry>``: its ``<mesh>`` or ``<convex_mesh>``, without units or transforms.
 
-    Indices that point nowhere and elements that refer to missing ones are tolerated: their polygons are left out.
+    Polygons with invalid indices, and elements that refer to missing elements, are skipped.
 
     Args:
         document: The file.
         geometry: The element.
-        of_robots: Whether to read it as OpenRAVE's robots do: without ``<polygons>``, and polygons become fans. Else
-            they are cut ear by ear.
+        of_robots: Whether to read it like OpenRAVE's robots: without ``<polygons>``, and polygons become fans.
+            Otherwise ear clipping is used.
 
     Returns:
-        Each primitive element with the three points of its triangles, shape (n, 3, 3), also where it has none: in
-        document order, in OpenRAVE's robots those of one kind together.
+        Each primitive element with the vertices of its triangles, shape (n, 3, 3), even if there are none: in document
+        order, or for robots sorted by kind.
 
     Raises:
         SourceError: There are too many triangles.
@@ -55,7 +55,7 @@ def primitive_groups(
 
 
 def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float) -> list[tuple[Element, Mesh]]:
-    """Return the triangles of a ``<geometry>`` as OpenRAVE's robots have them, from the cache if they are there.
+    """Return the triangles of a ``<geometry>`` as in OpenRAVE's robots, from the cache if possible.
 
     Args:
         document: The file.
@@ -63,7 +63,7 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
         metres: The length of its unit [m].
 
     Returns:
-        Each primitive element with its triangles [m], also where it has none; ``unread_primitives`` are left out.
+        Each primitive element with its triangles [m], even if there are none, except ``unread_primitives``.
 
     Raises:
         SourceError: There are too many triangles, or a coordinate is not finite.
@@ -83,13 +83,13 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
 
 
 def unread_primitives(geometry: Element) -> list[Element]:
-    """Return the primitive elements of a ``<geometry>`` that OpenRAVE's robots do not have."""
+    """Return the primitive elements of a ``<geometry>`` that OpenRAVE's robots ignore."""
     known = {*_OF_ROBOTS, *_NO_PRIMITIVES}
     return [element for element in children(_mesh(geometry)) if local_name(element) not in known]
 
 
 def _by_kind(mesh: Element | None) -> list[Element]:
-    """Return the primitive elements of a mesh that OpenRAVE's robots have, kind after kind."""
+    """Return the primitive elements of a mesh that OpenRAVE's robots have, sorted by kind."""
     return [element for kind in _OF_ROBOTS for element in children(mesh, kind)]
 
 
@@ -99,7 +99,7 @@ def _mesh(geometry: Element) -> Element | None:
 
 
 def _positions(document: ColladaDocument, mesh: Element) -> Floats:
-    """Return the points of VERTEX inputs: those of the mesh's own ``<vertices>``, whatever their id."""
+    """Return the points of VERTEX inputs: those of the mesh's own ``<vertices>``, regardless of its id."""
     inputs = children(child(mesh, "vertices"), "input")
     url = next((item.get("source", "") for item in inputs if item.get("semantic") == "POSITION"), "")
     wanted = url.strip().removeprefix("#")
@@ -152,7 +152,7 @@ def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
 
 
 def _index_lists(element: Element) -> list[Element]:
-    """Return the ``<p>`` of a primitive; also those with holes, of which only the outline counts."""
+    """Return the ``<p>`` elements of a primitive; of polygons with holes, the outlines."""
     lists = list(children(element, "p"))
     return lists + [item for holed in children(element, "ph") for item in children(holed, "p")]
 

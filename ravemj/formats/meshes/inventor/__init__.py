@@ -1,8 +1,8 @@
-"""The reader of Inventor 1.0 to 2.1, as text and binary, of VRML 1.0 and of VRML97.
+"""Reader of Inventor 1.0 to 2.1 (text and binary), VRML 1.0 and VRML97.
 
-OpenRAVE loads these files through Coin and takes every triangle of the file, flattened, and the last material.
-So does this reader: ``ascii`` or ``binary`` make nodes, ``old`` or ``vrml97`` handle each kind of
-them, ``traversal`` collects the triangles.
+OpenRAVE loads these files through Coin, with all triangles flattened into one mesh and the last material. So does this
+reader: ``ascii`` or ``binary`` parse nodes, ``old`` or ``vrml97`` handle each node type, ``traversal`` collects
+triangles.
 """
 
 from ravemj.formats.meshes.files import FileContent
@@ -14,13 +14,13 @@ from ravemj.formats.meshes.parts import MeshPart, check_finite, weld
 
 
 def read_inventor(file: FileContent) -> tuple[MeshPart, ...]:
-    """Read an Inventor or VRML file; the header, not the name, tells the dialect.
+    """Read an Inventor or VRML file; the header, not the suffix, selects the dialect.
 
     Returns:
-        One part, or none if the file draws no triangle. White without a material.
+        One part, white if it has no material; none if there are no triangles.
 
     Raises:
-        SourceError: The file is malformed, or too large to be meant.
+        SourceError: The file is malformed or too large.
     """
     trees: dict[str, list[InventorNode]] = {}
 

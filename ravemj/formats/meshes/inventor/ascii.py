@@ -1,7 +1,7 @@
-"""The parser of Inventor and VRML text.
+"""Parser of Inventor and VRML text.
 
-One grammar serves Inventor 1.0 to 2.1, VRML 1.0 and VRML97: a node is ``Kind { … }``, with fields and, in the older
-dialects, child nodes between the braces. What a field holds shows in its first character, so no table of the
+One grammar covers Inventor 1.0 to 2.1, VRML 1.0 and VRML97: a node is ``Kind { … }``, with fields and, in the older
+dialects, child nodes between the braces. The first character of a field value shows its type, so no table of the
 hundreds of field types is needed. Arrays of numbers are found by one regular expression and kept as text.
 """
 
@@ -40,7 +40,7 @@ def parse(document: InventorDocument) -> list[InventorNode]:
 
 
 class _AsciiParser:
-    """Recursive-descent parser; every method leaves ``_at`` behind what it has parsed."""
+    """Recursive-descent parser; ``_at`` is the end of the parsed text."""
 
     def __init__(self, document: InventorDocument) -> None:
         self._document = document
@@ -94,7 +94,7 @@ class _AsciiParser:
             )
 
     def _node(self, token: str) -> InventorNode:
-        """Read a node whose first token is read already."""
+        """Parse a node after its first token."""
         if token == "USE":
             name = self._next()
             node = self._named.get(name)
@@ -127,7 +127,7 @@ class _AsciiParser:
         return node
 
     def _item(self, node: InventorNode, token: str) -> None:
-        """Read one thing between the braces of a node: a field, a child, an interface or a route."""
+        """Parse an item of a node's body: a field, a child, an interface or a route."""
         if token in _INTERFACE and node.kind == "Script":
             self._interface(token)
         elif token in ("DEF", "USE", "PROTO", "EXTERNPROTO", "ROUTE", "NULL") or self._peek() == "{":
@@ -196,7 +196,7 @@ class _AsciiParser:
         return words
 
     def _interface(self, token: str) -> tuple[str, Value]:
-        """Read a field of a prototype or script; events have no value."""
+        """Parse a field of a prototype or script; events have no value."""
         self._next()  # its type
         name = self._next()
         if self._peek() == "IS":

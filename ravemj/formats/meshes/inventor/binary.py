@@ -1,8 +1,8 @@
-"""The parser of binary Inventor.
+"""Parser of binary Inventor.
 
-Everything is big-endian and in steps of four bytes: a string is its length and its bytes, a node its class, flags
-and fields, then its children if it is a group. A field is its name, its value and flags. Nothing says how long a
-value is, so a table of the standard's field types is needed here, unlike in text.
+Data are big-endian and aligned to four bytes: a string is its length and its bytes, a node its class, flags and fields,
+then its children if it is a group. A field is its name, value and flags. Since values have no length prefix, a table of
+the standard's field types is needed.
 """
 
 import re
@@ -37,7 +37,7 @@ def parse(document: InventorDocument, data: bytes) -> list[InventorNode]:
 
 
 class _BinaryReader:
-    """Sequential reader; every method leaves ``_at`` behind what it has read."""
+    """Sequential reader; ``_at`` is the end of the data read."""
 
     def __init__(self, document: InventorDocument, body: bytes, flagged: bool) -> None:
         self._document = document

@@ -1,4 +1,4 @@
-"""The syntax tree of Inventor and VRML files, which both parsers make."""
+"""Syntax tree of Inventor and VRML files, created by both parsers."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,16 +11,16 @@ from ravemj.errors import Source, SourceError
 from ravemj.formats.meshes.number_lists import parse_list
 
 MAX_DEPTH = 100
-"""Nodes nested deeper are refused."""
+"""Maximum nesting depth of nodes."""
 
 
 @dataclass(frozen=True, slots=True)
 class InventorDocument:
-    """The file that nodes come from.
+    """The file that contains the nodes.
 
     Attributes:
-        path: Where it lies.
-        text: Its content, one character a byte; empty for a binary file.
+        path: Its path.
+        text: Its content, one character per byte; empty for a binary file.
     """
 
     path: str
@@ -33,14 +33,14 @@ class InventorDocument:
 
 @dataclass(frozen=True, slots=True)
 class NumberText:
-    """Unparsed numbers, separated by commas or white space. Most are never used, for instance normals."""
+    """Unparsed numbers, separated by commas or white space. Most of them, such as normals, are never used."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Is:
-    """A field inside a PROTO whose value is that of the prototype's field ``name``."""
+    """Field in a PROTO whose value is that of the prototype's field ``name``."""
 
     name: str
 
@@ -54,8 +54,8 @@ class InventorNode:
 
     Attributes:
         kind: Its class, for instance ``Separator``.
-        document: The file that it comes from.
-        offset: Where in the file it begins.
+        document: The file that contains it.
+        offset: Its start in the file.
         fields: Values by field name.
         children: Child nodes outside fields, as in Inventor's groups.
     """
@@ -67,10 +67,10 @@ class InventorNode:
     children: list["InventorNode"] = field(default_factory=list["InventorNode"])
 
     def floats(self, name: str, width: int, default: tuple[float, ...]) -> Floats:
-        """Return a field of ``width`` numbers, of several such values the first; else the standard's default.
+        """Return a field of ``width`` numbers (the first of several such values), or the standard's default.
 
         Raises:
-            SourceError: There are fewer numbers, or something else stands there.
+            SourceError: There are fewer numbers, or the value is of another type.
         """
         value = self.fields.get(name)
         numbers = np.array(default) if value is None else self._numbers(name, value)[:width]
@@ -87,7 +87,7 @@ class InventorNode:
         return int(self.integers(name, (default,))[:1].sum())
 
     def vectors(self, name: str) -> Floats:
-        """Return a field of many points, shape (n, 3); an incomplete last one is left out."""
+        """Return a field of points, shape (n, 3), without an incomplete last one."""
         value = self.fields.get(name)
         if value is None:
             return np.zeros((0, 3))
@@ -95,7 +95,7 @@ class InventorNode:
         return numbers[: len(numbers) // 3 * 3].reshape(-1, 3)
 
     def integers(self, name: str, default: tuple[int, ...] = ()) -> Ints:
-        """Return a field of many integers."""
+        """Return a field of integers."""
         value = self.fields.get(name)
         numbers = np.array(default, np.float64) if value is None else self._numbers(name, value)
         if not (np.abs(numbers) < 2.0**53).all():
@@ -114,14 +114,14 @@ class InventorNode:
         return next(iter(self.words(name, (default,))), default)
 
     def flag(self, name: str, default: bool) -> bool:
-        """Return a field that is TRUE or FALSE; Inventor also lets 1 and 0 stand for them."""
+        """Return a field that is TRUE or FALSE, in Inventor also 1 or 0."""
         value = self.fields.get(name)
         if isinstance(value, (NumberText, np.ndarray)):
             return bool(self.number(name, float(default)))
         return self.word(name, "TRUE" if default else "FALSE") == "TRUE"
 
     def node(self, name: str) -> "InventorNode | None":
-        """Return a field of one node; None without one."""
+        """Return a field of one node, or None."""
         return next(iter(self.nodes(name)), None)
 
     def nodes(self, name: str) -> list["InventorNode"]:
@@ -148,10 +148,10 @@ class InventorNode:
 
 @dataclass(frozen=True, slots=True)
 class Prototype:
-    """A named pattern of nodes, which VRML97 calls PROTO.
+    """Node template, a PROTO in VRML97.
 
     Attributes:
-        defaults: Values of its fields where an instance gives none.
+        defaults: Default values of its fields.
         body: Its nodes; the first one replaces an instance.
     """
 
@@ -159,13 +159,13 @@ class Prototype:
     body: list[InventorNode]
 
     def instance(self, node: InventorNode, limit: int) -> tuple[InventorNode, int]:
-        """Fill in the pattern with the fields of a node as written, making ``limit`` nodes at most.
+        """Instantiate the template with the fields of a node as written, creating at most ``limit`` nodes.
 
         Returns:
-            A group of the filled-in node, and how many nodes were made.
+            A group with the created node, and the number of created nodes.
 
         Raises:
-            SourceError: More nodes than ``limit`` would be made.
+            SourceError: More than ``limit`` nodes would be created.
         """
         values = {**self.defaults, **node.fields}
         made: dict[int, InventorNode] = {}  # a node that USE repeats is filled in once
@@ -193,10 +193,10 @@ class Prototype:
 
 
 def parse_numbers(text: str) -> Floats:
-    """Read numbers separated by white space, commas and comments.
+    """Parse numbers separated by white space, commas and comments.
 
     Raises:
-        ValueError: Something there is no number.
+        ValueError: A word is not a number.
     """
     if "#" in text:
         text = "\n".join(line.partition("#")[0] for line in text.splitlines())

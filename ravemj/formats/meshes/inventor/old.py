@@ -1,4 +1,4 @@
-"""The node types of Inventor 1.0 to 2.1 and VRML 1.0: nodes change a state that the shapes after them use."""
+"""Node types of Inventor 1.0 to 2.1 and VRML 1.0: nodes change the state for subsequent shapes."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -64,7 +64,7 @@ def _include(traversal: Traversal, node: InventorNode, state: TraversalState) ->
 
 
 def _moving(matrix: Callable[[InventorNode], Floats]) -> Handler:
-    """Return the handler of a transform, given its 4x4 matrix."""
+    """Return the handler of a transform, whose 4x4 matrix ``matrix`` returns."""
     return lambda _traversal, node, state: moved(state, matrix(node))
 
 
@@ -115,7 +115,7 @@ def _material(traversal: Traversal, node: InventorNode, state: TraversalState) -
 
 
 def _faces(polygons: Callable[[InventorNode, int], tuple[Ints, Ints]], are_strips: bool = False) -> Handler:
-    """Return the handler of a shape of polygons or strips, given their sizes and corners for a number of points."""
+    """Return the handler of a shape of polygons or strips; ``polygons`` returns their sizes and point indices."""
 
     def add(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
         own = node.node("vertexProperty")
@@ -209,4 +209,4 @@ HANDLERS: dict[str, Handler] = {
     "Cylinder": shape(_cylinder),
     "Cone": shape(_cone),
 }
-"""Handler of each kind of node; lights, cameras, textures, lines and text have no effect here."""
+"""Handler of each node type; lights, cameras, textures, lines and text are ignored."""

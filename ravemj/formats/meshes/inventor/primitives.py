@@ -1,6 +1,6 @@
-"""Boxes, spheres, cylinders and cones as triangles, in the tessellation of Coin, which OpenRAVE loads Inventor with.
+"""Boxes, spheres, cylinders and cones as triangles, tessellated like Coin, with which OpenRAVE loads Inventor.
 
-Directions of the round ones start at -z; their axis is y. All have the shape (n, 3, 3): three points for each triangle.
+Round shapes start at -z; their axis is y. Triangles are their three points, shape (n, 3, 3).
 """
 
 from collections.abc import Set
@@ -11,7 +11,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 
 DEFAULT_COMPLEXITY = 0.5
-"""Fineness, from 0 to 1, where no Complexity node says otherwise: 20 sides for cylinders and cones, 15 for spheres."""
+"""Fineness, from 0 to 1, without a Complexity node: 20 sides of cylinders and cones, 15 of spheres."""
 
 
 def box(size: Floats) -> Floats:
@@ -22,14 +22,14 @@ def box(size: Floats) -> Floats:
 
 
 def cylinder(radius: float, height: float, parts: Set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
-    """Return those of ``SIDES``, ``TOP`` and ``BOTTOM`` of a centred cylinder that are in ``parts``."""
+    """Return ``parts`` of a centred cylinder: ``SIDES``, ``TOP``, ``BOTTOM``."""
     low = _bottom(radius, height, complexity)
     high = low + np.array([0.0, height, 0.0])
     return _joined(parts, SIDES=_band(high, low), TOP=_disc(high), BOTTOM=_disc(low[::-1]))
 
 
 def cone(radius: float, height: float, parts: Set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
-    """Return those of ``SIDES`` and ``BOTTOM`` of a cone that are in ``parts``; its tip is at ``height / 2``."""
+    """Return ``parts`` of a cone, ``SIDES`` and ``BOTTOM``; its tip is at ``height / 2``."""
     low = _bottom(radius, height, complexity)
     tip = np.broadcast_to([0.0, height / 2, 0.0], low.shape)
     sides = np.stack([tip, low, np.roll(low, -1, axis=0)], axis=1)
@@ -67,7 +67,7 @@ def _circle(count: int) -> Floats:
 
 
 def _band(high: Floats, low: Floats) -> Floats:
-    """Join two rings, seen from outside."""
+    """Return the triangles between two rings, facing outwards."""
     high_next, low_next = np.roll(high, -1, axis=0), np.roll(low, -1, axis=0)
     return np.concatenate([np.stack([high, low, low_next], axis=1), np.stack([high, low_next, high_next], axis=1)])
 

@@ -1,4 +1,4 @@
-"""Traversal of the node tree, which all dialects of Inventor and VRML share: it collects triangles."""
+"""Traversal of the node tree, shared by all dialects of Inventor and VRML: collects triangles."""
 
 import logging
 from collections.abc import Callable, Iterable
@@ -24,13 +24,13 @@ _MAX_LEVELS = 200  # of nodes and of files that files include
 
 @dataclass(frozen=True, slots=True)
 class TraversalState:
-    """The traversal state, as set by the nodes before a shape.
+    """Traversal state, set by the nodes before a shape.
 
     Attributes:
         matrix: From the shape's frame to the file's, 4x4.
         points: Coordinates that shapes refer to.
         metres: Length of the current unit [m].
-        concave: True where faces may be concave.
+        concave: Whether faces may be concave.
         complexity: Fineness of round shapes.
     """
 
@@ -42,22 +42,22 @@ class TraversalState:
 
 
 Material = tuple[Rgb, Rgb, float]
-"""Diffuse and ambient colour and transparency; of several for several faces the first, as OpenRAVE does it."""
+"""Diffuse and ambient colour and transparency; of several materials of faces the first, as in OpenRAVE."""
 
 
 Handler = Callable[["Traversal", InventorNode, TraversalState], TraversalState]
-"""Handles a node; returns the state of the nodes after it."""
+"""Handler of a node; returns the state of subsequent nodes."""
 
 Opener = Callable[["Traversal", FileContent, TraversalState], TraversalState]
-"""Traverses a file that another one includes; returns the state at its end."""
+"""Traverses an included file; returns the state at its end."""
 
 
 class Traversal:
-    """Triangles collected from a file and those that it includes.
+    """Triangles collected from a file and the files that it includes.
 
     Attributes:
         file: The file that is traversed.
-        material: The last material so far; white without one.
+        material: The last material so far; initially white.
     """
 
     def __init__(self, file: FileContent, opener: Opener) -> None:
@@ -85,7 +85,7 @@ class Traversal:
         return self.visit(nodes, state)
 
     def visit(self, nodes: Iterable[InventorNode], state: TraversalState) -> TraversalState:
-        """Traverse nodes in order; an unknown one is skipped, but not its children."""
+        """Traverse nodes in order; of an unknown node only the children."""
         self._levels += 1
         for node in nodes:
             self._visits += 1
@@ -97,7 +97,7 @@ class Traversal:
         return state
 
     def collect_materials(self, nodes: Iterable[InventorNode], state: TraversalState) -> None:
-        """Traverse nodes for their materials alone: in OpenRAVE, those of hidden levels of detail count."""
+        """Traverse nodes for their materials only: in OpenRAVE, those of hidden levels of detail are used, too."""
         before, self._shapes_count = self._shapes_count, False
         self.visit(nodes, state)
         self._shapes_count = before
@@ -113,7 +113,7 @@ class Traversal:
         return state
 
     def add_polygons(self, sizes: Ints, index: Ints, node: InventorNode, state: TraversalState) -> TraversalState:
-        """Add the polygons of a shape, given their sizes and the indices of their corners in ``state.points``."""
+        """Add the polygons of a shape, given their sizes and their point indices in ``state.points``."""
         self._corners_left -= len(index)
         if self._corners_left < 0:
             node.fail("the mesh has too many corners of polygons")
@@ -122,9 +122,9 @@ class Traversal:
     def include(
         self, names: Iterable[str], node: InventorNode, state: TraversalState, with_materials: bool
     ) -> TraversalState:
-        """Traverse the first of the files that a node names that can be read; none is no error, as in OpenRAVE.
+        """Traverse the first readable file of those that a node names, if any, and return the state at its end.
 
-        Its materials count only ``with_materials``. Return the state at its end.
+        Its materials are used only ``with_materials``.
         """
         files = (self.file.refer(name) for name in names)
         file = next((candidate for candidate in files if candidate is not None), None)
@@ -145,25 +145,25 @@ class Traversal:
         return state
 
     def set_material(self, material: Material) -> None:
-        """Set the material of the file: the last one counts."""
+        """Set the material of the file; the last one is used."""
         if self._materials_count:
             self.material = material
 
 
 def shape(corners: Callable[[InventorNode, TraversalState], Floats]) -> Handler:
-    """Return the handler of a shape, given its triangles in its frame, shape (n, 3, 3)."""
+    """Return the handler of a shape, whose triangles in its frame, shape (n, 3, 3), ``corners`` returns."""
     return lambda traversal, node, state: traversal.add(corners(node, state), node, state)
 
 
 def moved(state: TraversalState, step: Floats) -> TraversalState:
-    """Return the state below one more transform, a 4x4 matrix."""
+    """Return the state after one more transform, a 4x4 matrix."""
     return replace(state, matrix=state.matrix @ step)
 
 
 def transform(node: InventorNode, scale_field: str) -> Floats:
     """Return the matrix of a Transform: translation, centre, rotation, scale along its own axes.
 
-    ``scale_field`` is ``scale`` in VRML97, ``scaleFactor`` before.
+    ``scale_field`` is ``scale`` in VRML97, ``scaleFactor`` in older dialects.
     """
     still = (0.0, 0.0, 1.0, 0.0)
     zero = (0.0, 0.0, 0.0)

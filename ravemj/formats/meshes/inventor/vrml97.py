@@ -1,4 +1,4 @@
-"""The node types of VRML97."""
+"""Node types of VRML97."""
 
 import numpy as np
 
@@ -94,4 +94,4 @@ HANDLERS: dict[str, Handler] = {
     "Cylinder": shape(_cylinder),
     "Cone": shape(_cone),
 }
-"""Handler of each kind of node; lights, sensors, lines, points and text have no effect here."""
+"""Handler of each node type; lights, sensors, lines, points and text are ignored."""
