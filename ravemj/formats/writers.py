@@ -88,7 +88,7 @@ def _save_collada(
 
 
 def _warn_of_losses(body: KinBody, diagnostics: Diagnostics) -> None:
-    """Warn of properties of a body that no format except scripts and JSON can represent."""
+    """Warn of properties of a body that only scripts and JSON can represent."""
     for arm in body.manipulators:
         if arm.gripper_name:
             message = f"the name '{arm.gripper_name}' of the gripper of the manipulator '{arm.name}' is left out"

@@ -28,7 +28,7 @@ ASSETS = "assets"
 """Folder of the meshes, beside the MJCF file."""
 
 MECHANISM_MEMORY = "1M"
-"""Working memory of a model without contacts; MuJoCo's default per body would be several times the model's own size."""
+"""Working memory of a model without contacts; MuJoCo's default per body would be several times the model's size."""
 
 _MANY_BODIES = 1000
 

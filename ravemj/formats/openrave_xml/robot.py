@@ -132,7 +132,7 @@ def read_attached_sensor(body: BodyBuilder, element: Element, context: Context) 
 
 
 def check_sensors(body: BodyBuilder, diagnostics: Diagnostics) -> None:
-    """Warn of sensors whose link is not there at the end of the robot, when OpenRAVE looks it up (gap-28, robot-21)."""
+    """Warn of sensors whose link is missing at the end of the robot, where OpenRAVE looks it up (gap-28, robot-21)."""
     for sensor, name in body.sensors:
         if name and body.find_link(name) is None:
             message = f"sensor '{sensor.name}' is attached to nothing: in the end there is no Body '{name}'"

@@ -154,12 +154,12 @@ def word(element: Element, diagnostics: Diagnostics) -> str:
 
 
 def is_true(value: str) -> bool:
-    """Return whether a text is one of the two spellings of true in OpenRAVE, if all else is false."""
+    """Return whether a text is one of OpenRAVE's two spellings of true; all other texts are false."""
     return value.lower() in {"true", "1"}
 
 
 def is_false(value: str) -> bool:
-    """Return whether a text is one of the two spellings of false in OpenRAVE."""
+    """Return whether a text is one of OpenRAVE's two spellings of false."""
     return value.lower() in {"false", "0"}
 
 

@@ -61,7 +61,7 @@ class SrdfGroup:
         element: Its element.
         joints: Names of its joints.
         links: Names of its links.
-        tip: End link of its only chain; empty if it has no chain or several.
+        tip: End link of its chain; empty if it has no chain.
     """
 
     element: Element
@@ -243,7 +243,7 @@ class _Srdf:
         return bool(dofs) and set(dofs) <= group.joints.keys()
 
     def _serial_ends(self, group: SrdfGroup) -> tuple[str, str] | None:
-        """Return first and last link of a group whose joints lie on one path; None if they do not or are all fixed."""
+        """Return first and last link of a group whose joints are on one path; None if not, or if all are fixed."""
         moving = [name for name in group.joints if self._is_dof(name)]
         if not moving:
             return None

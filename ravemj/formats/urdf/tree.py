@@ -55,7 +55,7 @@ class RobotTree:
         return names
 
     def path(self, link: str, base: str | None = None) -> list[UrdfJoint] | None:
-        """Return the joints from a base, by default a root, to a link; None if it does not hang on that base."""
+        """Return the joints from a base, by default a root, to a link; None if the link is not below the base."""
         joints: list[UrdfJoint] = []
         while link != base and link in self.above:
             joints.append(self.above[link])
