@@ -6,7 +6,7 @@ from pathlib import Path
 
 _TYPES = {".gif": "image/gif", ".webp": "image/webp", ".png": "image/png", ".mp4": "video/mp4"}
 _MOST_BYTES = 10_000_000
-"""Maximum size of an embedded video; of a larger one, which would slow the notebook down, the path is shown."""
+"""Maximum size of an embedded video; larger ones would slow the notebook down, so that only the path is shown."""
 
 
 class ShownPath(type(Path())):

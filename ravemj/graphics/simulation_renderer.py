@@ -76,7 +76,7 @@ class SimulationRenderer:
             camera: The camera.
             look: Background, floor and lights; a colour is a background without floor, with the model's lights.
             form: Size and quality.
-            drawings: False: without the drawings of scripts.
+            drawings: Whether to draw the drawings of scripts.
             gizmos: Additional drawings.
             style: Drawing style of the bodies.
 
@@ -84,7 +84,7 @@ class SimulationRenderer:
             The picture, shape (height, width, 3), top row first.
 
         Raises:
-            RenderingError: no renderer works on this machine, or not the one in ``MUJOCO_GL``.
+            RenderingError: no renderer works on this machine, or the renderer in ``MUJOCO_GL`` does not.
         """
         with self._simulation.lock:
             compiled = self._simulation.compiled()
@@ -105,7 +105,7 @@ class SimulationRenderer:
         return self._measured(form, lambda renderer, data: renderer.segment(data, camera))
 
     def _measured(self, form: Format, measure: Callable[[Renderer, mujoco.MjData], Drawn]) -> Drawn:
-        """Return the result of a function of this thread's renderer and the present state."""
+        """Return ``measure(renderer, data)`` for this thread's renderer and the present state."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             renderer = self._current(form)
@@ -116,8 +116,8 @@ class SimulationRenderer:
     def render_again(self, camera: Camera, look: Look | ArrayLike, form: Format) -> Frame | None:
         """Render this thread's last state from another camera, without locking the simulation.
 
-        Bodies have the poses of that state, or those published since. The result is a picture as from ``render``; None
-        if this thread has not rendered yet.
+        Bodies have the poses of the last state, or those published since. The result is a picture as from ``render``;
+        None if this thread has not rendered yet.
         """
         if getattr(self._kept, "key", None) is None:
             return None
@@ -172,7 +172,7 @@ class SimulationRenderer:
         return self.file_camera() or three_quarter_view(*self.bounding_sphere(), aspect)
 
     def lowest_point(self) -> float:
-        """Return the least z of the drawn geoms [m]; infinity if there are none."""
+        """Return the minimum z of the drawn geoms [m]; infinity if there are none."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             return lowest_point(compiled.model, compiled.data)

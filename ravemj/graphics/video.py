@@ -5,16 +5,16 @@ A frame is a uint8 array, shape (height, width, 3): sRGB, top row first. The suf
 ======================  =====================================================================================
 ``.mp4``                H.264, which every browser plays
 ``.avi``, ``.mpg``      H.264 and MPEG-2 for scripts that were written for OpenRAVE; browsers do not play them. MPG
-                        has 30 frames a second and repeats frames to keep the time
-``.gif``                256 colours a frame; delays are multiples of 10 ms, so the frames of a 30 fps video take
-                        30 or 40 ms and the whole keeps its time
+                        has 30 frames per second; frames are repeated to keep the duration
+``.gif``                256 colours per frame; delays are multiples of 10 ms, so the frames of a 30 fps video take
+                        30 or 40 ms, and the total duration is kept
 ``.webp``               all colours, smaller than GIF; delays are multiples of 1 ms
 no suffix or a final /  a folder of ``frame_00000.png``, ``frame_00001.png``, …
 ======================  =====================================================================================
 
 MP4, AVI, MPG and PNG take the same memory for any number of frames; GIF and WebP hold all of them.
 
-A target appears whole or not at all; see ``ravemj.core.output``.
+Targets are written atomically; see ``ravemj.core.output``.
 """
 
 # PyAV and imageio leave some types open.
@@ -60,11 +60,11 @@ _MANY_PIXELS = 100_000_000
 def check_target(path: AnyPath) -> None:
     """Check that a video can be written to a path, without touching anything.
 
-    Call it before work that takes long; ``write_frames`` calls it as well.
+    Call it before long computations; ``write_frames`` calls it as well.
 
     Raises:
-        ArgumentError: The suffix is not one of those in the module's text.
-        OutputError: The folder around it is missing or cannot be written, or something is in the way.
+        ArgumentError: The suffix is not one of those in the module's docstring.
+        OutputError: The folder around it is missing or cannot be written, or the path exists and is of another kind.
     """
     if known_suffix(path, VIDEO_FORMATS) == _FOLDER:
         check_folder(path, _FILES_OF_FOLDER)
@@ -77,18 +77,18 @@ def write_frames(
 ) -> Path:
     """Write a video.
 
-    Frames are drawn in the caller's thread, where the GL context lives, while a second thread encodes. Each frame is
-    copied when it arrives, so that one buffer may serve for all of them.
+    Frames are drawn in the caller's thread, to which the GL context belongs, while a second thread encodes. Each frame
+    is copied when it arrives, so that one buffer may be used for all of them.
 
     Args:
-        path: The target, which is returned as it was given; its suffix selects the format.
+        path: The target, which is returned unchanged; its suffix selects the format.
         frames: uint8 arrays (height, width, 3) of one size. Videos repeat the last row or column of an odd size.
-        fps: Frames a second, from 0.01 to 1000; to 50 for GIF and to 90 for WebP, since browsers play shorter delays
-            at 10 frames a second; to 30 for MPG.
+        fps: Frames per second, from 0.01 to 1000; at most 50 for GIF and 90 for WebP, since browsers play shorter
+            delays at 10 frames per second; at most 30 for MPG.
         on_frame: Called in the caller's thread after each frame with the number of frames so far.
 
     Raises:
-        ArgumentError: Unknown suffix, unusable fps, a frame of wrong type or size, or no frames at all.
+        ArgumentError: Unknown suffix, invalid fps, a frame of wrong type or size, or no frames.
         OutputError: The target cannot be written; most causes are found before the first frame is drawn.
     """
     suffix = known_suffix(path, VIDEO_FORMATS)
@@ -103,8 +103,8 @@ def check_picture(path: AnyPath) -> None:
     """Check that a single picture can be written to a path, without touching anything.
 
     Raises:
-        ArgumentError: The suffix is none of ``.png``, ``.jpg``, ``.jpeg`` and ``.webp``.
-        OutputError: The folder around it is missing or cannot be written, or something is in the way.
+        ArgumentError: The suffix is not ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
+        OutputError: The folder around it is missing or cannot be written, or the path exists and is of another kind.
     """
     known_suffix(path, STILL_FORMATS)
     check_file(path)
@@ -113,7 +113,7 @@ def check_picture(path: AnyPath) -> None:
 def write_picture(path: AnyPath, frame: Frame) -> Path:
     """Write a picture, uint8 of shape (height, width, 3), as ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
 
-    The suffix of the path selects the format; the path is returned as it was given.
+    The suffix of the path selects the format; the path is returned unchanged.
 
     Raises:
         ArgumentError: Unknown suffix, or the frame has a wrong type or shape.
@@ -198,7 +198,7 @@ def _write_webp(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> Non
 
 
 def _images(frames: Iterator[Frame], rate: Fraction, grain: int) -> "Iterator[Image]":
-    """Yield frames as images with their delays, multiples of ``grain`` [ms] whose sum keeps the time."""
+    """Yield frames as images with their delays, multiples of ``grain`` [ms] that keep the total duration."""
     from PIL import Image  # noqa: PLC0415 - slow to import
 
     pixels = 0
@@ -228,7 +228,7 @@ VIDEO_FORMATS: dict[str, tuple[_Encoder, int]] = {
     ".webp": (_write_webp, 90),
     _FOLDER: (_write_png_folder, 1000),
 }
-"""Encoder and highest frame rate of each suffix; the empty one is a folder."""
+"""Encoder and maximum frame rate of each suffix; the empty suffix is a folder."""
 STILL_FORMATS: dict[str, dict[str, str | int]] = {  # with the encoder's options
     ".png": {},
     ".jpg": {"quality": 95},
@@ -252,7 +252,7 @@ def _arriving(handed_over: "Handover[Frame | None]", stopped: Flag) -> Iterator[
 def _overlap(
     frames: Iterable[Frame], encode: Callable[[Iterator[Frame]], None], on_frame: Callable[[int], None] | None
 ) -> None:
-    """Encode in a second thread while this one draws; an exception of either ends both."""
+    """Encode in a second thread while this thread draws; an exception in either ends both."""
     handed_over = Handover["Frame | None"](_FRAMES_BETWEEN_THREADS)
     ended, stopped = Flag(), Flag()
     errors: list[BaseException] = []
@@ -298,7 +298,7 @@ def _encode(encoder: _Encoder, frames: Iterator[Frame], temporary: Path, rate: F
 
 
 def _checked(frames: Iterable[Frame]) -> Iterator[Frame]:
-    """Yield copies of the frames; check that there is at least one and that all have one size."""
+    """Yield copies of the frames; check that there is at least one and that all have the same size."""
     shape: tuple[int, ...] = ()
     for number, frame in enumerate(frames):
         copy = np.array(frame, order="C")
@@ -316,7 +316,7 @@ def known_suffix(path: AnyPath, known: Iterable[str]) -> str:
     """Return the suffix of a file to write, in lower case; empty for a folder.
 
     Raises:
-        ArgumentError: It is not a known one.
+        ArgumentError: It is not one of ``known``.
     """
     text = os.fspath(path)
     suffix = _FOLDER if text.endswith(("/", os.sep)) else Path(text).suffix.lower()
@@ -331,7 +331,7 @@ def frame_rate(fps: float, highest: int) -> Fraction:
     """Return a frame rate as the fraction stored in a video.
 
     Raises:
-        ArgumentError: It is unusable, or higher than the format allows.
+        ArgumentError: It is invalid, or higher than the format allows.
     """
     if not (math.isfinite(fps) and _LOWEST_FPS <= fps <= highest):
         raise ArgumentError(f"expected from {_LOWEST_FPS} to {highest} frames a second for this format, found {fps}")

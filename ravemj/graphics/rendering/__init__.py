@@ -99,7 +99,7 @@ class Renderer(Protocol):
         ...
 
     def resize(self, width: int, height: int, samples: int) -> None:
-        """Set the size and the samples per pixel of further pictures; this takes about a millisecond."""
+        """Set the size and the samples per pixel of later pictures; this takes about a millisecond."""
 
     def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
         """Render the depths at pixel centres; drawings are ignored.
@@ -113,7 +113,7 @@ class Renderer(Protocol):
         ...
 
     def close(self) -> None:
-        """Free the resources. Also done at the end of a ``with`` block."""
+        """Free the resources, like the end of a ``with`` block."""
 
     def __enter__(self) -> Self:
         return self
@@ -137,9 +137,10 @@ def open_renderer(
         model: The model; geoms may change poses and colours later, but not their number.
         width: Columns of the pictures.
         height: Rows of the pictures.
-        shadows: Whether lights cast shadows; costly without a graphics card. None: if there is one. Rays ignore it.
-        samples: Samples per pixel against jagged edges: 4 for stills, 0 for speed.
-        backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``; by default what ``MUJOCO_GL`` names, or any.
+        shadows: Whether lights cast shadows, which is slow without a graphics card; None: if there is one. The ray
+            caster has none.
+        samples: Samples per pixel for antialiasing: 4 for stills, 0 for speed.
+        backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``; by default that of ``MUJOCO_GL``, or any.
 
     Raises:
         ArgumentError: a size is not positive, or another argument has none of the listed values.

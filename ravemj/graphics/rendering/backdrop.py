@@ -35,9 +35,9 @@ class Floor(NamedTuple):
 
     Attributes:
         height: z of the floor [m].
-        cell: Spacing of the grid lines [m]; one goes through the origin.
+        cell: Spacing of the grid lines [m]; one line goes through the origin.
         center: Centre of a sphere around the bodies, shape (3,) [m].
-        radius: Its radius [m].
+        radius: Radius of the sphere [m].
         colour: Colour near the bodies, shape (3,), 0 to 1.
         horizon: Colour far away, shape (3,), 0 to 1.
     """
@@ -85,7 +85,7 @@ class FloorLevel:
 
 
 def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
-    """Return the least z of the drawn geoms [m], without planes; infinity if there are none.
+    """Return the minimum z of the drawn geoms [m], without planes; infinity if there are none.
 
     The poses of the geoms must be computed (``mj_kinematics`` or ``mj_forward``).
     """
@@ -106,7 +106,7 @@ def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
 
 
 def _reach_down(model: mujoco.MjModel, geoms: Ints, up: Floats) -> Floats:
-    """Return the extents of geoms below their origins [m], shape (N,); of meshes by their bounding boxes."""
+    """Return how far geoms extend below their origins [m], shape (N,); for meshes by their bounding boxes."""
     kind, size = model.geom_type[geoms], model.geom_size[geoms]
     boxes = model.geom_aabb[geoms]
     aside = np.sqrt(np.maximum(1 - up[:, 2] ** 2, 0))
@@ -135,7 +135,7 @@ def _vertices(model: mujoco.MjModel, geom: int) -> Floats:
 
 
 def sky_colours(look: Look, heights: Floats) -> Floats:
-    """Return the background colours of directions, shape (N, 3) in 0..1, by the z of their unit vectors, shape (N,)."""
+    """Return the background colours, shape (N, 3) in 0..1, of directions with z components ``heights``, shape (N,)."""
     if look.background is not None:
         return np.broadcast_to(np.array(look.background), (*heights.shape, 3))
     end = np.where(heights[..., None] > 0, ZENITH, NADIR)
@@ -145,7 +145,7 @@ def sky_colours(look: Look, heights: Floats) -> Floats:
 def skybox(look: Look, width: int) -> NDArray[np.uint8]:
     """Return the six faces of MuJoCo's skybox, stacked vertically, shape (6 * width, width, 3).
 
-    MuJoCo's order is right, left, up, down, front, back; the sides are equal.
+    MuJoCo's order is right, left, up, down, front, back; the four sides are equal.
     """
     place = (2 * np.arange(width) + 1) / width - 1
     across, down = np.meshgrid(place, place)
@@ -171,7 +171,7 @@ class Backdrop(NamedTuple):
     pixel: float
 
     def colours(self, rays: Floats) -> Floats:
-        """Return the unrounded colours in 0..255 of rays in the world with depth 1, both of shape (N, 3)."""
+        """Return the unrounded colours in 0..255, shape (N, 3), of rays in the world with depth 1, shape (N, 3)."""
         lengths = np.linalg.norm(rays, axis=1)
         colours = np.array(sky_colours(self.look, rays[:, 2] / lengths))
         if self.floor is not None:
@@ -196,7 +196,7 @@ class Backdrop(NamedTuple):
 
 
 def _line_parts(places: Floats, footprints: Floats) -> Floats:
-    """Return the fraction of each pixel covered by grid lines at whole numbers, by its position and width [cells]."""
+    """Return the fraction of each pixel covered by grid lines, given its position and width in cells."""
     half, apart = 0.5 * LINE_WIDTH, np.abs(places - np.rint(places))
     width = np.maximum(footprints, 1e-9)
     part = np.clip(0.5 + (half - apart) / width, 0, 1) * np.minimum(1, LINE_WIDTH / width)

@@ -2,8 +2,8 @@
 
 The camera frame has +z into the scene, +x to the right of the image and +y down the image, so the up
 direction of the picture is -y. OpenRAVE's ``SetCamera`` and ``GetCameraTransform``, its camera tags and its
-camera sensors all share this frame. MuJoCo's and OpenGL's cameras look along -z with +y up instead; the
-renderers convert, nobody else needs to.
+camera sensors all use this frame. MuJoCo's and OpenGL's cameras look along -z with +y up instead; only the
+renderers convert.
 """
 
 import math
@@ -24,7 +24,7 @@ DEFAULT_FOVY = math.radians(45)
 """Vertical field of view of OpenRAVE's viewers [rad]."""
 
 RIGIDITY_TOLERANCE = 5e-3
-"""Tolerance of R^T R for a rotation: it admits matrices printed with three digits, but no scaled ones."""
+"""Tolerance of R^T R for a rotation, for matrices printed with three digits, but not for scaled ones."""
 
 _SHAPES = "a 4x4 matrix, a 3x4 matrix or a pose [w, x, y, z, tx, ty, tz]"
 
@@ -40,7 +40,7 @@ class Pinhole(NamedTuple):
 
 @dataclass(eq=False)
 class CameraIntrinsics:
-    """A pinhole camera, as OpenRAVE's scripts know it.
+    """Camera matrix, as returned to OpenRAVE's scripts.
 
     Attributes:
         K: Camera matrix [pixels], shape (3, 3).
@@ -55,12 +55,12 @@ class Camera:
 
     Attributes:
         T_world_camera: Pose of the camera in the world, (4, 4), read-only. Columns: image right, image down,
-            viewing direction, position of the eye [m]. The numbers are kept exactly as they were given.
+            viewing direction, position of the eye [m]. The numbers are stored exactly as given.
         fovy: Vertical field of view [rad], between 0 and pi.
         calibration: Focal lengths and principal point for pictures of one size, in place of the field of view.
 
     Raises:
-        ArgumentError: the matrix is no rigid transform, or the field of view is out of range.
+        ArgumentError: the matrix is not a rigid transform, or the field of view is out of range.
     """
 
     T_world_camera: Floats
@@ -155,7 +155,7 @@ def three_quarter_view(center: ArrayLike, radius: float, aspect: float = 1.0) ->
 
     Args:
         center: Centre of the bounding sphere to show, in the world [m], shape (3,).
-        radius: Its radius [m]; the sphere just fits into the picture's height (45 degrees) and width.
+        radius: Radius of the sphere [m]; it just fits into the picture's height (45 degrees) and width.
         aspect: Width of the picture divided by its height.
     """
     return _looking_at(center, radius / min(1.0, aspect), first_rotation())
@@ -190,7 +190,7 @@ def geom_corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> Flo
 
 
 def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
-    """Set the camera of a scene; ``mjv_updateScene`` preserves it for a camera of type ``mjCAMERA_USER``.
+    """Set the camera of a scene; its type ``mjCAMERA_USER`` makes ``mjv_updateScene`` preserve it.
 
     ``size`` is width and height of the picture [pixels], ``depths`` the near and far clipping depths [m].
     """

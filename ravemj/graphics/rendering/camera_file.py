@@ -16,9 +16,9 @@ _PUNCTUATION = str.maketrans("[](),;", "      ")
 def read_camera(path: str | Path) -> Camera:
     """Read a camera in OpenRAVE's convention from a file.
 
-    The file holds T_world_camera as JSON (a nested list, or ``{"camera": [[...], ...]}`` with an optional
-    ``"fovy"`` in radians), as the list that OpenRAVE's tutorial prints, or as rows of numbers; ``#`` starts a
-    comment. 3x4 matrices and poses [w, x, y, z, tx, ty, tz] are read too.
+    The file contains T_world_camera as JSON (a nested list, or ``{"camera": [[...], ...]}`` with an optional
+    ``"fovy"`` in radians), as the list printed in OpenRAVE's tutorial, or as rows of numbers; ``#`` starts a
+    comment. 3x4 matrices and poses [w, x, y, z, tx, ty, tz] are accepted, too.
 
     Raises:
         SourceError: the file cannot be read, or does not contain a camera; the message says why.

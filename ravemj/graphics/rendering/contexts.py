@@ -101,7 +101,7 @@ class OffscreenContext:
             yield
 
     def close(self) -> None:
-        """Free the context; its objects must be freed before."""
+        """Free the context; its OpenGL objects must be freed before."""
         self._context.free()
         _not_freed.discard(self._context)
 
@@ -116,8 +116,8 @@ class Closeable(Protocol):
 def close_at_exit(resource: Closeable) -> None:
     """Close a resource at the exit of Python, if it still exists then.
 
-    Call it only when a context exists: then the platform's own exit handlers are registered already, and handlers
-    run last in, first out.
+    Call it only after a context was created: the platform's own exit handlers are then registered before this one, and
+    so run after it.
     """
     if not _open:
         atexit.register(_close_all)
@@ -161,7 +161,7 @@ def remedy(backend: str) -> str:
 def make_with_any_backend(make: Callable[[OffscreenContext], _Made]) -> _Made | None:
     """Call ``make`` with a new context of the first backend that works; return None if none does.
 
-    The working backend is tried first from then on. The result of ``make`` is responsible for closing the context.
+    Later calls try this backend first. The result of ``make`` is responsible for closing the context.
     """
     for backend in _order():
         try:
@@ -178,7 +178,7 @@ def attempt(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
     """Call ``make`` with a new context of one backend, like :func:`make_with_backend` but with the original errors.
 
     Raises:
-        Exception: whatever the platform's libraries raise where they are missing or do not work.
+        Exception: any error of the platform's libraries if they are missing or do not work.
     """
     with _lock:
         context = OffscreenContext(backend)

@@ -35,9 +35,9 @@ class BackendReport(NamedTuple):
 
 
 def probe_backends() -> list[BackendReport]:
-    """Try every backend, in the order in which they are chosen.
+    """Try every backend, in the order in which they are selected.
 
-    Each is tried in its own process, because a broken driver can crash it. This takes a second or two, and never
+    Each is tried in a separate process, because a broken driver can crash it. This takes a second or two, and never
     fails.
     """
     reports = [probe(backend) for backend in GL_BACKENDS]

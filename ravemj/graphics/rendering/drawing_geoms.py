@@ -1,4 +1,4 @@
-"""Conversion of drawings to ``mjvGeom`` structures of MuJoCo's classic renderer, vectorized over many thousands."""
+"""Vectorized conversion of many thousands of drawings to ``mjvGeom`` structures of MuJoCo's classic renderer."""
 
 import mujoco
 import numpy as np
@@ -18,7 +18,7 @@ _Floats32 = NDArray[np.float32]
 def add_drawing_geoms(
     scene: mujoco.MjvScene, primitives: Primitives, camera: Camera, width: int, height: int
 ) -> list[_Floats32]:
-    """Append drawings in the world to an updated scene; those beyond its capacity are left out.
+    """Append drawings in the world to an updated scene; those beyond its capacity are omitted.
 
     Returns:
         Writable arrays of the widths of points and lines [pixels], each of shape (N, 2).
@@ -40,7 +40,7 @@ def add_drawing_geoms(
 
 
 def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) -> PrimitiveBatch:
-    """Return points as horizontal lines on the screen, as long as they are wide."""
+    """Return points as horizontal lines on the screen whose length equals their width."""
     centers, sizes = points.corners[:, 0], np.maximum(points.sizes, 1)
     depth = (centers - camera.position) @ camera.rotation[:, 2]
     half = (0.5 * sizes * depth / camera.pinhole(width, height).fx)[:, None] * camera.rotation[:, 0]
@@ -48,7 +48,7 @@ def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) ->
 
 
 def _append(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, count: int) -> tuple[mujoco.MjvGeom, ...]:
-    """Allocate geoms of a type in the scene, which belong to no model and cast no shadows."""
+    """Allocate geoms of a type in the scene; they belong to no model and cast no shadows."""
     first = scene.ngeom
     slots = scene.geoms[first : first + count]
     for number, slot in enumerate(slots, first):
@@ -84,9 +84,9 @@ def _column(slots: tuple[mujoco.MjvGeom, ...], name: str) -> _Floats32:
 
 
 def _frames_of_triangles(corners: Floats, eye: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return lengths of two sides, shape (N,) each, and matrices, shape (N, 3, 3), of their directions and the normal.
+    """Return lengths of two sides, (N,) each, and matrices (N, 3, 3) of the sides' directions and the normal.
 
-    Only the front side is lit, so the normal is towards the camera.
+    Only the front side is lit, so the normal points towards the camera.
     """
     edge, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     away = np.einsum("ij,ij->i", np.cross(edge, other), corners[:, 0] - eye) > 0

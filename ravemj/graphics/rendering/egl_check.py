@@ -66,7 +66,7 @@ def _address(library: ctypes.CDLL, name: bytes) -> int:
 
 @contextlib.contextmanager
 def variable_restored(name: str, meanwhile: str | None = None) -> Generator[None]:
-    """Set an unset environment variable during the block, and remove it at the end, whoever has changed it."""
+    """Set an unset environment variable during the block, and unset it at the end, even if other code changed it."""
     if name in os.environ:
         yield
         return

@@ -20,7 +20,7 @@ _AT_ONCE = 1 << 20
 """Maximum number of (primitive, pixel) pairs tested at once."""
 
 _PIECE = 16.0
-"""Length of the segments into which lines are cut [pixels], so that bounding rectangles stay small."""
+"""Length of the segments into which lines are divided [pixels], so that bounding rectangles stay small."""
 
 _NEAREST = 1e-6
 """Near clipping depth of lines [m]."""
@@ -148,7 +148,7 @@ class Raster:
             yield self._lit(ray[hit], depth, direction[hit], normals, batch.rgba[sphere])
 
     def _around_spheres(self, center: Floats, radius: Floats) -> tuple[Floats, Floats]:
-        """Return the bounding rectangles on the screen; for a sphere that the camera plane cuts, the whole screen."""
+        """Return the bounding rectangles on the screen; the whole screen for spheres cut by the camera plane."""
         x_or_y, depth, r = center[:, :2], center[:, 2:], radius[:, None]
         in_front = (depth > r)[:, 0]
         low, high = _whole_screen(len(radius))
@@ -177,7 +177,7 @@ class Raster:
             yield self._lit(ray[hit], depth[hit], direction[hit], normals[owner[hit]], batch.rgba[owner[hit]])
 
     def _around_triangles(self, corners: Floats) -> tuple[Floats, Floats]:
-        """Return the bounding rectangles on the screen; for a triangle that the camera plane cuts, the whole screen."""
+        """Return the bounding rectangles on the screen; the whole screen for triangles cut by the camera plane."""
         in_front = (corners[:, :, 2] > _NEAREST).all(axis=1)
         low, high = _whole_screen(len(corners))
         on_screen = self._project(corners[in_front])
@@ -242,7 +242,7 @@ def _flat(ray: Ints, depth: Floats, rgba: Floats) -> Fragments:
 
 
 def _numbered(counts: Ints) -> tuple[Ints, Ints]:
-    """Return each index i ``counts[i]`` times, and running numbers from 0 to ``counts[i] - 1``."""
+    """Return each index i ``counts[i]`` times, and for each a running number from 0 to ``counts[i] - 1``."""
     index = np.repeat(np.arange(len(counts)), counts)
     first = np.cumsum(counts) - counts
     return index, np.arange(len(index)) - first[index]

@@ -133,7 +133,7 @@ class GlRenderer(Renderer):
         return self._gl_scene
 
     def _read(self, stage: GlScene, depth: NDArray[np.float32] | None = None) -> NDArray[np.uint8]:
-        """Return the rendered picture; a depth buffer, if given, is filled too, bottom row first."""
+        """Return the rendered picture, and fill a depth buffer, if given, bottom row first."""
         width, height = self._size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
         stage.context.readDepthMap = _DEPTH_ZERO_FAR

@@ -1,6 +1,6 @@
 """MuJoCo's classic renderer, for offscreen buffers and windows.
 
-A ``GlScene`` belongs to one model and one OpenGL context. The caller makes that context current in its thread before
+A ``GlScene`` belongs to one model and one OpenGL context. The caller makes the context current in its thread before
 calling any method, so that windows can use the same code.
 """
 
@@ -27,13 +27,13 @@ from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import FLOOR_REACH
 
 SHADOW_SIZE = 1024
-"""Texels along one side of a shadow map. Larger ones are slow on a CPU, and the main light has several maps."""
+"""Texels along one side of a shadow map. Larger maps are slow on a CPU, and the main light has several."""
 
 _SHADOW_REACH = 1.05
 """Half the side of the shadow map, in radii of the scene.
 
-MuJoCo's offset between a surface and its own shadow grows with it: with 1 there are shadow artefacts on surfaces far
-from the light.
+MuJoCo's offset between a surface and its own shadow is proportional to it: at 1 there are shadow artefacts on surfaces
+far from the light.
 """
 
 _SHADOW_DISTANCE = 1.1
@@ -47,13 +47,13 @@ _SAMPLES = 4
 
 _SPARE_GEOMS = 1000
 _MAX_FIGURES = 300_000
-"""Maximum number of drawn primitives in one picture: MuJoCo needs a second to allocate so many."""
+"""Maximum number of drawn primitives in one picture, for which MuJoCo takes a second to allocate memory."""
 
 _SMALLEST = 1e-3
-"""Least radius of a drawing's bounding sphere [m], for instance of a single point."""
+"""Minimum radius of a drawing's bounding sphere [m], for instance of a single point."""
 
 _WIDEST = 1e-6
-"""Least ratio of the near to the far depth; below it MuJoCo loses the background."""
+"""Minimum ratio of near to far depth; below it MuJoCo loses the background."""
 
 FLOOR_MATERIAL = "floor"
 """Name of the material with the floor's grid in MJCF files."""
@@ -62,7 +62,7 @@ _FLOOR_BELOW = 1e-4
 """Gap between the bodies and the drawn floor [radii of the scene]; a floor of the model hides it."""
 
 _painting = threading.Lock()
-"""Held while the texture of a model contains a background colour."""
+"""Lock held while the texture of a model contains a background colour."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -106,7 +106,7 @@ class GlScene:
 
     @property
     def has_background(self) -> bool:
-        """Whether the model has the skybox texture that background colours are painted with."""
+        """Whether the model has a skybox texture, into which background colours are painted."""
         return self._skybox is not None
 
     @property
@@ -129,8 +129,8 @@ class GlScene:
     ) -> None:
         """Copy geom poses, drawings, camera and look into the GL scene.
 
-        With points or lines there are no shadows: MuJoCo would draw these again for each light with shadows and add
-        the colours. ``size`` is columns and rows of the viewport.
+        With points or lines there are no shadows, since MuJoCo would draw points and lines again for each light with
+        shadows, and add the colours. ``size`` is columns and rows of the viewport.
         """
         self._make_room(len(primitives))
         has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
@@ -308,8 +308,8 @@ class DrawnExtent:
     def depths(self, camera: Camera) -> tuple[float, float]:
         """Return the near and far clipping depths [m] for a camera at any position.
 
-        MuJoCo draws the background on a cube inside the far depth, which must therefore be well behind the scene. Its
-        depth buffer holds floats with 1 for near, so wide ranges lose no precision.
+        MuJoCo draws the background on a cube inside the far depth, which must therefore be well behind the scene. The
+        depth buffer contains floats, 1 for the near depth, so wide ranges lose no precision.
         """
         (center, radius), *drawings = self.spheres
         near, far = _depths_of_sphere(center, radius, camera)

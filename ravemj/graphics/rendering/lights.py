@@ -1,4 +1,4 @@
-"""Lights, and the shading of surfaces by the renderer without OpenGL."""
+"""Lights, and the shading of surfaces by the ray caster."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -115,7 +115,7 @@ class Lights:
         self._shines = look.lights != "sensor"  # simulated cameras have no highlights
 
     def on(self, points: Floats, rays: Floats, normals: Floats) -> tuple[Floats, Floats]:
-        """Return the diffuse light on surface points, shape (N, 3), and their highlights, shape (N, 3), as RGB.
+        """Return the diffuse light on surface points, shape (N, 3), and the highlights, shape (N, 3), as RGB.
 
         A diffuse light of 1 gives the surface's own colour; highlights have the colour of the light. Points are in the
         world, shape (N, 3) [m], with the viewing rays and the unit normals, shape (N, 3) each; normals that point away

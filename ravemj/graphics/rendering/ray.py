@@ -27,13 +27,13 @@ from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import WHITE
 
 _BAND = 1 << 16
-"""Number of rays cast at once: a few megabytes, whatever the size of the picture."""
+"""Number of rays cast at once: a few megabytes, independent of the size of the picture."""
 
 _LAYERS = 6
 """Maximum number of transparent surfaces along a ray."""
 
 _EDGE = 12
-"""Difference between neighbouring pixels, of 255, above which an edge is antialiased."""
+"""Difference between neighbouring pixels (0..255) above which an edge is antialiased."""
 
 _SUBPIXELS = np.array([(-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125)])
 
@@ -47,7 +47,7 @@ _TWO_WALLS = (
     mujoco.mjtGeom.mjGEOM_CYLINDER,
     mujoco.mjtGeom.mjGEOM_BOX,
 )
-"""Convex shapes: a ray that enters one leaves it once, and a ray that hits a back face started inside."""
+"""Convex shapes, which a ray enters and leaves once; a ray that hits a back face started inside."""
 
 
 class RayRenderer(Renderer):
@@ -113,7 +113,7 @@ class RayRenderer(Renderer):
         self._closed = True
 
     def _scene(self, data: mujoco.MjData, camera: Camera, look: Look | None = None) -> "_RayScene":
-        """Prepare a copy of the model without hidden geoms, independent of changes by other threads."""
+        """Prepare a copy of the model without hidden geoms, which other threads do not change."""
         if self._closed:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
@@ -169,7 +169,7 @@ class _RayScene:
     backdrop: Backdrop
 
     def colors(self, rays: Floats, drawn: Fragments, layers: int = _LAYERS) -> Floats:
-        """Return the unrounded colours in 0..255 seen along rays in the world, both of shape (N, 3)."""
+        """Return the unrounded colours in 0..255, shape (N, 3), seen along rays in the world, shape (N, 3)."""
         colors = self.backdrop.colours(rays)
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)
@@ -216,7 +216,7 @@ class _RayScene:
         return two_walls[geom_ids]
 
     def _opacity(self, geom_ids: NDArray[np.int32]) -> Floats:
-        """Return the effective opacity: MuJoCo draws front faces twice."""
+        """Return the effective opacity, since MuJoCo draws front faces twice."""
         walls = 1 + self._has_two_walls(geom_ids)
         return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
 
@@ -231,7 +231,7 @@ class _RayScene:
 
 
 def _edges(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Return the pixels that differ from the next or the previous one in their row or column, shape (H, W)."""
+    """Return a mask, shape (H, W), of the pixels that differ from an adjacent pixel in their row or column."""
     edges = np.zeros(picture.shape[:2], dtype=np.bool_)
     for first, second in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         pixel, other = picture[first], picture[second]

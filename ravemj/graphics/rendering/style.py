@@ -22,7 +22,7 @@ COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
 _UNSET_RGBA = (0.5, 0.5, 0.5, 1.0)  # MuJoCo's default, which means that no colour is set
 _TINT = np.array([0.3, 0.6, 1.0])
 _TINT_PART = 0.4
-"""Fraction of this colour on a highlighted body; it is visible on white and on black."""
+"""Fraction of the highlight colour on a highlighted body; it is visible on white and on black."""
 
 _OPACITY = 0.35
 
@@ -30,8 +30,7 @@ _OPACITY = 0.35
 def geom_rgba(model: mujoco.MjModel) -> Floats:
     """Return the colour and opacity of every geom, (ngeom, 4) in 0..1.
 
-    A geom with a material and no colour of its own (which MuJoCo recognises by its default grey) has the
-    material's.
+    A geom with a material and no colour of its own (MuJoCo's default grey) has the colour of the material.
     """
     rgba = np.array(model.geom_rgba, dtype=np.float64)
     from_material = (model.geom_matid >= 0) & (rgba == _UNSET_RGBA).all(axis=1)
@@ -61,12 +60,12 @@ class Style:
         return COLLISION_GROUPS if self.collision else DRAWN_GROUPS
 
     def apply(self, option: mujoco.MjvOption) -> None:
-        """Set the visualization options with which a scene is updated."""
+        """Set the visualization options used to update a scene."""
         option.geomgroup[:] = self.groups
         option.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = self.hulls
 
     def colours(self, model: mujoco.MjModel, rgba: Floats) -> Floats:
-        """Return the drawn colours of geoms, shape (ngeom, 4), given their own."""
+        """Return the drawn colours of geoms, shape (ngeom, 4), given their own colours."""
         changed = rgba.copy()
         if self.transparent:
             changed[:, 3] *= _OPACITY
@@ -97,12 +96,12 @@ LightNames = Literal["studio", "model", "both", "sensor"]
 
 @dataclass(frozen=True)
 class Look:
-    """Background, floor and lights of a picture; ``ravemj.model.look`` has the numbers.
+    """Background, floor and lights of a picture; ``ravemj.model.look`` contains the numbers.
 
     Attributes:
         background: Red, green, blue from 0 to 1; None: a vertical gradient.
-        floor: Whether a floor is drawn below the bodies. It is not a body of the model.
-        lights: The lights: ``model`` keeps those of the model, ``sensor`` are those of simulated cameras.
+        floor: Whether to draw a floor below the bodies. It is not a body of the model.
+        lights: The lights: ``model`` means those of the model, ``sensor`` those of simulated cameras.
         lowest: Upper bound of the floor's height [m], for pictures of a motion.
     """
 

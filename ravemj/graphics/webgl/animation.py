@@ -25,7 +25,7 @@ _HEIGHT = 480
 """Height of a page in a notebook [pixels]."""
 
 _STILL = 1e-9
-"""Bodies that move less than this [m, and components of a unit quaternion] count as static."""
+"""Movement below which bodies count as static [m, and components of a unit quaternion]."""
 
 
 class Recording(NamedTuple):
@@ -71,7 +71,7 @@ class Animation(NamedTuple):
         """Write the page to a file.
 
         Raises:
-            OutputError: the file cannot be written; nothing is left behind then.
+            OutputError: the file cannot be written; nothing is left behind.
         """
         with new_file(path) as temporary:
             temporary.write_text(self.html, encoding="utf-8")
@@ -98,8 +98,8 @@ def animation_page(
 ) -> str:
     """Return a self-contained page that plays a recording. Drawings of scripts do not move.
 
-    Bodies without motion in the recording have their poses in the state ``data``, unless sliders move them:
-    ``webgl.sliders.mechanism`` returns these.
+    Bodies without motion in the recording have their poses in the state ``data``, unless sliders move them;
+    ``mechanism`` is the result of ``webgl.sliders.mechanism``.
     """
     package = Package()
     pack_scene(package, model, surfaces(model))
@@ -141,7 +141,7 @@ def _pack_recording(package: Package, recording: Recording) -> None:
 
 
 def _continuous(rotations: Floats) -> Floats:
-    """Choose signs of quaternions, shape (frames, bodies, 4), so that each is on the same side as the previous one."""
+    """Choose the signs of quaternions, shape (frames, bodies, 4), so that each is nearest to the previous one."""
     turns = np.sign(np.einsum("fbi,fbi->fb", rotations[1:], rotations[:-1]))
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=0)
     return np.concatenate([rotations[:1], rotations[1:] * signs[:, :, None]])

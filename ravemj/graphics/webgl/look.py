@@ -13,7 +13,7 @@ _DIGITS = 6
 
 
 def packed_look(level: FloorLevel, data: mujoco.MjData, look: Look, *, shadows: bool | None = None) -> dict[str, Any]:
-    """Return a look for a page; with ``shadows`` None the page decides by its rendering time."""
+    """Return a look for a page; if ``shadows`` is None, the page decides by its rendering time."""
     sky = [look.background] * 3 if look.background else [numbers.ZENITH, numbers.HORIZON, numbers.NADIR]
     return {
         "sky": [list(colour) for colour in sky],
@@ -41,7 +41,7 @@ def _packed_floor(floor: Floor | None) -> dict[str, Any] | None:
 
 
 def _packed_lights(model: mujoco.MjModel, look: Look) -> list[dict[str, Any]]:
-    """Return the lights, all directional; those of the model in its initial pose."""
+    """Return the lights as directional lights; those of the model are in their initial pose."""
     own = [light for light in map(model.light, range(model.nlight)) if not light.name.startswith(STUDIO_PREFIX)]
     of_model = [
         {name: getattr(light, name).tolist() for name in ("ambient", "diffuse", "specular")}

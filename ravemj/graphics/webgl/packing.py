@@ -15,7 +15,7 @@ from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _STEPS = 65535
 _WIDE = 65536
-"""Meshes with more vertices need 32-bit indices."""
+"""Number of vertices above which a mesh needs 32-bit indices."""
 
 
 class Package:
@@ -41,7 +41,7 @@ class Package:
         return name
 
     def quantized(self, numbers: Floats) -> dict[str, Any]:
-        """Add an array, shape (N, k), quantized to 16 bits between the least and the largest number of each column.
+        """Add an array, shape (N, k), quantized to 16 bits between the minimum and maximum of each column.
 
         The error is at most 1/131070 of a column's range. Columns are stored one after the other, as differences of
         consecutive numbers.
@@ -104,7 +104,7 @@ def _packed_mesh(package: Package, mesh: TriangleMesh) -> dict[str, Any]:
 
 
 def octahedral(normals: Floats) -> NDArray[np.int8]:
-    """Return the octahedral encoding of unit vectors, shape (N, 3), as two numbers each, shape (N, 2), within 1 degree.
+    """Return the octahedral encoding, shape (N, 2), of unit vectors, shape (N, 3), with an error below 1 degree.
 
     Source: Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014.
     """

@@ -12,13 +12,13 @@ from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
 
 _SAMPLES = 129
-"""Values of a slider for which the page knows a joint that follows it by a nonlinear equation."""
+"""Number of slider values at which a page gets the value of a mimic joint with a nonlinear equation."""
 
 _LINEAR = 1e-12
-"""A joint that is this near to a line [rad or m] is given by the ends of the line."""
+"""Deviation from a line [rad or m] up to which a joint's table consists of the ends of the line only."""
 
 _FARTHEST = 2 * math.pi
-"""Range of sliders of joints without limits, to both sides [rad or m]; half of that for circular ones."""
+"""Range of sliders of joints without limits, to both sides [rad or m]; half of that for circular joints."""
 
 
 class Slider(NamedTuple):
@@ -27,9 +27,9 @@ class Slider(NamedTuple):
     Attributes:
         name: The name of the DOF.
         unit: ``rad`` or ``m``.
-        low: The least value.
-        high: The greatest value.
-        value: The value at first.
+        low: Minimum value.
+        high: Maximum value.
+        value: Initial value.
         tables: By MuJoCo's index of a joint: its positions at evenly spaced values from ``low`` to ``high``.
     """
 
@@ -44,7 +44,7 @@ class Slider(NamedTuple):
 def mechanism(world: WorldModel, bodies: Sequence[BodyState]) -> dict[str, Any]:
     """Return the document of ``page/mechanism.js``: sliders, joints, and moving bodies, parents first.
 
-    Joints of three DOFs have no sliders. A joint that follows several others is exact if it does so linearly.
+    Joints of three DOFs have no sliders. Mimic joints of several joints are exact only if they are linear.
     """
     sliders = [slider for body in bodies for slider in _sliders(world, body, several=len(bodies) > 1)]
     driven = sorted({joint for slider in sliders for joint in slider.tables})
@@ -60,7 +60,7 @@ def mechanism(world: WorldModel, bodies: Sequence[BodyState]) -> dict[str, Any]:
 
 
 def _sliders(world: WorldModel, body: BodyState, *, several: bool) -> Iterator[Slider]:
-    """Yield a slider for each DOF that moves hinges or slides. The tables come from a copy of the body."""
+    """Yield a slider for each DOF that moves hinges or slides; its tables are computed with a copy of the body."""
     copy = body.simulation.create(body.scene).own_kinematics
     first, values = world.part(body).qpos.start, body.kinematics.values()
     joints = {int(address): joint for joint, address in enumerate(world.model.jnt_qposadr)}
@@ -85,7 +85,7 @@ def _sliders(world: WorldModel, body: BodyState, *, several: bool) -> Iterator[S
 
 
 def _shortened(column: Floats) -> list[float]:
-    """Return the ends of a column if it is a line, else all of it."""
+    """Return the ends of a column if it is a line, else the whole column."""
     line: Floats = np.linspace(float(column[0]), float(column[-1]), len(column))
     return column[[0, -1]].tolist() if np.abs(column - line).max() < _LINEAR else column.tolist()
 
@@ -111,7 +111,7 @@ def _joint(world: WorldModel, joint: int) -> dict[str, Any]:
 
 
 def _placed(world: WorldModel, body: int, moving: Sequence[int], driven: Sequence[int]) -> dict[str, Any]:
-    """Return a moving body, its joints, and its pose before these move it, in its parent or in the world."""
+    """Return a moving body, its joints, and its pose before the joints move it, in its parent or in the world."""
     model, data = world.model, world.data
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
     joints = [joint for joint in range(first, first + count) if joint in driven]

@@ -25,7 +25,7 @@ _PLANE = 1000.0
 """Half the side of an infinite plane [m]."""
 
 _TWO_TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
-"""Triangles of a square with four corners."""
+"""Triangles of a square, as indices of its corners."""
 
 
 class TriangleMesh(NamedTuple):
@@ -37,7 +37,7 @@ class TriangleMesh(NamedTuple):
 
 
 class MeshInstance(NamedTuple):
-    """An instance of a mesh on a body, for a geom; all by their indices."""
+    """Instance of a mesh on a body, for a geom, by their indices."""
 
     mesh: int
     body: int
@@ -83,7 +83,7 @@ def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, h
 def _shared(
     model: mujoco.MjModel, geom: int, *, is_hull: bool
 ) -> tuple[tuple[int, ...], Floats, Callable[[], TriangleMesh]]:
-    """Return the key of geoms that share a mesh, the scale of this one, shape (3,), and the constructor of the mesh."""
+    """Return the key of geoms that share a mesh, this geom's scale, shape (3,), and the constructor of the mesh."""
     kind, data, size = int(model.geom_type[geom]), int(model.geom_dataid[geom]), model.geom_size[geom]
     match mujoco.mjtGeom(kind):
         case mujoco.mjtGeom.mjGEOM_MESH:
