@@ -130,7 +130,7 @@ def write_picture(path: AnyPath, frame: Frame) -> Path:
 
 
 def picture_bytes(frame: Frame, suffix: str = ".png") -> bytes:
-    """Return the content of the file of a picture, uint8 of shape (height, width, 3); suffixes as ``write_picture``."""
+    """Return a picture, uint8 of shape (height, width, 3), as file content; suffixes as for ``write_picture``."""
     content = io.BytesIO()
     _imwrite(content, frame, extension=suffix, **STILL_FORMATS[suffix])
     return content.getvalue()

@@ -194,7 +194,7 @@ class Raster:
         return points[..., :2] / points[..., 2:] * focal + principal
 
     def _directions(self, at: Floats) -> Floats:
-        """Return the rays through points of the screen, shape (N, 2), in the camera frame, shape (N, 3), depth 1."""
+        """Return the rays through points of the screen, (N, 2), in the camera frame with depth 1, (N, 3)."""
         focal, principal = np.array(self._pinhole).reshape(2, 2)
         return np.column_stack([(at - principal) / focal, np.ones(len(at))])
 

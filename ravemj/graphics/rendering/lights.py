@@ -105,7 +105,7 @@ class Lights:
         self._shines = True
 
     def update(self, data: mujoco.MjData, camera: Camera, depths: tuple[float, float], look: Look) -> None:
-        """Copy the poses of the lights; some move with the camera. ``depths`` is its depth range [m]."""
+        """Copy the poses of the lights, which may move with the camera; ``depths`` is its depth range [m]."""
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         aim(self._scene, camera, (1, 1), depths)

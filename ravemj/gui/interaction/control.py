@@ -12,11 +12,11 @@ class Control:
         label: Tooltip: description of the action.
         text: Caption of a button, or value text beside a slider.
         value: Value of a slider.
-        lower: Least value of a slider.
-        upper: Largest value of a slider.
+        lower: Minimum value of a slider.
+        upper: Maximum value of a slider.
         is_on: State of a toggle button.
-        group: Position: among the ``tools``, in the row of a motion that is ``playing`` or of simulation ``time``,
-            or unfolded: a ``menu``, the ``joints`` or the ``tree`` with the ``joint tools`` above them, the ``help``.
+        group: Position: ``tools``; the row of a motion (``playing``) or of simulation ``time``; or in a panel that
+            opens: ``menu``, ``joints`` or ``tree``, with ``joint tools`` above it, ``help``.
     """
 
     name: str

@@ -1,8 +1,8 @@
 """Layout of the controls of a window, drawn as rectangles and text.
 
-Playback is a row at the bottom, between the wheels; simulation time is a second one. Each is shown only while there is
-something to control. The others are a column of small buttons below the mode buttons, left out on low views. Sliders,
-tree and menus open beside the column, the help on top of everything.
+Playback is a row at the bottom, between the wheels; simulation time is a second row. Each is shown only if there is
+something to control. Other controls are a column of small buttons below the mode buttons, omitted on low views.
+Sliders, tree and menus open beside the column, the help over everything.
 """
 
 from dataclasses import replace
@@ -50,12 +50,12 @@ class ControlLayout(NamedTuple):
     """Rectangles of the controls of a view.
 
     Attributes:
-        places: Rectangle of each control, for sliders of their track. Controls that do not fit are left out.
-        backs: Background rectangles behind groups of controls; a press on one does not reach the scene.
+        places: Rectangle of each control, for sliders that of the track. Controls that do not fit are omitted.
+        backs: Background rectangles behind groups of controls; presses on these do not reach the scene.
         first_row: Index of the first visible row of the joint sliders, the tree or the help.
-        last_row: Largest possible ``first_row``.
+        last_row: Maximum of ``first_row``.
         name_width: Width of the names before sliders [points].
-        help: Panels of the help, drawn on top.
+        help: Panels of the help, drawn over everything.
     """
 
     places: dict[Control, Rect]
@@ -67,7 +67,7 @@ class ControlLayout(NamedTuple):
 
     @classmethod
     def arrange(cls, controls: tuple[Control, ...], size: tuple[int, int], first_row: int = 0) -> "ControlLayout":
-        """Lay out controls on a view of a size [points], scrolled to a first row."""
+        """Return the layout of controls on a view of a size [points], scrolled to ``first_row``."""
         playing, time, others, menu, joints, joint_tools, tree, hiding = (
             [control for control in controls if control.group == group]
             for group in ("playing", "time", "tools", "menu", "joints", "joint tools", "tree", "help")
@@ -126,7 +126,7 @@ class ControlLayout(NamedTuple):
         return self.at(point) is not None or any(back.contains(*point) for back in self.backs)
 
     def value_at(self, slider: Control, x: float) -> float:
-        """Return the value of a slider whose knob is dragged to a column of the view [points]."""
+        """Return the value of a slider whose knob is dragged to column ``x`` of the view [points]."""
         rect = self.places[slider]
         part = (x - rect.x - _KNOB / 2) / (rect.width - _KNOB)
         return slider.lower + min(max(part, 0.0), 1.0) * (slider.upper - slider.lower)
@@ -161,7 +161,7 @@ class ControlLayout(NamedTuple):
 
 
 def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the rectangles of the playback controls; clock and speed are left out on narrow views."""
+    """Return the rectangles of the playback controls; clock and speed are omitted on narrow views."""
     room = size[0] - _LEFT - _RIGHT
     is_wide = room >= 3 * _ICON + _SHORTEST_TRACK + _CLOCK + _SPEED
     if not playing or room < 3 * _ICON + _SHORTEST_TRACK:
@@ -208,7 +208,7 @@ def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]
 
 
 def _menu(menu: list[Control], right: float, bottom: float) -> dict[Control, Rect]:
-    """Return the rectangles of a menu left of ``right``, with its bottom at ``bottom`` or higher."""
+    """Return the rectangles of a menu left of ``right``, with its bottom at most at ``bottom``."""
     tops = takewhile(lambda top: top + _ENTRY_HEIGHT < bottom, count(_COLUMN_TOP, _ENTRY_HEIGHT))
     return {
         control: Rect(right - _ENTRY_WIDTH, top, _ENTRY_WIDTH, _ENTRY_HEIGHT - 1)

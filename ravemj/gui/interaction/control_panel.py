@@ -1,4 +1,4 @@
-"""Pointer and keyboard input of the controls that a window draws."""
+"""Pointer and keyboard input for the controls that a window draws."""
 
 import math
 from collections.abc import Callable
@@ -19,7 +19,7 @@ class ControlPanel:
     """
 
     def __init__(self, controls: Controls, *, is_drawn: bool = True) -> None:
-        """Start unscrolled; without ``is_drawn`` the shell has controls of its own and the layout stays empty."""
+        """Start unscrolled; unless ``is_drawn``, the shell has controls of its own and the layout stays empty."""
         self.controls = controls
         self._is_drawn = is_drawn
         self._first_row = 0.0
@@ -79,11 +79,11 @@ class ControlPanel:
         return slide
 
     def scroll(self, layout: ControlLayout, steps: float) -> None:
-        """Scroll the rows by steps of the wheel."""
+        """Scroll the rows by wheel steps."""
         self._first_row = min(max(self._first_row - steps, 0.0), layout.last_row)
 
     def key(self, name: str) -> None:
-        """Edit the focused text field, or operate the control with this shortcut."""
+        """Edit the focused text field, or operate the control with the shortcut ``name``."""
         if not self.is_typing:
             if name in KEYS:
                 self.controls.operate(KEYS[name])
@@ -103,7 +103,7 @@ class ControlPanel:
             self._set_text(self._text + letter)
 
     def stop_typing(self) -> None:
-        """Remove the focus from the text field; a search stays."""
+        """Remove the focus from the text field; the search text stays."""
         self._field = self._text = ""
 
     def _set_text(self, text: str) -> None:

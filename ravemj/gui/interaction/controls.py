@@ -1,4 +1,4 @@
-"""The buttons and sliders of a view: playback, saving pictures, camera, display, and one slider per joint.
+"""Buttons and sliders of a view: playback, saving pictures, camera, display, and one slider per joint.
 
 They are plain data, which a window draws (``control_layout``) and a page converts to HTML elements.
 """
@@ -40,11 +40,11 @@ MENUS = {
 """The menus, besides the joint sliders."""
 
 _WITHOUT_BUTTON = {shortcut.name for menu in MENUS.values() for shortcut in menu.shortcuts} | {*MENUS, "reload"}
-"""Names of controls that keys operate although they have no visible button."""
+"""Names of controls without a visible button, which keys operate."""
 
 
 class Request(Enum):
-    """An action of the window or page that draws the view; the values are names of controls."""
+    """Requested action of the window or page that draws the view; the values are names of controls."""
 
     PICTURE = "picture"
     VIDEO = "video"
@@ -67,7 +67,7 @@ class Controls:
     """The buttons and sliders of one view, and their actions.
 
     Attributes:
-        navigation: The view.
+        navigation: Camera navigation of the view.
         time: Playback and simulation time, shared by all views.
         notices: Messages to the user, shared by all views.
         display: Display options, shared by all views.
@@ -75,7 +75,7 @@ class Controls:
         in_degrees: Whether angles are shown in degrees, not in radians.
         pulls: Whether a drag on a link moves it by inverse kinematics without Ctrl and Shift.
         reach: The last inverse-kinematics drag.
-        requests: Pending actions of the window or page; a text is to be copied.
+        requests: Pending actions of the window or page; a ``str`` is a text to be copied to the clipboard.
     """
 
     def __init__(
@@ -189,7 +189,7 @@ class Controls:
         return Control(shortcut.name, label, shortcut.text, is_on=is_on, group="menu")
 
     def _body(self) -> BodyState | None:
-        """Return the body with joint sliders: the selected one, else the one that is played, else the first robot."""
+        """Return the body with joint sliders: the selected one, else the played one, else the first robot."""
         selection, motion = self._selector.selection, self.playback.motion
         bodies = [] if selection is None else [selection.body]
         bodies += [] if motion is None else motion.bodies
@@ -278,7 +278,7 @@ class Controls:
         return requests
 
     def pause_motion(self, body: BodyState) -> None:
-        """Pause the playback if it moves this body, because the user drags it."""
+        """Pause the playback if it moves a body that the user drags."""
         motion = self.playback.motion
         if motion is not None and body in motion.bodies:
             self.playback.pause()

@@ -1,4 +1,4 @@
-"""The entry point of interaction: it maps events to changes of bodies, of the camera and of the overlay.
+"""Entry point of interaction: maps events to changes of bodies, camera and overlay.
 
 It needs neither a window nor OpenGL. A shell (window or page) passes events in, and draws the model from
 ``view.camera`` with the drawings, texts and rectangles of ``overlay()``.
@@ -30,7 +30,7 @@ class Interaction:
     """Pointer and keyboard interaction of one view of a simulation.
 
     Attributes:
-        controls: The buttons and sliders, apart from OpenRAVE's mode buttons and wheels.
+        controls: The buttons and sliders, except for OpenRAVE's mode buttons and wheels.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class Interaction:
         return cls(selector, navigation, controls)
 
     def another_view(self, *, has_tools: bool = True) -> "Interaction":
-        """Return the interaction of another view, which shares the selection; ``has_tools``: it draws mode buttons."""
+        """Return the interaction of another view, which shares the selection; ``has_tools``: it has mode buttons."""
         navigation = self._navigation.another()
         other = Interaction(self._selector, navigation, self.controls.another(navigation), has_tools=has_tools)
         other._controller.mode = self.mode
@@ -70,7 +70,7 @@ class Interaction:
 
     @property
     def appearance(self) -> object:
-        """A key that changes when the view must be redrawn, apart from movements of bodies."""
+        """A key that changes when the view must be redrawn, except for movements of bodies."""
         return self._changes, self._selector.changes, self.controls.appearance
 
     @property
@@ -88,13 +88,13 @@ class Interaction:
         return self._navigation.drawn
 
     def copy_view(self, view: Viewpoint) -> None:
-        """Copy the camera of another view, which the user has moved. Needs no lock."""
+        """Copy the camera of another view. Needs no lock."""
         self.view = replace(self.view, camera=view.camera, distance=view.distance)
 
     def look_from(self, camera: Camera, distance: float = 0.0) -> None:
         """Set the camera and make it the home view; ``distance`` to the focus [m], 0 keeps the previous one.
 
-        A drag of the old camera is cancelled.
+        A camera drag in progress is cancelled.
         """
         with self._simulation.lock:
             if self.mode is Mode.CAMERA:
@@ -108,7 +108,7 @@ class Interaction:
         self._controller.cancel_drag()
 
     def handle(self, event: Event) -> None:
-        """Handle an event. The simulation is locked meanwhile."""
+        """Handle an event, with the simulation locked."""
         with self._simulation.lock:
             self._drop_removed()
             if isinstance(event, Press | Wheel):
@@ -152,7 +152,7 @@ class Interaction:
         self.controls.advance(now)
 
     def overlay(self) -> Overlay:
-        """Return the overlay for the current state. The simulation is locked meanwhile."""
+        """Return the overlay for the current state; locks the simulation."""
         with self._simulation.lock:
             self._drop_removed()
             controller, shown = self._controller, self.controls.display.shown
@@ -198,12 +198,12 @@ class Interaction:
         return None if at is None or is_fixed else self._selector.highlight(self.view, at, hit)
 
     def _lit(self, hit: Hit | None) -> int:
-        """Return MuJoCo's id of the highlighted link: the one under the pointer, else the one selected in the tree."""
+        """Return MuJoCo's id of the highlighted link: the link under the pointer, else that selected in the tree."""
         part = hit or (self._selector.selection if self.controls.unfolded == "tree" else None)
         return -1 if part is None else int(self._simulation.compiled().part(part.body).body_ids[part.link])
 
     def _pointed_at(self, hit: Hit | None) -> list[str]:
-        """Return the description of the point under the pointer, else of the point that was clicked."""
+        """Return the description of the point under the pointer, else of the clicked point."""
         control = self._controller.layout.at(self._controller.pointer)
         text = self._selector.point_line()
         if hit is not None:

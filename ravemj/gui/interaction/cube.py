@@ -1,4 +1,4 @@
-"""The box handle around a selected body: dragging a face moves the body, dragging an edge turns it."""
+"""Box handle around a selected body: dragging a face moves the body, dragging an edge rotates it."""
 
 import itertools
 from collections.abc import Iterator
@@ -49,7 +49,7 @@ class _CubeEdge(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Cube:
-    """The box handle: aligned with a body's first link, around its visible geometry.
+    """The box handle: aligned with a body's first link, around the body's visible geometry.
 
     Attributes:
         T_world_cube: Pose of its centre, shape (4, 4).

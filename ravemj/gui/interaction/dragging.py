@@ -20,7 +20,7 @@ _FLATTEST = 0.02
 """Sine of the angle between ray and plane below which their intersection is ill-conditioned."""
 
 _ASLANT = 0.3
-"""The same for rotations: at flatter angles the pointer's motion along the rim is used instead."""
+"""Sine of the angle between ray and plane of a rotation below which the pointer's motion along the rim is used."""
 
 
 def move_by_face(body: BodyState, cube: Cube, grip: Grip) -> Follow:
@@ -38,7 +38,7 @@ def move_by_face(body: BodyState, cube: Cube, grip: Grip) -> Follow:
 
 
 def turn_by_edge(body: BodyState, cube: Cube, grip: Grip, ray: ViewRay) -> Follow:
-    """Start a drag that rotates a body about the axis through the box centre that is parallel to an edge."""
+    """Start a drag that rotates a body about the axis through the box centre and parallel to an edge."""
     T_start, axis, center = body.link_transform(0), cube.T_world_cube[:3, grip.axis], cube.T_world_cube[:3, 3]
     turn = Turn(center, axis, grip.point, ray)
 
@@ -51,7 +51,7 @@ def turn_by_edge(body: BodyState, cube: Cube, grip: Grip, ray: ViewRay) -> Follo
 
 
 def move_joint(body: BodyState, dof: int, handle: JointHandle, point: Floats, ray: ViewRay) -> Follow:
-    """Start a drag of a joint by a point of its handle; the joint limits hold."""
+    """Start a drag of a joint by a point of its handle, within the joint limits."""
     start = float(body.kinematics.values()[dof])
     joint, axis = joint_and_axis(body, dof)
     if joint.slides(axis):
@@ -70,7 +70,7 @@ def set_dof(body: BodyState, dof: int, value: float) -> None:
 
 
 class Turn:
-    """Measures the angle that the pointer has turned about an axis, over any number of turns."""
+    """Measures the angle by which the pointer has turned about an axis, over any number of turns."""
 
     def __init__(self, center: Floats, axis: Floats, grip: Floats, ray: ViewRay) -> None:
         """Start at a grabbed point ``grip``; axis (unit vector), centre and grip are in the world, shape (3,) [m]."""
@@ -120,7 +120,7 @@ def _across(vector: Floats, axis: Floats) -> Floats:
 
 
 def in_plane(ray: ViewRay, point: Floats, normal: Floats) -> Floats | None:
-    """Return the intersection of a ray with a plane in front of the camera; None if there is none, or nearly so."""
+    """Return the intersection of a ray with a plane in front of the camera; None if there is none or it is unstable."""
     slope = float(ray.direction @ normal)
     distance = float((point - ray.start) @ normal) / slope if abs(slope) > _FLATTEST else -1.0
     return ray.start + distance * ray.direction if distance > 0 else None

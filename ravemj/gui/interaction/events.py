@@ -24,7 +24,7 @@ class Press:
         button: The mouse button.
         ctrl: Whether Ctrl is held.
         shift: Whether Shift is held.
-        touch: Whether it is a finger: it turns the view unless it starts on a handle; a tap selects in both modes.
+        touch: Whether it is a finger, which turns the view unless it starts on a handle; a tap selects in both modes.
     """
 
     x: float
@@ -64,11 +64,11 @@ class Fingers:
     """Two fingers have moved.
 
     Attributes:
-        x: Column of their midpoint [points].
-        y: Row of their midpoint [points].
+        x: Column of the midpoint of the fingers [points].
+        y: Row of the midpoint [points].
         right: Displacement of the midpoint to the right [points].
         down: Displacement of the midpoint downwards [points].
-        spread: Ratio of their new to their old distance; above 0.
+        spread: Ratio of new to old distance of the fingers; above 0.
     """
 
     x: float

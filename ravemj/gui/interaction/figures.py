@@ -18,10 +18,10 @@ _FRAME, _AXIS, _CONTACT = 0.08, 0.12, 0.012
 """Lengths of the axes of frames and joints, and the radius of contacts [radii of the scene]."""
 
 _FORCE, _LONGEST_FORCE = 0.15, 1.0
-"""Length of an arrow for a force as large as the mean weight of a link, and the longest arrow [radii of the scene]."""
+"""Length of the arrow for a force equal to the mean weight of a link, and maximum length [radii of the scene]."""
 
 _SMALLEST_MASS = 1e-9
-"""Links of a smaller mass have no inertia ellipsoid [kg]."""
+"""Minimum mass of links with an inertia ellipsoid [kg]."""
 
 _RGB = np.array([[0.85, 0.15, 0.15, 1.0], [0.1, 0.6, 0.15, 1.0], [0.15, 0.3, 0.9, 1.0]])
 _JOINT = np.array([0.95, 0.55, 0.0, 1.0])
@@ -44,7 +44,7 @@ _MOST_LINES = 24
 """Maximum number of lines from the middle of the grid to a side."""
 
 _BELOW = 1e-3
-"""Depth of the lines below z = 0 [radii of the scene]: a floor of the model hides them, without flicker."""
+"""Depth of the lines below z = 0 [radii of the scene], so that a floor of the model hides them without flicker."""
 
 _LINES, _MARKS = (0.62, 0.62, 0.65, 0.5), (0.45, 0.45, 0.5, 0.9)
 _AXIS_WIDTH = 3.0

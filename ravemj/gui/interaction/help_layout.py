@@ -12,7 +12,7 @@ _WIDEST, _TWO_COLUMNS = 900.0, 640.0
 """Maximum width of the help, and minimum width for two columns [points]."""
 
 _KEY_WIDTH, _SHORT = 58.0, 8
-"""Column of the descriptions [points], and maximum length of keys that have the description beside them [letters]."""
+"""Column of descriptions [points], and maximum length of keys with a description beside them [letters]."""
 
 _LETTER = 6.4
 """Mean width of a letter in running text [points]."""
@@ -30,7 +30,7 @@ class _Text(NamedTuple):
 
 
 class HelpLayout(NamedTuple):
-    """Rectangle of the help, its largest possible first row, and its panels."""
+    """Rectangle of the help, its maximum first row, and its panels."""
 
     rect: Rect
     last_row: int
@@ -38,7 +38,7 @@ class HelpLayout(NamedTuple):
 
 
 def help_layout(size: tuple[int, int], first_row: int) -> HelpLayout:
-    """Lay out the help for a view of a size [points], scrolled to a first row."""
+    """Return the layout of the help for a view of a size [points], scrolled to ``first_row``."""
     width = min(_WIDEST, size[0] - 2 * _MARGIN)
     columns = 2 if width >= _TWO_COLUMNS else 1
     column_width = (width - 2 * _PADDING) / columns

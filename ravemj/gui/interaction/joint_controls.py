@@ -13,10 +13,10 @@ from ravemj.gui.interaction.joint_handle import joint_and_axis
 from ravemj.model.limits import clamp
 
 _WIDEST = {True: (1.0, "m"), False: (math.pi, "rad")}
-"""Half the range of a slider whose joint limits are much wider, and the unit; by whether the axis is prismatic."""
+"""Half the slider range of joints with much wider limits, and the unit, by whether the axis is prismatic."""
 
 _MUCH = 4.0
-"""Joint limits wider by this factor count as much wider."""
+"""Factor of ``_WIDEST`` above which joint limits are much wider."""
 
 
 _TOOLS = (
@@ -36,7 +36,7 @@ def controls(body: BodyState, *, in_degrees: bool) -> list[Control]:
 
 
 def sweep_control(body: BodyState, dof: int, *, in_degrees: bool) -> Control:
-    """Return a slider for the free joint of a redundant arm, which moves while the hand stays."""
+    """Return a slider for the redundant joint of an arm, which moves while the hand stays."""
     slider = _slider(body, dof, float(body.kinematics.values()[dof]), in_degrees=in_degrees)
     return replace(slider, name="sweep", label=f"{slider.label}, hand stays")
 

@@ -36,9 +36,9 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 49)
 
 
 def driving_dof(body: KinBody, link: int) -> int | None:
-    """Return the first DOF of the joint that moves a link: its parent joint, above welds the next moving one.
+    """Return the first DOF of the joint that moves a link: its parent joint, or above welds the next moving one.
 
-    For a mimic joint it is the first joint that it follows. None if no joint moves the link.
+    For a mimic joint it is the first DOF that it follows. None if no joint moves the link.
     """
     joints = body.all_joints
     for index in joints_above(body, link):
@@ -120,7 +120,7 @@ def _strip(points: Floats) -> Primitives:
 
 
 def joint_frame(body: BodyState, dof: int) -> tuple[Joint, Floats]:
-    """Return the joint of a DOF and the frame of its axis in the world, 4x4: z along the axis, x fixed to the child."""
+    """Return the joint of a DOF and its axis's frame in the world, 4x4: z along the axis, x fixed to the child."""
     joint, axis = joint_and_axis(body, dof)
     values = body.kinematics.values()[dof - axis :].tolist()
     T_world_parent, T_world_child = (body.link_transform(link) for link in (joint.parent, joint.child))

@@ -19,7 +19,7 @@ _LENS: _Rgba = (0.2, 0.3, 0.5, 1.0)
 
 
 class Rect(NamedTuple):
-    """A rectangle; x and y are its top left corner [points]."""
+    """A rectangle; x and y are those of its top left corner [points]."""
 
     x: float
     y: float
@@ -38,7 +38,7 @@ class Panel(NamedTuple):
         rect: The rectangle.
         rgba: Its colour, in 0..1; if the opacity is 0, only the text is drawn.
         text: Text in its centre.
-        is_left: Whether the text is left-aligned instead.
+        is_left: Whether the text is left-aligned instead of centred.
         text_rgb: Colour of the text, in 0..255.
     """
 
@@ -50,7 +50,7 @@ class Panel(NamedTuple):
 
 
 class ViewButton(Enum):
-    """A mode button or a camera wheel; the values are the displayed names."""
+    """A mode button or a camera wheel; the values are displayed names."""
 
     INTERACT = "Interaction mode"
     CAMERA = "Camera mode"

@@ -20,7 +20,7 @@ SIDES = {
     "above": (0.0, 0.0, -1.0),
     "below": (0.0, 0.0, 1.0),
 }
-"""The viewing directions of six views. Robots look along +x, so the one from the front looks along -x."""
+"""Viewing directions of six views. Robots face along +x, so the front view looks along -x."""
 
 Sphere = tuple[Floats, float]
 """Centre [m], shape (3,), and radius [m] of a sphere."""
@@ -54,7 +54,7 @@ class Navigation:
         return self._view, self._glide
 
     def scene_sphere(self) -> Sphere:
-        """Return the bounding sphere of the scene; the last known one while others hold the lock."""
+        """Return the bounding sphere of the scene; the last known one while other threads hold the lock."""
         with self._simulation.lock.attempt(0) as is_free:
             if is_free:
                 compiled = self._simulation.compiled()
@@ -97,7 +97,7 @@ class Navigation:
         self._glide = _Glide(start)
 
     def focused(self) -> Viewpoint:
-        """Return the viewpoint with a focus; if none was set, at the depth of the scene's centre."""
+        """Return the viewpoint with a focus; by default at the depth of the scene's centre."""
         if self.view.distance > 0:
             return self.view
         center, radius = self.scene_sphere()
@@ -120,5 +120,5 @@ class Navigation:
         return True
 
     def fit(self, sphere: Sphere | None = None) -> None:
-        """Start a transition to a viewpoint that a sphere just fits into; None: the bounding sphere of the scene."""
+        """Start a transition to a viewpoint into which a sphere just fits, by default the scene's bounding sphere."""
         self._glide_to(self.view.fitted(*(sphere or self.scene_sphere())))

@@ -26,7 +26,7 @@ class Overlay(NamedTuple):
         primitives: Drawings in the world.
         lines: Lines of text in the top left corner.
         panels: Buttons, wheels and sliders, for a shell without controls of its own.
-        controls: Buttons and sliders as plain data, apart from mode buttons and wheels.
+        controls: Buttons and sliders as plain data, except for mode buttons and wheels.
         labels: Texts in the world.
         help: Sections of the help while it is open.
         tree: Rows of the tree of bodies, links and joints while it is open.

@@ -16,10 +16,10 @@ class Hit:
 
     Attributes:
         body: The body.
-        link: Index of its link.
+        link: Index of the link.
         position: The point, in the world [m], shape (3,).
-        normal: Unit normal of the surface, outwards, shape (3,).
-        distance: Its distance from the eye [m].
+        normal: Outward unit normal of the surface, shape (3,).
+        distance: Distance of the point from the eye [m].
     """
 
     body: BodyState

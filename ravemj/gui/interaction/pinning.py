@@ -1,4 +1,4 @@
-"""Inverse-kinematics drags with pinned links: the rest of the body moves, its base included."""
+"""Inverse-kinematics drags with pinned links: the rest of the body, including its base, moves."""
 
 from collections.abc import Sequence
 
@@ -20,13 +20,13 @@ _STEPS, _LONGEST = 40, 0.3
 """Maximum number of steps per pointer move, and maximum length of a step [rad or m]."""
 
 _PULL, _STAY = 0.1, 1e-6
-"""Weights of the dragged point and of the posture task, beside 1 for a pinned link."""
+"""Weights of the dragged point and of the posture task, relative to 1 for a pinned link."""
 
 _NEAR = 2e-3
 """Distance from the pointer at which the drag has converged [m]."""
 
 _TOLD = 1.5
-"""Duration of the message that names the pins or limits in the way [s]."""
+"""Duration of the message that names blocking pins or limits [s]."""
 
 
 class PinnedReach(Reach):
@@ -43,7 +43,7 @@ class PinnedReach(Reach):
             point: The grabbed point, in the world [m], shape (3,).
             normal: Normal of the drag plane, unit vector, shape (3,).
             pins: Indices of the pinned links.
-            notices: Receives the message about the constraints that yield.
+            notices: Receives the message about blocking pins or limits.
         """
         self.body, self.link = body, link
         self._point, self._normal, self._notices = point, normal, notices
@@ -96,5 +96,5 @@ class PinnedReach(Reach):
                     self._notices.say(line, _TOLD)
 
     def ghosts(self) -> Primitives:
-        """Return no drawings, since there are infinitely many other solutions."""
+        """Return no drawings, since the other solutions are infinitely many."""
         return NOTHING

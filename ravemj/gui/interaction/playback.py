@@ -10,10 +10,10 @@ STEP = 1 / 30
 """Time step of ``step`` [s]: one frame of a video."""
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
-"""Speeds that the button cycles through; scripts may set any other."""
+"""Speeds through which the button cycles; scripts may set any other."""
 
 _LONGEST_PAUSE = 0.5
-"""Largest time step between two frames [s]; if drawing or a script takes longer, the motion is delayed."""
+"""Maximum time step between two frames [s]; if drawing or a script takes longer, the motion is delayed."""
 
 
 class Playback:

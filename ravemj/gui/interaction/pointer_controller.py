@@ -157,7 +157,7 @@ class PointerController:
                 return True
 
     def _needs_controls_or_bodies(self, event: Event) -> bool:
-        """Return whether an event may concern a body or a control, judged by the event and the controller alone."""
+        """Return whether an event may concern a body or a control, based on the event and the controller alone."""
         match event:
             case Press():
                 return self.needs_bodies(event)

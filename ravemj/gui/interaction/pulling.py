@@ -29,7 +29,7 @@ class Pulling:
         physics.spring = self._spring
 
     def follow(self, normal: Floats) -> Follow:
-        """Return the drag callback that moves the spring's end in the plane with a normal (unit vector, shape (3,))."""
+        """Return the drag callback that moves the spring's end in the plane with ``normal``, a unit vector (3,)."""
         spring, start = self._spring, self._spring.goal
 
         def follow(ray: ViewRay) -> None:

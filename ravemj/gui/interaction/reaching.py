@@ -1,4 +1,4 @@
-"""Dragging links by inverse kinematics."""
+"""Drags of links by inverse kinematics."""
 
 import math
 
@@ -19,7 +19,7 @@ from ravemj.model.manipulators import chain
 from ravemj.model.scene import KinBody, Manipulator
 
 _TURNING = 0.03
-"""Weight of the orientation error [1/rad] beside a position error of the arm's length: position has priority."""
+"""Weight of the orientation error [1/rad] relative to a position error of the arm's length: position has priority."""
 
 _WEIGHTS = np.array([1.0, 1.0, 1.0, _TURNING, _TURNING, _TURNING])
 _SWEEP = 0.08
@@ -32,10 +32,10 @@ _CLOSE = 1e-4
 """Tolerance of the joint value [rad or m]."""
 
 _STUCK = 0.1
-"""A step that moves the joint by a smaller fraction of its length shows that limits of other joints stop the arm."""
+"""Fraction of a step below which the motion of the redundant joint shows that other joints' limits stop the arm."""
 
 _SAME = 0.05
-"""Solutions whose joint values all differ by less [rad or m] are drawn once."""
+"""Maximum difference of joint values [rad or m] of solutions that are drawn as one."""
 
 _GHOST = np.array([0.3, 0.4, 0.75, 0.75])
 _WIDTH = 6.0
@@ -61,7 +61,7 @@ class Reach:
             normal: Normal of the drag plane, unit vector, shape (3,).
 
         Raises:
-            ValueError: no joints move the link, or one of them follows others or is spherical; the message says so.
+            ValueError: no joints move the link, or one of them is a mimic or spherical joint; the message says so.
         """
         self.body, self.link = body, link
         self._point, self._normal = point, normal
@@ -190,7 +190,7 @@ def _arm_to(body: KinBody, base: int, link: int, place: Floats) -> Manipulator:
 
 
 def _root_of(body: KinBody, link: int) -> int:
-    """Return the first link of the joint chain that leads to a link."""
+    """Return the first link of the joint chain to a link."""
     above = {joint.child: joint.parent for joint in body.all_joints if joint.places_child}
     while link in above:
         link = above[link]

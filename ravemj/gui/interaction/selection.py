@@ -1,4 +1,4 @@
-"""The selection, and its handles: selecting by clicks, and starting drags."""
+"""The selection and its handles: selection by clicks, and start of drags."""
 
 import math
 from collections.abc import Callable
@@ -69,7 +69,7 @@ class Selector:
         self.pins = Pins(simulation)
 
     def drop_removed(self) -> bool:
-        """Clear the selection if its body was removed from the environment; return whether that was so."""
+        """Clear the selection if its body was removed from the environment; return whether it was cleared."""
         is_gone = self.selection is not None and not self.simulation.holds(self.selection.body)
         if is_gone:
             self.selection = None
@@ -98,7 +98,7 @@ class Selector:
             self.selection = self._selection(hit) if self._may_select(hit, ray) else None
 
     def choose(self, view: Viewpoint, body: BodyState, link: int) -> None:
-        """Select a body by one of its links; clear the selection if this link is selected already."""
+        """Select a body by one of its links; clear the selection if the link is already selected."""
         self.changes += 1
         old = self.selection
         is_again = old is not None and old.dof is None and old.body is body and old.link == link
@@ -106,7 +106,7 @@ class Selector:
         self.selection = self._selection(hit) if not is_again and self._may_select(hit, ray) else None
 
     def choose_joint(self, view: Viewpoint, body: BodyState, number: int) -> None:
-        """Select a joint by its index among all joints; if it is selected already, its next axis."""
+        """Select a joint by its index among all joints; if it is already selected, select its next axis."""
         self.changes += 1
         joint = body.scene.all_joints[number]
         is_active = number < len(body.scene.joints) and not joint.static
@@ -114,7 +114,7 @@ class Selector:
         self._select_joint(*self._aimed(view, body, joint.child), dof)
 
     def _aimed(self, view: Viewpoint, body: BodyState, link: int) -> tuple[Hit, ViewRay]:
-        """Return a visible point of a link and the ray to it; if the link is hidden, its centre."""
+        """Return a visible point of a link, else its centre, and the ray to it."""
         box = visible_box(body, [link], np.eye(4))
         center = body.link_transform(link)[:3, 3] if box is None else box.center
         way = center - view.camera.position
@@ -135,7 +135,7 @@ class Selector:
             self.selection = replace(self._selection(hit), dof=self._next_axis(hit.body, dof))
 
     def _next_axis(self, body: BodyState, first: int) -> int:
-        """Return the next axis of a joint if it is selected already, else its first one."""
+        """Return the next DOF of a joint if it is already selected, else its first one."""
         old = self.selection
         joint, _ = joint_and_axis(body, first)
         number = -1
@@ -245,7 +245,7 @@ class Selector:
         return pins if shown is None else merge([pins, shown.primitives()])
 
     def toggle_pin(self, hit: Hit | None = None) -> None:
-        """Pin or unpin a link: the one that was hit, else the selected one."""
+        """Pin or unpin the hit link, by default the selected link."""
         chosen = self.selection if hit is None else hit
         if chosen is None:
             self._notices.say("Point at a link, or select one, to pin it")
@@ -286,7 +286,7 @@ def point_line(body: BodyState, link: int, position: Floats, normal: Floats) -> 
 
 
 def _joint_line(body: BodyState, dof: int) -> str:
-    """Return the name of a joint, the index and the value of one of its DOFs, in rad and degrees or in m, as text."""
+    """Return as text the name of a joint, and the index and the value of one of its DOFs, in rad and degrees or m."""
     joint, axis = joint_and_axis(body, dof)
     value = float(body.kinematics.values()[dof])
     shown = f"{value:z.3f} m" if joint.slides(axis) else f"{value:z.3f} rad, {math.degrees(value):z.1f} deg"

@@ -1,4 +1,4 @@
-"""Table of pointer gestures and keyboard shortcuts, for the keys, the menus, the help and the manual."""
+"""Table of pointer gestures and keyboard shortcuts, for keys, menus, help and the manual."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -115,7 +115,7 @@ GESTURES = {
         ),
     ),
 }
-"""Gestures by mode: those of OpenRAVE's tutorial, and further ones."""
+"""Gestures by mode: those of OpenRAVE's tutorial, and additional ones."""
 
 TOUCH = "Touch screen"
 TOUCH_GESTURES = (

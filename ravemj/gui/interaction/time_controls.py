@@ -18,9 +18,9 @@ _MEASURED = 0.5
 
 
 class TimeControls:
-    """Two rows of controls: one if there is a motion, one if there is simulation time to control.
+    """Two rows of controls: one if there is a motion, one if simulation time can be controlled.
 
-    The caller of the methods holds the simulation's lock.
+    Callers of its methods hold the simulation's lock.
 
     Attributes:
         playback: Playback of the motion.
@@ -91,7 +91,7 @@ class TimeControls:
         ]
 
     def operate(self, name: str, value: float) -> bool:
-        """Press a button or set a slider; return False for other controls."""
+        """Press a button or set a slider; return False if it is not one of these controls."""
         has_motion = self.playback.duration > 0
         if not has_motion:
             name = _OF_TIME.get(name, name)
@@ -149,5 +149,5 @@ class TimeControls:
 
 
 def _after(speed: float) -> float:
-    """Return the next speed of the button; after the fastest, the slowest."""
+    """Return the next speed of the button; the slowest follows the fastest."""
     return next((other for other in SPEEDS if other > speed), SPEEDS[0])

@@ -15,13 +15,13 @@ _NEAREST, _FARTHEST = 1e-3, 1e6
 """Bounds of the focus distance under zooming [m]."""
 
 _STRONGEST = 10.0
-"""Largest natural logarithm of a zoom factor."""
+"""Maximum absolute natural logarithm of a zoom factor."""
 
 _STRAIGHT = 1e-6
 """Sine of the angle between viewing direction and world z below which the upright direction is undefined."""
 
 _ZOOM = 4.0
-"""Natural logarithm of the zoom factor of a drag over the height of the view."""
+"""Natural logarithm of the zoom factor for a drag over the height of the view."""
 
 
 class ViewRay(NamedTuple):
@@ -86,7 +86,7 @@ class Viewpoint:
         return self._placed(self.camera.rotation, center, distance)
 
     def along(self, direction: tuple[float, float, float]) -> "Viewpoint":
-        """Return the viewpoint along a direction of the world, with z upright, for vertical directions y."""
+        """Return the viewpoint along a direction of the world with z upright, or y for vertical directions."""
         z = np.array(direction)
         up = np.array((0.0, 1.0, 0.0) if direction[2] else (0.0, 0.0, 1.0))
         x = np.cross(z, up)
@@ -110,7 +110,7 @@ class Viewpoint:
         return self._placed(self.camera.rotation, focus, self.distance)
 
     def zoomed(self, power: float) -> "Viewpoint":
-        """Zoom: multiply the focus distance by ``exp(power)``."""
+        """Multiply the focus distance by ``exp(power)``."""
         factor = math.exp(min(max(power, -_STRONGEST), _STRONGEST))
         distance = min(max(self.distance * factor, _NEAREST), _FARTHEST)
         return self._placed(self.camera.rotation, self.focus, distance)
@@ -132,7 +132,7 @@ class Viewpoint:
         return self.zoomed(-math.log(fingers.spread)).shifted(right, down)
 
     def centred(self, point: Floats) -> "Viewpoint":
-        """Make a point the focus, and halve the distance; the camera does not roll."""
+        """Make a point the focus, and halve its distance; the camera does not roll."""
         towards = point - self.camera.position
         length = float(np.linalg.norm(towards))
         forward = self.camera.rotation[:, 2]

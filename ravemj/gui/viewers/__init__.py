@@ -16,13 +16,13 @@ from ravemj.gui.viewers.viewer import Viewer
 __all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
 
 VIEWERS = ("window", "web", "qtcoin", "qtosg", "qtogre", "offscreen")
-"""Names of viewers: ravemj's own, and OpenRAVE's, which its scripts request."""
+"""Names of viewers: ravemj's own, and OpenRAVE's, which scripts for OpenRAVE use."""
 
 _LOG = logging.getLogger("ravemj")
 
 
 def has_display() -> bool:
-    """Return whether a window could be opened from here."""
+    """Return whether a window can be opened in this process."""
     if sys.platform == "darwin":  # GLFW requires the main thread on macOS
         return False
     return sys.platform == "win32" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
@@ -31,8 +31,8 @@ def has_display() -> bool:
 def open_viewer(simulation: Simulation, renderer: SimulationRenderer, name: str, show: bool) -> Viewer | None:
     """Open a viewer by a name of ``VIEWERS``; its kind is logged.
 
-    ``window``, ``web`` (a page in a browser) and ``offscreen`` are exact; OpenRAVE's names select the best of these
-    that works on this machine. For an unknown name, None is returned and an error is logged.
+    ``window``, ``web`` (a page in a browser) and ``offscreen`` select this kind; OpenRAVE's names select the best kind
+    that works on this machine. For an unknown name, an error is logged and None is returned.
     """
     if name not in VIEWERS:
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))

@@ -1,4 +1,4 @@
-"""Files dropped on a window or a page: they are added to the environment."""
+"""Files dropped on a window or a page, which are added to the environment."""
 
 import logging
 import os
@@ -34,8 +34,8 @@ def add_files(
 
     Args:
         env: The environment; None if it no longer exists.
-        paths: Files, folders and zip archives. If there are models among them, meshes and pictures count as their
-            parts and are not added themselves.
+        paths: Files, folders and zip archives. If there are models among them, meshes and pictures are treated as
+            their parts and not added themselves.
         notices: Receives messages about added files and errors.
         at_end: Called at the end.
     """
@@ -72,7 +72,7 @@ def _unpacked(path: str, folder: str) -> str:
     """Unpack a zip archive and return the new folder; return the path of any other file or folder unchanged.
 
     Raises:
-        SourceError: the archive is damaged or too large, or has names that lead out of it.
+        SourceError: the archive is damaged or too large, or has names outside of the folder.
     """
     if not path.lower().endswith(".zip"):
         return path

@@ -13,7 +13,7 @@ _is_used = False
 _is_fork = False  # of a process that has opened windows
 
 _dispatching = threading.Lock()
-"""Held while GLFW dispatches events: all windows share one queue, and each has its own thread."""
+"""Lock held while GLFW dispatches events: all windows share one queue, and each has its own thread."""
 
 
 _FRAME = 40
@@ -21,11 +21,11 @@ _FRAME = 40
 
 
 class GlfwWindow:
-    """A window with an OpenGL context; all of its methods belong to one thread.
+    """A window with an OpenGL context; all of its methods must be called in one thread.
 
     Attributes:
-        events: Input events since the list was last emptied.
-        dropped: Paths of files dropped on it since the list was last emptied.
+        events: Input events; the user of the window clears the list.
+        dropped: Paths of files dropped on it; the user of the window clears the list.
         size: Width and height, in units of the screen.
         pixels: Width and height of the framebuffer [pixels]; 0 while the window is minimised.
         pixel_ratio: Pixels per point: 1, or more on high-density screens.
@@ -187,7 +187,7 @@ class GlfwWindow:
         getattr(self._glfw, function)(self._window, *arguments)
 
     def set_background(self, rgb: tuple[int, int, int]) -> None:
-        """Set the colour (0..255) of newly exposed areas of an enlarged window, until they are drawn."""
+        """Set the colour (0..255) that newly exposed areas of an enlarged window have until they are drawn."""
         if rgb != self._rgb and self._x is not None:
             self._x.keep_picture(self._glfw.get_x11_window(self._window), rgb)
         self._rgb = rgb

@@ -20,7 +20,7 @@ Callback = Callable[..., object]
 
 
 class Callbacks:
-    """Callbacks of one event, each active while its handle exists."""
+    """Callbacks for one event, each active while its handle exists."""
 
     def __init__(self) -> None:
         self._functions: dict[int, Callback] = {}
@@ -70,7 +70,7 @@ class Interactive(ApiObject):
         self.interaction = Interaction.first_view(simulation, camera, size, self._may_select)
 
     def announce(self) -> None:
-        """Announce the address of the viewer, once it belongs to an environment; windows need no announcement."""
+        """Show the address of the viewer, after it is added to an environment; windows have none."""
 
     def GetEnv(self) -> Any:  # noqa: ANN401 - the API stands above viewers
         """Return the environment of the viewer."""
@@ -86,7 +86,7 @@ class Interactive(ApiObject):
         return None if selection is None or env is None else env.wrap(selection.body)
 
     def GetSelectedLink(self) -> Any:  # noqa: ANN401 - the API stands above viewers
-        """Return the link that was clicked for the selection; None without a selection."""
+        """Return the clicked link of the selection; None without a selection."""
         selection, body = self.interaction.selection, self.GetSelectedBody()
         return None if selection is None or body is None else body.GetLinks()[selection.link]
 

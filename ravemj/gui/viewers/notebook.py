@@ -48,7 +48,7 @@ def mimebundle(url: str, picture: Frame | None, still: Callable[[], str]) -> dic
 
     Args:
         url: Address of the page.
-        picture: The current picture of the viewer; None if no renderer works here.
+        picture: The current picture of the viewer; None if no renderer works on this machine.
         still: Returns the scene as self-contained HTML, for browsers that cannot reach this machine's ports.
     """
     port, path = url.split("/", 3)[2].rpartition(":")[2], url.split("/", 3)[3]

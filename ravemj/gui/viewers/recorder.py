@@ -20,13 +20,13 @@ from ravemj.gui.viewers.sharpness import bounded_size
 
 _FPS = 30
 _LONGEST_END = 5.0
-"""Maximum time that closing a viewer waits for files being written [s]."""
+"""Maximum time that closing a viewer waits for unfinished files [s]."""
 
 _LOG = logging.getLogger("ravemj")
 
 
 class FrameSource:
-    """Renders the frames of a view. It holds the view weakly, so that a closed view can be freed."""
+    """Renderer of the frames of a view, with a weak reference, so that a closed view can be freed."""
 
     def __init__(self, interaction: Interaction, renderer: SimulationRenderer, look: Look, ratio: float = 1.0) -> None:
         """Render a view with a look; ``ratio`` is the number of pixels per point."""
@@ -54,10 +54,10 @@ class FrameSource:
 class Recorder:
     """Saves pictures and videos of a viewer, and reports the paths in its notices.
 
-    If there is a motion, a video covers it from start to end at the playback speed, with every frame exact, however
-    long drawing takes. Otherwise it records in real time until it is stopped.
+    If there is a motion, a video covers it from start to end at the playback speed with exact frame times, however long
+    drawing takes. Otherwise it records in real time until it is stopped.
 
-    It has no reference to the simulation, so that files can be completed after the viewer is gone.
+    It has no reference to the simulation, so that files can be completed after the viewer is deleted.
     """
 
     def __init__(self, notices: Notices, clock: Callable[[], float] = time.monotonic) -> None:

@@ -1,4 +1,4 @@
-"""The base class of viewers, which is also the offscreen viewer."""
+"""Base class of viewers, which is also the offscreen viewer."""
 
 import contextlib
 import math
@@ -32,7 +32,7 @@ _FIGURES = "SetFiguresInCamera"
 _LARGEST_TEXT = 200  # points that letters are high; larger ones would fill the window
 
 LOCKED, PATIENCE = "Locked by the script", 1.0
-"""Text in a window or page, once a script has held the environment's lock for this time [s]."""
+"""Text in a window or page, shown after a script has held the environment's lock for this time [s]."""
 
 
 class Viewer(Interactive):
@@ -73,11 +73,11 @@ class Viewer(Interactive):
         self._ended.set()
 
     def GetXMLId(self) -> str:
-        """Return the name that ``SetViewer`` was given."""
+        """Return the name passed to ``SetViewer``."""
         return self._name
 
     def GetName(self) -> str:
-        """Return the viewer's title; its default is the name that ``SetViewer`` was given."""
+        """Return the viewer's title, by default the name passed to ``SetViewer``."""
         return self._title
 
     def SetName(self, title: str) -> None:
@@ -106,7 +106,7 @@ class Viewer(Interactive):
             height: Rows [pixels].
 
         Raises:
-            ArgumentError: a size is no number from 1 to 16384.
+            ArgumentError: a size is not a number from 1 to 16384.
         """
         self._size = size = _checked_size(width, height, "SetSize")
         self.interaction.handle(Resize(*size))
@@ -138,7 +138,7 @@ class Viewer(Interactive):
             size: Height of the letters [points].
 
         Raises:
-            ArgumentError: this is no number from 1 to 200.
+            ArgumentError: ``size`` is not a number from 1 to 200.
         """
         (height,) = checked_vector([size], 1, "SetTextSize").tolist()
         if not 1 <= height <= _LARGEST_TEXT:
@@ -146,7 +146,7 @@ class Viewer(Interactive):
         self.interaction.controls.notices.text_size = height
 
     def SetUserText(self, userText: str) -> None:
-        """Show a text in the corner; it replaces the previous one.
+        """Show a text in the corner, in place of the previous one.
 
         Args:
             userText: The text; an empty one removes it.
@@ -159,7 +159,7 @@ class Viewer(Interactive):
             notices.say(line, math.inf)
 
     def RegisterCallback(self, properties: object, callback: Callback) -> Handle:
-        """Return a handle of a registered callback; the deprecated form of ``RegisterItemSelectionCallback``.
+        """Return a handle of a registered callback; deprecated form of ``RegisterItemSelectionCallback``.
 
         Args:
             properties: Not used.
@@ -191,7 +191,7 @@ class Viewer(Interactive):
 
     @property
     def is_open(self) -> bool:
-        """Whether it has a window or a page server that is not closed."""
+        """Whether its window or page server is open."""
         return not self._ended.is_set()
 
     def quitmainloop(self) -> None:
@@ -207,10 +207,10 @@ class Viewer(Interactive):
             callback: The function, without arguments.
 
         Returns:
-            A handle; the function is forgotten when it is closed or dropped.
+            A handle; closing or dropping it unregisters the function.
 
         Raises:
-            ArgumentError: this cannot be called.
+            ArgumentError: ``callback`` is not callable.
         """
         return self._thread_callbacks.add(callback)
 
@@ -221,15 +221,15 @@ class Viewer(Interactive):
             callback: The function; its argument is the picture, (height, width, 3), uint8.
 
         Returns:
-            A handle; the function is forgotten when it is closed or dropped.
+            A handle; closing or dropping it unregisters the function.
 
         Raises:
-            ArgumentError: this cannot be called.
+            ArgumentError: ``callback`` is not callable.
         """
         return self._image_callbacks.add(callback)
 
     def SupportsCommand(self, cmd: str) -> bool:
-        """Return whether ``SendCommand`` knows a command.
+        """Return whether ``SendCommand`` supports a command.
 
         Args:
             cmd: Its name.
@@ -241,14 +241,14 @@ class Viewer(Interactive):
 
         Args:
             cmd: Name and arguments. ``SetFiguresInCamera 1`` includes drawings in pictures of ``GetCameraImage``.
-            releasegil: Without meaning.
-            lockenv: Without meaning.
+            releasegil: Not used.
+            lockenv: Not used.
 
         Returns:
             An empty text.
 
         Raises:
-            openrave_exception: the command is not known (``CommandNotSupported``).
+            openrave_exception: the command is not supported (``CommandNotSupported``).
         """
         del releasegil, lockenv
         name, *arguments = cmd.split() or [""]
@@ -265,7 +265,7 @@ class Viewer(Interactive):
         Args:
             transform: ``T_world_camera``, 4x4 or 3x4, or a pose [w, x, y, z, tx, ty, tz]. z looks forward, x is image
                 right, y is image down. ``GetCameraTransform`` returns the same numbers.
-            focalDistance: Distance [m] of the focus, which the mouse orbits; no effect on pictures. 0 keeps the
+            focalDistance: Distance [m] of the focus, about which the mouse orbits; no effect on pictures. 0 keeps the
                 previous one.
 
         Raises:
@@ -286,7 +286,7 @@ class Viewer(Interactive):
         return self.camera.T_world_camera.copy()
 
     def GetCameraDistanceToFocus(self) -> float:
-        """Return the distance of the focus, which the mouse orbits [m]; 0 before it was set."""
+        """Return the distance of the focus, about which the mouse orbits [m]; 0 if it is not set."""
         return self.interaction.view.distance
 
     def GetCameraIntrinsics(self) -> CameraIntrinsics:
@@ -297,7 +297,7 @@ class Viewer(Interactive):
     def GetCameraImage(self, width: int, height: int, transform: ArrayLike, K: ArrayLike) -> Frame:
         """Render a picture from a given camera; the viewer's own camera does not change.
 
-        Drawings are left out, as in OpenRAVE, until ``SendCommand('SetFiguresInCamera 1')``.
+        Drawings are omitted, as in OpenRAVE, unless ``SendCommand('SetFiguresInCamera 1')`` was called.
 
         Args:
             width: Columns [pixels]; 0: the viewer's.
@@ -373,7 +373,7 @@ class Viewer(Interactive):
         return self._choices.look(self._background)
 
     def choose_look(self, choices: LookChoices) -> None:
-        """Set floor, lights and shadows of the view; only before a window has drawn."""
+        """Set floor, lights and shadows of the view; call it before a window draws."""
         self._choices = choices
 
     def render(
@@ -391,14 +391,14 @@ class Viewer(Interactive):
             width: Columns [pixels]; None: the size of ``SetSize``, by default 640.
             height: Rows [pixels]; None: the size of ``SetSize``, by default 480.
             shadows: Whether lights cast shadows; None: only with OpenGL.
-            floor: ``on`` draws a floor with a grid, ``off`` none, ``auto`` one unless a background was set.
+            floor: ``on`` draws a floor with a grid, ``off`` none, ``auto`` a floor unless a background was set.
             lights: ``studio``, ``model`` (the model's own lights) or ``both``.
 
         Returns:
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
-            ArgumentError: the size is out of range, or ``floor`` or ``lights`` is none of these.
+            ArgumentError: the size is out of range, or ``floor`` or ``lights`` has another value.
             RenderingError: no renderer works on this machine.
         """
         form = self._format(width, height, "render")._replace(shadows=shadows is not False)

@@ -1,4 +1,4 @@
-"""The viewer in a window, with its own thread beside the script."""
+"""The viewer in a window, with its own thread."""
 
 import logging
 import re
@@ -28,18 +28,18 @@ _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
 _SLOW = 1.5 * _PERIOD
-"""A frame that takes longer [s] is limited by the processor and not by the screen; then the script gets a turn."""
+"""Drawing time of a frame [s] above which the processor, not the screen, is the limit, and the script gets time."""
 
 _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
 """Largest coordinate on an X screen."""
 
 _running: dict[threading.Thread, tuple[Flag, Flag]] = {}
-"""For each window thread the flag that closes it, and the flag of its end, since Ctrl-C can break ``join``."""
+"""Two flags for each window thread: one closes it, one is set at its end, since Ctrl-C can break ``join``."""
 
 
 class WindowViewer(Viewer):
-    """A viewer in a window; it shows changes immediately, until it is closed or collected."""
+    """A viewer in a window, which shows changes immediately until it is closed or collected."""
 
     _internal = ("open_window", "period", "run_once")
 
@@ -139,11 +139,11 @@ class WindowViewer(Viewer):
 
     @property
     def period(self) -> float:
-        """Time until the next iteration [s], unless there is input before."""
+        """Time until the next iteration [s] if there is no input."""
         return period(time.monotonic() - self._changed_at)
 
     def _handle_view_events(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
-        """Handle the events of the view while others hold the lock; return whether to draw."""
+        """Handle view events while other threads hold the lock; return whether to draw."""
         size = [Resize(*window.points)] if self.interaction.view.size != window.points else []
         window.events = self.interaction.handle_view_events([*size, *window.events])
         self.interaction.advance_view(now)

@@ -1,4 +1,4 @@
-"""Overlay of a window: text and buttons, with a real font."""
+"""Overlay of a window: text and buttons, in an antialiased font."""
 
 import ctypes
 import functools
@@ -19,7 +19,7 @@ _GLASS = (0.09, 0.1, 0.12, 0.82)
 _WHITE, _DARK = (255, 255, 255), (32, 36, 44)
 _HALO = (255, 255, 255)
 _BUTTONS = 60.0
-"""Width that the mode buttons occupy at the right [points]."""
+"""Width of the mode buttons at the right [points]."""
 
 _Rgb = tuple[int, int, int]
 

@@ -1,4 +1,4 @@
-"""Renders a simulation and its overlay into the current OpenGL window."""
+"""Renderer of a simulation and its overlay into the current OpenGL window."""
 
 import time
 from typing import NamedTuple
@@ -39,7 +39,7 @@ def appearance(simulation: Simulation) -> object:
 
 
 class WindowRenderer:
-    """Renders the frames of a window, if anything has changed.
+    """Renders the frames of a window if anything has changed.
 
     Bodies are drawn into a buffer, at an adaptive resolution, and copied into the window. If only texts and buttons
     change, the buffer is reused.
@@ -85,7 +85,7 @@ class WindowRenderer:
         return True
 
     def update_view(self, interaction: Interaction, surface: DrawTarget, line: str, published: Published) -> bool:
-        """Copy the state of the view while others hold the simulation's lock, and show a line about that.
+        """Copy the state of the view while other threads hold the simulation's lock, and show ``line``, which says so.
 
         Bodies keep their last known or published poses.
 

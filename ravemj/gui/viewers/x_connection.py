@@ -1,4 +1,4 @@
-"""The connection to an X server: waiting for events, and surviving its loss."""
+"""Connection to an X server: waits for events, and survives the loss of the server."""
 
 import ctypes
 import select
@@ -28,7 +28,7 @@ class XConnection:
     """An X connection whose loss does not end the process.
 
     Xlib exits the process when the server is lost, as on logout or when ssh loses its network. Since version 1.7 this
-    can be disabled; Xlib's calls have no effect then.
+    can be disabled; Xlib's calls then have no effect.
 
     Attributes:
         is_broken: Whether the connection is lost; no other method may be called then.

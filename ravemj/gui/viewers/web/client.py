@@ -1,4 +1,4 @@
-"""The server side of one page: it handles the page's events, and sends pictures or the geometry to render."""
+"""Server side of one page: handles the page's events, and sends pictures or geometry."""
 
 import base64
 import json
@@ -28,7 +28,7 @@ from ravemj.gui.viewers.window_renderer import appearance
 _LOG = logging.getLogger("ravemj")
 _PERIOD = 1 / 60
 _HALF = 0.5
-"""Largest resolution while moving on slow connections, relative to the view's."""
+"""Maximum resolution while moving on slow connections, relative to the view's."""
 
 _MOST_PIXELS = 1920 * 1440
 _MOST_AT_ONCE = 100
@@ -40,7 +40,7 @@ _Update = Frame | list[str | bytes]
 
 
 class Connection(Protocol):
-    """Connection to a page, as of ``websockets``."""
+    """Protocol of connections to pages, as in ``websockets``."""
 
     def recv(self, timeout: float | None = None) -> str | bytes:
         """Wait for a message."""
@@ -60,7 +60,7 @@ class PageStyle(NamedTuple):
 
 
 def receive(connection: Connection, seconds: float) -> list[str | bytes]:
-    """Return the pending messages of a page; if there are none, wait for some, at most for a time [s]."""
+    """Return the pending messages of a page; if there are none, wait for messages, at most for a time [s]."""
     messages: list[str | bytes] = []
     try:
         messages.append(connection.recv(timeout=seconds))
@@ -77,7 +77,7 @@ class Client:
     Attributes:
         interaction: Interaction and viewpoint of the page.
         chunks: Received chunks of files that were dropped on the page.
-        tab: Name of the view, by which a page that reconnects gets it back.
+        tab: Name of the view; a page that reconnects with this name gets the view again.
         updates: Number of times the page was known to be up to date.
     """
 
@@ -226,7 +226,7 @@ class Client:
         return overlay
 
     def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
-        """Handle the events of the view while others hold the lock; return the update to send, if one is due."""
+        """Handle view events while other threads hold the lock; return the update to send, if one is due."""
         before = self.interaction.view.camera
         self._waiting = deque(self.interaction.handle_view_events(list(self._waiting)))
         self._has_moved |= self.interaction.view.camera is not before
@@ -317,7 +317,7 @@ class Client:
                 connection.send(encoding.as_jpeg(update, pacing.quality))
 
     def _news(self, feed: Feed, stage: Stage, overlay: Overlay, style: PageStyle) -> list[str | bytes]:
-        """Return the messages that bring a page that renders itself up to date."""
+        """Return the messages with all changes for a page that renders itself."""
         labels = [(*label.point.tolist(), label.text) for label in overlay.labels]
         text = {**self._text(overlay, style), "labels": labels, "look": stage.look, "crisp": True}
         return feed.messages(stage, self.interaction.drawn_view, text, self._acknowledged)

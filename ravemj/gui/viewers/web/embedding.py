@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from ravemj.errors import ArgumentError
 
 VARIABLE = "RAVEMJ_EMBED"
-"""Environment variable with further origins, separated by blanks or commas."""
+"""Environment variable with additional origins, separated by blanks or commas."""
 
 _ALWAYS = (
     "'self'",
@@ -45,7 +45,7 @@ def checked_origins(origins: str | Iterable[str], name: str = "embed") -> list[s
 
 
 def origins_of_environment() -> list[str]:
-    """Return the origins that the variable ``RAVEMJ_EMBED`` adds.
+    """Return the origins in the variable ``RAVEMJ_EMBED``.
 
     Raises:
         ArgumentError: one of them is not an origin.

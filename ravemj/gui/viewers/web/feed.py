@@ -3,12 +3,13 @@
 Text messages are JSON objects with the changed fields; ``changed`` has the changed fields of controls, with their
 names. Binary messages begin with their kind, a 32-bit number:
 
-- ``FRAME``: the page draws all updates since the last frame. Then, little endian: the numbers of acknowledged messages,
-  of bodies and of shapes that follow, and whether a camera follows (32 bits each); the camera's
-  position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 if the page must not predict
-  drags (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each;
-  32767 is 1), their indices (32 bits each); the shapes' indices (32 bits each), their colours (4 bytes each).
-- ``DRAWINGS``, ``FIGURES``: the drawings of scripts, and those of the overlay, in the format of ``pack_drawings``.
+- ``FRAME``: the page draws all updates since the last frame. The message continues, little endian: the numbers of
+  acknowledged messages, of the following bodies and of the following shapes, and whether a camera follows (32 bits
+  each); the camera's position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 if the
+  page must not predict drags (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16
+  bits each; 32767 is 1), their indices (32 bits each); the shapes' indices (32 bits each), their colours (4 bytes
+  each). - ``DRAWINGS``, ``FIGURES``: the drawings of scripts, and those of the overlay, in the format of
+  ``pack_drawings``.
 """
 
 import json
@@ -38,7 +39,7 @@ _DIGITS = 6
 """Decimals of positions [m]; smaller movements are not sent."""
 
 _VALUE_DIGITS = 4
-"""Decimals of slider values [rad, m or s]; less than a pixel."""
+"""Decimals of slider values [rad, m or s], finer than a pixel."""
 
 _LEVEL = 1
 """Compression level of drawings: low, since they may change with every frame."""
@@ -50,13 +51,13 @@ class Stage(NamedTuple):
     Attributes:
         scene: The geometry.
         positions: Positions of the scene's bodies in the world, shape (B, 3) [m].
-        rotations: Their quaternions wxyz, scaled by 32767, shape (B, 4).
+        rotations: Quaternions wxyz of the bodies, scaled by 32767, shape (B, 4).
         colours: Red, green, blue and opacity of the shapes, from 0 to 255, shape (S, 4).
         drawings: Drawings of scripts.
         figures: Drawings of the overlay.
         edges: Whether the style is wireframe.
         model: The compiled model, to which the body indices refer.
-        published: Serial number of the last poses that a script has published.
+        published: Serial number of the last poses published by a script.
         look: Background, floor and lights, packed for pages.
     """
 
@@ -116,7 +117,7 @@ class Feed:
         self._acknowledged: int = 0
 
     def messages(self, stage: Stage, view: Viewpoint, text: dict[str, object], acknowledged: int) -> list[str | bytes]:
-        """Return the messages that bring a page up to date; empty if nothing changed."""
+        """Return the messages with all changes since the last ones; empty if nothing changed."""
         messages: list[str | bytes] = []
         text = {**text, "scene": stage.scene.name, "edges": stage.edges}
         said = _changed(self._text, text)
@@ -145,7 +146,7 @@ class Feed:
 
 
 def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
-    """Return the changed fields; if only values of controls changed, ``changed`` has those controls."""
+    """Return the changed fields; if only values of controls changed, ``changed`` contains those controls."""
     said = {name: value for name, value in after.items() if name not in before or before[name] != value}
     old, new = before.get("controls", ()), said.get("controls", ())
     if new and [control.name for control in old] == [control.name for control in new]:

@@ -5,10 +5,10 @@ from collections import deque
 from collections.abc import Callable
 
 _UNDER_WAY = 2
-"""Maximum number of unacknowledged frames: one is drawn here while the previous one is shown there."""
+"""Maximum number of unacknowledged frames, so that one is drawn while the page shows the previous one."""
 
 _SLOW, _FAST = 0.15, 0.05
-"""Round-trip time beyond the quickest one, above which the quality is lowered, and below which it is raised [s]."""
+"""Excess over the minimum round-trip time [s] above which the quality is lowered, and below which it is raised."""
 
 _STALLED = 0.5
 """Round-trip time [s] after which a page counts as stalled, like a hidden tab; scripts do not wait for it."""
@@ -17,11 +17,11 @@ _DROP, _RISE = 0.7, 0.05
 _WORST, _BEST = 25, 85
 _GOOD, _HALF = 0.5, 0.4
 _FORGETTING = 1.02
-"""Growth of the quickest round-trip time per frame, so that the estimate follows a connection that becomes slower."""
+"""Growth of the minimum round-trip time per frame, so that the estimate follows a connection that becomes slower."""
 
 
 class ConnectionPacing:
-    """Pacing of the frames of one page, by the round-trip times of earlier ones."""
+    """Pacing of the frames of one page, by the round-trip times of earlier frames."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -56,7 +56,7 @@ class ConnectionPacing:
         return self._level < _HALF
 
     def sent(self, *, is_moving: bool) -> None:
-        """Record that a frame was sent; the times of still pictures (``is_moving`` False) do not count."""
+        """Record that a frame was sent; the times of still pictures (``is_moving`` False) are not measured."""
         self._sent.append((self._clock(), is_moving))
 
     def shown(self) -> None:

@@ -32,9 +32,9 @@ class _PeerRecord:
 class Guesses:
     """Counts the wrong secrets of each peer within the last minute.
 
-    After 20 wrong secrets further wrong ones of a peer are refused. After 20 *different* ones the peer may be guessing,
-    and all its requests are refused, since accepting the right secret would complete the search. An old page that
-    repeats one wrong secret locks nobody out, even behind a proxy, which makes all browsers one peer.
+    After 20 wrong secrets, further wrong secrets of a peer are refused. After 20 *different* ones the peer may be
+    guessing, and all its requests are refused, since accepting the right secret would complete the search. An old page
+    that repeats one wrong secret locks nobody out, even behind a proxy, where all browsers are one peer.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:

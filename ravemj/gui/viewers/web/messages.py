@@ -1,4 +1,4 @@
-"""Messages of pages: JSON objects of a few kinds, validated when they are parsed."""
+"""Messages of pages: JSON objects of a few kinds, validated during parsing."""
 
 import base64
 import json
@@ -35,11 +35,11 @@ _LARGEST = 8192
 _LONGEST_NAME = 20
 _MOST_BRACKETS = 8
 _FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
-"""Permitted names of uploaded files; none leads to another folder."""
+"""Pattern of permitted names of uploaded files; none of them names another folder."""
 
 _DEEPEST = 10  # maximum depth of folders of an uploaded file
 _MOST_BYTES = 255
-"""Longest file name of most file systems [bytes]; longer names are cut before their suffix."""
+"""Maximum length of file names on most file systems [bytes]; longer names are cut before their suffix."""
 
 _LONGEST_SUFFIX = 20
 
@@ -57,7 +57,7 @@ class Ready(NamedTuple):
 
 
 class UploadChunk(NamedTuple):
-    """A chunk of an uploaded file; after the last chunk all files of the upload are complete."""
+    """A chunk of an uploaded file; with the last chunk all files of the upload are complete."""
 
     name: str
     data: bytes
@@ -77,7 +77,7 @@ def parse(text: str | bytes) -> Message:
     """Parse a message.
 
     Raises:
-        ValueError: its kind is unknown, or a value is invalid; the text is one of a fixed set.
+        ValueError: its kind is unknown, or a value is invalid; the error text is one of a fixed set.
     """
     try:
         text = text if isinstance(text, str) else text.decode()
@@ -192,7 +192,7 @@ class Rejections:
         self._known: set[str] = set()
 
     def __call__(self, kind: str, detail: object = "") -> None:
-        """Log a kind of problem, a fixed text, with the beginning of the message; each kind once."""
+        """Log a kind of problem, a fixed text, with the beginning of the message; each kind is logged once."""
         if kind not in self._known:
             self._known.add(kind)
             _LOG.warning("viewer's page: %s%s (further cases are not logged)", kind, detail and f": {detail!r:.80}")

@@ -1,4 +1,4 @@
-"""The geometry for pages that render it themselves, packed once for all pages of a viewer."""
+"""Geometry for pages that render it themselves, packed once for all pages of a viewer."""
 
 import hashlib
 import threading
@@ -17,7 +17,7 @@ PREFIX = "scene-"
 """Prefix of scene names in URLs."""
 
 _MOST = 8
-"""Maximum number of cached scenes, of the latest models and styles."""
+"""Maximum number of cached scenes, which are the latest models and styles."""
 
 _LEVEL = 6
 

@@ -121,7 +121,7 @@ class PageServer:
         return f"{scheme}://{name}:{self.port}/{self.token}/"
 
     def allow_embedding(self, origins: str | Iterable[str]) -> None:
-        """Permit further origins to embed the page.
+        """Permit additional origins to embed the page.
 
         Raises:
             ArgumentError: one of them is not an origin.
@@ -129,7 +129,7 @@ class PageServer:
         self._origins += checked_origins(origins)
 
     def close(self) -> None:
-        """Stop listening, and wait briefly for the pages to disconnect. Hanging threads do not keep Python alive."""
+        """Stop listening, and wait briefly for the pages to disconnect. Blocked threads do not keep Python alive."""
         self.closed.set()
         if self._may_stop.acquire(blocking=False):
             self._stop_listening()
@@ -243,7 +243,7 @@ class PageServer:
         return self._any_name or host in {f"{_bracketed(name)}:{self.port}" for name in _LOCAL_NAMES}
 
     def _is_our_page(self, origin: str, headers: Headers) -> bool:
-        """Check that the Origin header is this server's, which other sites cannot forge in a browser."""
+        """Return whether the Origin header is this server's; other sites cannot forge it in a browser."""
         names, schemes = [headers.get("Host", "")], ["http"]
         if self._any_name:
             names.append(headers.get("X-Forwarded-Host", "").partition(",")[0].strip())

@@ -65,7 +65,7 @@ class WebViewer(Viewer):
             simulation: The simulation to show.
             renderer: Renders the pictures.
             name: Name of the viewer.
-            host: Interface to listen on; others than the default admit other machines.
+            host: Interface to listen on; by default, only this machine can connect.
             port: Port number; 0 selects a free one.
             token: The secret in the URL; None generates one.
             any_name: Whether any ``Host`` header is accepted, as needed behind a proxy.
@@ -108,7 +108,7 @@ class WebViewer(Viewer):
     def EnvironmentSync(self) -> None:
         """Block until all pages were sent the present state of the environment, at most half a second.
 
-        Hidden tabs are not waited for.
+        Hidden tabs are ignored.
         """
         with self._lock:
             looks = {client: client.updates for client in self._clients.values() if not client.is_stalled}
@@ -145,7 +145,7 @@ class WebViewer(Viewer):
         return {"text/plain": repr(self), **bundle}
 
     def first_scene(self) -> str:
-        """Return the name of the geometry that a new page needs; empty while others hold the lock."""
+        """Return the name of the geometry that a new page needs; empty while other threads hold the lock."""
         with self._simulation.lock.attempt(_SYNC_STEP) as is_free, suppress(RavemjError):  # which the page says
             if is_free:
                 model = self._simulation.compiled().model
@@ -155,7 +155,7 @@ class WebViewer(Viewer):
     def connect_page(self, connection: ServerConnection) -> None:
         """Start to serve a page; a page that reconnects gets its earlier view.
 
-        Frames of one tab and duplicated tabs request the same view. If it is in use, the page gets a new view, whose
+        Frames of one tab and duplicated tabs request the same view. If this is in use, the page gets a new view, whose
         name has a number appended.
         """
         wanted = _tab(connection)
@@ -176,7 +176,7 @@ class WebViewer(Viewer):
     def handle_messages(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> float:
         """Handle the messages of a page and send an update if one is due; return how long to wait for messages [s].
 
-        The viewer's camera follows the page whose camera was moved last.
+        The viewer's camera follows the page on which the camera was moved last.
         """
         client = self._clients[connection]
         client.queue_messages(messages, self.server.complain)
@@ -221,7 +221,7 @@ class WebViewer(Viewer):
             _LOG.info("%s", request)
 
     def _keep_video(self, interaction: Interaction, name: str, content: bytes) -> None:
-        """Store a video for the page that requested it, or another page if that has disconnected."""
+        """Store a video for the page that requested it, or for another page if that has disconnected."""
         with self._lock:
             self._videos.append((interaction, name, content))
 
