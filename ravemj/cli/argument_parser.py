@@ -1,4 +1,4 @@
-"""The argument parser of all commands. It reports an invalid argument in one line, with a suggestion."""
+"""Argument parser of all commands, which reports an invalid argument in one line, with a suggestion."""
 
 import argparse
 import difflib
@@ -10,7 +10,7 @@ _LIKENESS = 0.7  # minimum similarity of a misspelt word: excludes "help" for "s
 
 
 class Parser(argparse.ArgumentParser):
-    """Reports an invalid argument in one line."""
+    """Argument parser that reports an invalid argument in one line."""
 
     def error(self, message: str) -> NoReturn:
         """Exit with a one-line message about an invalid argument."""

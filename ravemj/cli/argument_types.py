@@ -1,4 +1,4 @@
-"""Converters of command-line arguments. Their errors say which values are valid."""
+"""Converters of command-line arguments, whose errors name the valid values."""
 
 import argparse
 import math
@@ -64,7 +64,7 @@ def _number(text: str) -> float:
 
 
 def positive(text: str) -> float:
-    """Return a number above 0."""
+    """Parse a number above 0."""
     number = _number(text)
     if number <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not above 0")
@@ -72,7 +72,7 @@ def positive(text: str) -> float:
 
 
 def rate(text: str) -> float | None:
-    """Return a number of points per second, or None for the word ``waypoints``."""
+    """Parse a number of points per second; the word ``waypoints`` gives None."""
     try:
         return None if text == "waypoints" else positive(text)
     except argparse.ArgumentTypeError as error:
@@ -80,7 +80,7 @@ def rate(text: str) -> float | None:
 
 
 def seed(text: str) -> int:
-    """Return the seed of random numbers: a whole number from 0 on."""
+    """Parse the seed of random numbers: a whole number, at least 0."""
     if not (text.isascii() and text.isdecimal() and len(text) <= _MOST_DIGITS):
         raise argparse.ArgumentTypeError(
             f"'{text}' is not a whole number from 0 on, with {_MOST_DIGITS} digits or less"
@@ -89,14 +89,14 @@ def seed(text: str) -> int:
 
 
 def port(text: str) -> int:
-    """Return the number of a port."""
+    """Parse a port number."""
     if not (text.isascii() and text.isdecimal() and int(text) <= 65535):
         raise argparse.ArgumentTypeError(f"'{text}' is not the number of a port, from 0 to 65535")
     return int(text)
 
 
 def size(text: str) -> tuple[int, int]:
-    """Return width and height of a picture [pixels]."""
+    """Parse width and height of a picture [pixels]."""
     width, cross, height = text.lower().partition("x")
     if not (cross and all(side.isdecimal() and 0 < int(side) <= _LONGEST_SIDE for side in (width, height))):
         wanted = f"a size such as 640x480, at most {_LONGEST_SIDE}x{_LONGEST_SIDE}"
@@ -105,7 +105,7 @@ def size(text: str) -> tuple[int, int]:
 
 
 def colour(text: str) -> list[float]:
-    """Return red, green and blue from 0 to 1, given as three numbers, as a colour name of CSS, or as #rrggbb."""
+    """Parse a colour, three numbers from 0 to 1, a CSS name or #rrggbb; return red, green and blue."""
     if text[:1].isalpha() or text.startswith("#"):
         return _colour_of_name(text)
     parts = vector(text)

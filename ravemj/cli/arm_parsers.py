@@ -1,4 +1,4 @@
-"""The arguments of the commands that move arms: ``ik``, ``plan`` and ``grasp``."""
+"""Arguments of the commands that move arms: ``ik``, ``plan`` and ``grasp``."""
 
 import argparse
 

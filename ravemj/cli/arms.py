@@ -41,7 +41,7 @@ class Solution(NamedTuple):
 
 
 def out_of_reach(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> str:
-    """Describe how far a goal is out of reach and, for arms with fewer than six joints, suggest other goal types."""
+    """Describe how far a goal is out of reach; for arms with fewer than six joints, suggest other goal types."""
     text = f"no joint values take '{arm.GetName()}' of '{arm.GetRobot().GetName()}' there: it is out of reach"
     text += f"; {_shortfall(arm, goal, kind)}"
     if kind != IkParameterizationType.Transform6D or arm.GetArmDOF() >= _POSE_DOFS:
@@ -51,7 +51,7 @@ def out_of_reach(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType
 
 
 def beyond_all_limits(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> str:
-    """Describe how far a goal is out of reach; return an empty text if values within the limits reach it."""
+    """Describe how far a goal is out of reach; empty if joint values within the limits reach it."""
     if len(arm.ik_solver(kind).solve_one(arm.goals_in_base(goal, kind)[0])):
         return ""
     return f"no joint values within the limits reach it; {_shortfall(arm, goal, kind)}"
@@ -85,7 +85,7 @@ def arm_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
 
 
 def pose_goal(numbers: Sequence[float], option: str) -> Floats:
-    """Return the pose x, y, z, qw, qx, qy, qz of an option as a matrix, shape (4, 4).
+    """Return an option's pose x, y, z, qw, qx, qy, qz as a matrix, shape (4, 4).
 
     Raises:
         ArgumentError: the quaternion is 0.
@@ -137,7 +137,7 @@ def reached(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> 
 
 
 def validated(arm: Manipulator, ways: Sequence[tuple[Floats, str]]) -> list[Solution]:
-    """Check solutions for joint limits and collisions; contacts between other parts are ignored."""
+    """Check solutions for joint limits and collisions of the arm; contacts between other parts are ignored."""
     env, groups = arm.GetRobot().GetEnv(), body_groups(arm.GetRobot().GetName(), arm.description.arm_dofs, 0, "")
     bodies = Bodies(env.simulation, groups, env.GetCollisionChecker)
     with bodies.kept():
@@ -150,8 +150,8 @@ def add_ghost(robot: Robot, label: int | str, values: Floats, dofs: Sequence[int
     Args:
         robot: The robot.
         label: Suffix of the copy's name.
-        values: Joint values of the copy, of some joints [rad or m].
-        dofs: Their DOF indices; the other joints have the robot's values.
+        values: Values of the joints ``dofs`` of the copy [rad or m].
+        dofs: DOF indices; other joints have the robot's values.
     """
     env = robot.GetEnv()
     ghost = cast("Robot", RaveCreateRobot(env, ""))

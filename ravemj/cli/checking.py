@@ -1,4 +1,4 @@
-"""All findings about a model file: of the reader, of the translation, and further checks."""
+"""All diagnostics of a model file: of the reader, of the translation, and further checks."""
 
 import os
 import warnings
@@ -13,14 +13,14 @@ from ravemj.model.scene import KinBody
 from ravemj.rave import load
 
 FATAL_CODES = {"bad-number"}
-"""Codes of findings that OpenRAVE tolerates and commands reject: the number that OpenRAVE reads is never intended."""
+"""Codes of diagnostics that OpenRAVE tolerates and commands reject: the number read is not the intended one."""
 
 
 def check(path: str | os.PathLike[str], given: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return all findings about a model file, in order of occurrence.
+    """Return all diagnostics of a model file, in order of occurrence.
 
     Args:
-        path: A model file. Its mistakes become findings, never exceptions.
+        path: A model file. Its mistakes become diagnostics, never exceptions.
         given: Attributes for its body; see ``Environment.Load``.
 
     Example:
@@ -54,7 +54,7 @@ def _fatal(error: SourceError) -> Diagnostic:
 
 
 def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) -> Iterator[Diagnostic]:
-    """Yield a note for each file outside of the folder of a model, which would be missing elsewhere."""
+    """Yield a note for each file outside of a model's folder, which may be missing on other machines."""
     folder = os.path.dirname(os.path.abspath(path))
     if os.fspath(path).lower().endswith(".urdf"):
         folder = os.path.dirname(folder)  # packages have a folder for URDF, and others beside it for meshes

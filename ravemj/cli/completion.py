@@ -1,4 +1,4 @@
-"""Completion of commands, options, models and parts of models in shells."""
+"""Shell completion of commands, options, models and parts of models."""
 
 import argparse
 import contextlib
@@ -17,31 +17,31 @@ if TYPE_CHECKING:
 
 
 def completion(options: argparse.Namespace) -> int:
-    """Print the setup code of a shell."""
+    """Print the setup code for a shell."""
     print(shellcode(["ravemj"], shell=options.shell))
     return 0
 
 
 def models(prefix: str, **_: object) -> list[str]:
-    """Return the completions of the name of a model: models that come with ravemj, robots of packages, and files."""
+    """Return the completions of a model name: shipped models, robots of packages, and files."""
     known = [name for name in (*SHIPPED_MODELS, *robot_names()) if name.startswith(prefix)]
     return [*known, *FilesCompleter(("xml", "dae", "zae", "urdf", "mjcf"))(prefix)]
 
 
 def robots(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Return the completions of the name of a robot of the model that was named before."""
+    """Return the completions of a robot name for the model given before."""
     return [robot.GetName() for robot in _robots(parsed_args) if robot.GetName().startswith(prefix)]
 
 
 def manipulators(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
-    """Return the completions of the name of a manipulator of the model, or of the robot that was named before."""
+    """Return the completions of a manipulator name for the model or robot given before."""
     chosen = [robot for robot in _robots(parsed_args) if parsed_args.robot in {None, robot.GetName()}]
     names = dict.fromkeys(arm.GetName() for robot in chosen for arm in robot.GetManipulators())
     return [name for name in names if name.startswith(prefix)]
 
 
 def _robots(options: argparse.Namespace) -> "list[Robot]":
-    """Return the robots of the model of a command; none if it is not named yet or cannot be read."""
+    """Return the robots of the command's model; none if it is not given yet or cannot be read."""
     from ravemj.cli.models import loaded  # noqa: PLC0415 - slow to import
 
     with warnings.catch_warnings(), contextlib.suppress(RavemjError):

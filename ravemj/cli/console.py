@@ -27,10 +27,10 @@ def print_error(error: RavemjError) -> None:
 
 
 def print_findings(findings: Iterable[Diagnostic], file: TextIO | None = None) -> None:
-    """Print findings; those that differ only in sources or names share a line.
+    """Print diagnostics; those that differ only in sources or names share a line.
 
     Args:
-        findings: The findings.
+        findings: The diagnostics.
         file: Output stream; None: standard error.
     """
     groups: dict[tuple[str, str], list[Diagnostic]] = {}
@@ -44,7 +44,7 @@ def print_findings(findings: Iterable[Diagnostic], file: TextIO | None = None) -
 
 
 def _more(count: int, places: Sequence[str]) -> str:
-    """Return the text about further findings: their number, and the sources of the first ones."""
+    """Return the text about further diagnostics: their number, and the sources of the first ones."""
     if not count:
         return ""
     rest = ["…"] if len(places) > _PLACES else []
@@ -84,7 +84,7 @@ def table(title: str, *columns: str) -> "Table":
 
 
 def console() -> "Console":
-    """Return rich's console for standard output; files and pipes count as wide enough for tables."""
+    """Return rich's console for standard output; for files and pipes it is wide enough for tables."""
     from rich.console import Console  # noqa: PLC0415 - slow to import
 
     made = Console(highlight=False, markup=False)  # names may have brackets

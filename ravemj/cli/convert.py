@@ -42,7 +42,7 @@ def convert(options: argparse.Namespace) -> int:
 
 
 def choices_of(options: argparse.Namespace) -> TranslationChoices:
-    """Return the options of a translation to MJCF from those of a command."""
+    """Return the translation options to MJCF from those of a command."""
     return TranslationChoices(
         base=options.base,
         actuators=options.actuators,
@@ -91,7 +91,7 @@ def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
 
 
 def _report(findings: Sequence[Diagnostic], options: argparse.Namespace) -> None:
-    """Print findings; with ``--strict`` they are errors."""
+    """Print diagnostics; with ``--strict`` they are errors."""
     if findings and options.strict:
         raise failure_of(findings)
     print_findings(findings)

@@ -15,7 +15,7 @@ _LONGEST = 60
 
 
 def diff(options: argparse.Namespace) -> int:
-    """Compare two models by their numbers; return 1 where they differ, and 2 where one cannot be read."""
+    """Compare two models by their numbers; return 1 if they differ, and 2 if one cannot be read."""
     try:
         first, second = (_scene(model) for model in (options.first, options.second))
     except RavemjError as error:
@@ -55,7 +55,7 @@ def _entry(difference: Difference) -> dict[str, object]:
 
 
 def _short(value: object) -> str:
-    """Return a value as table text, with few digits."""
+    """Return a value as short text with few digits."""
     text = _digits(value)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 

@@ -22,7 +22,7 @@ from ravemj.rave.grasping import grasps
 from ravemj.rave.manipulator import Manipulator
 
 _SHOWN = 10
-"""Maximum number of grasps, without near twins, that are simulated, printed and shown."""
+"""Maximum number of grasps, without nearly equal ones, that are simulated, printed and shown."""
 
 _AHEAD = 0.5  # m, from the base to the place of a target that nobody placed
 _FLOOR_GAP = 0.001  # m, below the lowest point of the robot, so that its base does not touch the floor
@@ -51,7 +51,7 @@ def grasp(options: argparse.Namespace) -> int:
 
 
 def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[Grasps, str]:
-    """Return the grasps that the arm reaches, or those of the hand alone, and a note that says so."""
+    """Return the grasps that the arm reaches, or else those of the hand alone with a note that says so."""
     find = partial(grasps, robot, target, method=options.method, friction=options.friction, proofs=_SHOWN)
     unsolvable = _unsolvable(robot)
     if unsolvable:
@@ -66,7 +66,7 @@ def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[
 
 
 def _unsolvable(robot: Robot) -> str:
-    """Return why the inverse kinematics of the active manipulator cannot be solved; empty if it can."""
+    """Return the reason why the active manipulator has no IK solver; empty if it has one."""
     arm = robot.GetActiveManipulator()
     try:
         if arm is not None and arm.GetArmDOF():
@@ -77,10 +77,10 @@ def _unsolvable(robot: Robot) -> str:
 
 
 def _target(env: Environment, robot: Robot, options: argparse.Namespace) -> KinBody:
-    """Return the body to grasp, in its place.
+    """Return the body to grasp, at its pose.
 
     Raises:
-        ArgumentError: the name is that of the robot, or the file has not exactly one body.
+        ArgumentError: the name is that of the robot, or the file does not have exactly one body.
     """
     body = env.GetKinBody(options.target)
     if body is robot:
@@ -96,7 +96,7 @@ def _target(env: Environment, robot: Robot, options: argparse.Namespace) -> KinB
 
 
 def _loaded(env: Environment, name: str) -> KinBody:
-    """Load the body of a file or of a model that comes with ravemj."""
+    """Load the body of a file or shipped model."""
     path, before = model_file(name), env.GetBodies()
     if not os.path.exists(path):
         names = ", ".join(body.GetName() for body in before)
@@ -109,7 +109,7 @@ def _loaded(env: Environment, name: str) -> KinBody:
 
 
 def _pose(numbers: Sequence[float], body: KinBody) -> Floats:
-    """Return the pose of ``--at``; three numbers leave the rotation as it is."""
+    """Return the pose of ``--at``; three numbers leave the rotation unchanged."""
     if len(numbers) == _POSE:
         return pose_goal(numbers, "--at")
     if len(numbers) != _POINT:
@@ -120,7 +120,7 @@ def _pose(numbers: Sequence[float], body: KinBody) -> Floats:
 
 
 def _put_down(env: Environment, robot: Robot, body: KinBody) -> None:
-    """Put a body on a floor that is as high as the lowest point of the robot, ahead of its base."""
+    """Place a body on a floor at the height of the robot's lowest point, in front of its base."""
     box = robot.ComputeAABB()
     height = float(box.pos()[2] - box.extents()[2]) - _FLOOR_GAP
     T_base, T = robot.GetTransform(), body.GetTransform()
@@ -137,7 +137,7 @@ def _put_down(env: Environment, robot: Robot, body: KinBody) -> None:
 
 
 def _print(arm: Manipulator, target: KinBody, result: Grasps, note: str) -> None:
-    """Print the best grasps, and how many candidates were rejected for which reason."""
+    """Print the best grasps, and the number of rejected candidates by reason."""
     if result:
         title = f"Grasps of '{target.GetName()}' by '{arm.GetName()}' of '{arm.GetRobot().GetName()}', the best first"
         rows = table(title, "#>", "quality>", "epsilon>", "contacts>", "weakest", "shaken")

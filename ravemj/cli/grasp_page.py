@@ -86,7 +86,7 @@ def _copied(env: Environment, body: KinBody, number: int) -> KinBody:
 
 
 def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, number: int) -> _DrawnHand:
-    """Add a copy of the robot of which only the hand shows."""
+    """Add a copy of the robot of which only the hand is visible."""
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)
     robot.SetName(f"{arm.GetRobot().GetName()} {number}")

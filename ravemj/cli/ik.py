@@ -34,7 +34,7 @@ _POSE, _POINT = 7, 3
 
 
 def ik(options: argparse.Namespace) -> int:
-    """Show the joint values that take the tool of an arm to a goal; return 1 where none are good."""
+    """Show the joint values with which the tool of an arm reaches a goal; return 1 if there is no valid solution."""
     if options.output is not None:
         check_picture(options.output)
     if options.reach or options.keep:
@@ -82,7 +82,7 @@ def _reach(options: argparse.Namespace) -> int:
 
 
 def _kind(options: argparse.Namespace) -> IkParameterizationType:
-    """Return the goal type: the named one, else a point for three numbers and a pose for seven."""
+    """Return the goal type: the given one, else a point for three numbers and a pose for seven."""
     if options.type is not None:
         return IkParameterizationType[options.type]
     is_point = options.to is not None and len(options.to) == _POINT

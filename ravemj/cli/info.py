@@ -74,7 +74,7 @@ class _KinematicTree:
                 yield f"{joint.name} closes a loop between {' and '.join(_ends(self._body, joint))}"
 
     def _entry(self, index: int, first: str, rest: str) -> Iterator[str]:
-        """Yield a link and its joint in one line, or in two if it would be too long."""
+        """Yield a link and its joint in one line, or in two lines if it would be too long."""
         link = self._body.links[index]
         name = f"{first}{link.name}  {_number(link.inertial.mass)} kg{', static' if link.static else ''}"
         number = self._placing.get(index)
@@ -204,7 +204,7 @@ def _number(value: float) -> str:
 
 
 def _ranges(numbers: Sequence[int]) -> str:
-    """Write 0 1 2 3 7 as ``0-3 7``."""
+    """Format 0 1 2 3 7 as ``0-3 7``."""
     runs: list[list[int]] = []
     for number in numbers:
         if runs and number == runs[-1][-1] + 1:

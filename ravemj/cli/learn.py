@@ -20,11 +20,11 @@ from ravemj.learn.reports import report, state
 from ravemj.learn.running import Progress
 
 _PAUSE = 0.2
-"""Time between two looks at the files that are watched [s]."""
+"""Interval between checks of the watched files [s]."""
 
 
 def learn(options: argparse.Namespace) -> int:
-    """List exercises, start, check, show or grade them."""
+    """List, start, check, show or grade exercises."""
     course = our_course() if options.course is None else Course(Path(options.course))
     return _ACTIONS[options.action](course, options)
 
@@ -105,7 +105,7 @@ def _checked(progress: Progress, exercise: Exercise) -> Verdict:
 
 
 def _next(course: Course, progress: Progress) -> Exercise:
-    """Return the first exercise that is not solved; the last one if all are."""
+    """Return the first unsolved exercise, or the last one if all are solved."""
     present = [exercise for exercise in course.exercises if progress.file(exercise).exists()]
     if not present:
         raise ArgumentError(f"no exercises in {progress.folder.resolve()}; begin with: ravemj learn start FOLDER")
@@ -117,7 +117,7 @@ def _next(course: Course, progress: Progress) -> Exercise:
 
 
 def _watch(course: Course, progress: Progress, wanted: list[Exercise]) -> int:
-    """Check the next unsolved exercise, or those wanted, at each save, until Ctrl-C."""
+    """Check the next unsolved exercise, or the wanted ones, after each save until Ctrl-C."""
     stamps: dict[Exercise, int] = {}
     while True:
         present = {exercise: _stamp(progress.file(exercise)) for exercise in wanted or course.exercises}
@@ -132,7 +132,7 @@ def _watch(course: Course, progress: Progress, wanted: list[Exercise]) -> int:
 
 
 def _report_saved(course: Course, progress: Progress, saved: list[Exercise], others: Sequence[Exercise]) -> None:
-    """Check the exercises that were saved; name the next one if they are solved, or if there are none."""
+    """Check the saved exercises; name the next one if they are solved or if none was saved."""
     verdicts = [_checked(progress, exercise) for exercise in saved]
     for exercise, verdict in zip(saved, verdicts, strict=True):
         print(f"{report(exercise, verdict)}\n", flush=True)

@@ -67,7 +67,7 @@ def _say(text: str) -> None:
 
 
 def _source(states: JointStates, options: argparse.Namespace) -> Callable[[], None]:
-    """Return the function that receives states, to run in its own thread.
+    """Return the function that receives states, to be run in a thread of its own.
 
     Raises:
         SourceError: the file of lines cannot be read.
@@ -87,7 +87,7 @@ def _source(states: JointStates, options: argparse.Namespace) -> Callable[[], No
 
 
 def _update(robot: Robot, states: JointStates) -> None:
-    """Set the robot to the latest state, even beyond its limits."""
+    """Set the robot to the latest state, which may exceed its limits."""
     values = states.pop()
     if values:
         names = robot.simulation_state.scene.dof_names

@@ -22,10 +22,10 @@ from ravemj.trajectories.motion_arguments import first_robot
 
 
 def load_model(options: argparse.Namespace) -> Environment:
-    """Load the model of a command and print the findings.
+    """Load the model of a command and print the diagnostics.
 
     Raises:
-        SourceError: the file is missing or broken, or has warnings and ``--strict`` was given.
+        SourceError: the file is missing or malformed, or has warnings and ``--strict`` was given.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)  # they are printed together below
@@ -39,10 +39,10 @@ def load_model(options: argparse.Namespace) -> Environment:
 
 
 def loaded(options: argparse.Namespace) -> Environment:
-    """Load the model of a command, and its further models.
+    """Load the model of a command, and its additional models.
 
     Raises:
-        SourceError: one is missing or broken; the message names the cause.
+        SourceError: a model is missing or malformed; the message names the cause.
     """
     env = None
     try:
@@ -84,7 +84,7 @@ def named_robot(env: Environment, name: str | None) -> Robot | None:
 
 
 def chosen_robots(env: Environment, name: str | None) -> list[Robot]:
-    """Return the robot of ``--robot``, by default all of them; errors as for ``named_robot``."""
+    """Return the robot of ``--robot``, by default all robots; errors as for ``named_robot``."""
     robot = named_robot(env, name)
     return env.GetRobots() if robot is None else [robot]
 
@@ -93,7 +93,7 @@ def moving_robot(env: Environment, name: str | None) -> Robot:
     """Return the robot of ``--robot``, by default the first robot with joints.
 
     Raises:
-        ArgumentError: the model has no such robot, or it has no joints.
+        ArgumentError: the model has no such robot, or the robot has no joints.
     """
     robot = named_robot(env, name) or cast("Robot", env.wrap(first_robot(env.simulation)))
     if not robot.GetDOF():
@@ -110,17 +110,17 @@ def shown_sphere(env: Environment, robot: Robot | None) -> tuple[Floats, float]:
 
 
 def hold_bases(env: Environment) -> None:
-    """Fix the bases of robots if nothing is static; otherwise everything would fall for ever under physics."""
+    """Fix the bases of robots if nothing is static; otherwise everything would fall forever under physics."""
     if not any(link.IsStatic() for body in env.GetBodies() for link in body.GetLinks()):
         for robot in env.GetRobots():
             robot.GetLinks()[0].SetStatic(True)
 
 
 def model_file(name: str, *, download: bool = False) -> str:
-    """Return the model file that an argument names.
+    """Return the model file named by an argument.
 
-    The argument is a path, the name of a shipped model, or the name of a robot of a package, which ``download``
-    permits to fetch.
+    The argument is a path, the name of a shipped model, or the name of a packaged robot, which may be fetched if
+    ``download``.
 
     Raises:
         ArgumentError: the robot is not on this machine and may not be fetched.
@@ -134,7 +134,7 @@ def model_file(name: str, *, download: bool = False) -> str:
 
 
 def xacro_arguments(name: str, own: str) -> dict[str, str]:
-    """Return the xacro arguments of a packaged robot, followed by those of the user, as an attribute."""
+    """Return as an attribute the xacro arguments of a packaged robot, followed by those of the user, ``own``."""
     if os.path.exists(name) or not is_robot_name(name):
         return {}
     words = [f"{key}:={value}" for key, value in robot_file(name).arguments.items()]
@@ -142,7 +142,7 @@ def xacro_arguments(name: str, own: str) -> dict[str, str]:
 
 
 def failure_of(findings: Sequence[Diagnostic]) -> SourceError:
-    """Return the one-line error for fatal findings; it ends with the code of the first one."""
+    """Return the one-line error for fatal diagnostics; it ends with the code of the first one."""
     first = findings[0]
     more = f" (and {len(findings) - 1} more: see ravemj check)" if len(findings) > 1 else ""
     code = f" [{first.code}]"

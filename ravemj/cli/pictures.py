@@ -47,7 +47,7 @@ from ravemj.trajectories.motion_arguments import MotionFile, followed_file
 
 _MOST_FRAMES = 1_000_000  # nine hours at 30 frames per second: more is a typing mistake
 PAGE = ".html"
-"""The suffix of a page that plays a motion."""
+"""Suffix of a page that plays a motion."""
 
 
 def play(options: argparse.Namespace) -> int:
@@ -107,7 +107,7 @@ def _line(env: Environment, options: argparse.Namespace) -> tuple[Robot, Motion]
 
 
 def _play_to_robot(options: argparse.Namespace) -> int:
-    """Write a motion for the controller of a robot."""
+    """Write a motion for a robot controller."""
     check_joint_trajectory_file(options.output)
     env = load_model(options)
     if options.trajectory is not None:
@@ -176,7 +176,7 @@ def write_page(
     camera: Camera | None,
     notes: Sequence[str] = (),
 ) -> None:
-    """Write the page that plays a motion, and report it."""
+    """Write a page that plays a motion, and report it."""
     view = None if camera is None else camera.T_world_camera
     look = {"shadows": options.shadows, "floor": options.floor, "lights": options.lights}
     env.save_html(path, motion, fps=options.fps, camera=view, background=options.background, notes=notes, **look)
@@ -235,13 +235,13 @@ def explain_rays(env: Environment, form: Format) -> None:
 
 
 def explain_shadows(env: Environment, form: Format) -> None:
-    """Explain why a video has no shadows, unless the user has chosen that."""
+    """Explain why a video has no shadows, unless the user has chosen this."""
     if form.shadows is None and env.renderer.backend(form) != RAY and not env.renderer.has_shadows(form):
         print("no shadows, as OpenGL draws with the processor here; --shadows draws them")
 
 
 def doctor(options: argparse.Namespace) -> int:
-    """List the renderers that work here, and how to install those that do not."""
+    """List the renderers that work on this machine, and how to install the others."""
     import mujoco  # noqa: PLC0415 - behind the modules that prepare it
 
     del options

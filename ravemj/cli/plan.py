@@ -85,7 +85,7 @@ def _about_itself(told: str, robot: Robot, model: str) -> str:
 
 
 def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
-    """Return the moving manipulator; None for a robot without one and a goal of joint values."""
+    """Return the moving manipulator; None for a robot without manipulators and a goal of joint values."""
     robots = chosen_robots(env, options.robot)
     has_arms = any(robot.GetManipulators() for robot in robots)
     needs_arm = options.manip or options.pose or options.near or options.region or options.upright
@@ -174,7 +174,7 @@ def _planned(robot: Robot, arm: Manipulator | None, goal: MotionGoal, options: a
 
 
 def _reasons(status: Planner.PlannerStatus) -> list[str]:
-    """Return for each region the number of sampled poses by cause of rejection."""
+    """Return for each region a text with the number of sampled poses by cause of rejection."""
     return [
         f"{sum(counts.values())} poses of region '{name}': "
         + ", ".join(f"{number} {cause}" for cause, number in counts.items())
@@ -198,7 +198,7 @@ def _outcome(
 
 
 def _certificate(robot: Robot, motion: Motion) -> Certificate:
-    """Certify a motion as written: straight lines between its rows."""
+    """Certify a motion as it is written: straight lines between its rows."""
     spec = robot.GetConfigurationSpecificationIndices(range(robot.GetDOF()), "linear")
     spec.AddDeltaTimeGroup()
     traj = Trajectory(robot.GetEnv(), "")

@@ -57,7 +57,7 @@ class Plan(NamedTuple):
         points: The motion for a robot controller; None if it was not requested.
         certificate: Certificate of the motion; None if it was not requested.
         notes: Lines of text about the search.
-        examples: An example configuration of each cause of rejection of sampled poses, shape (len(dofs),).
+        examples: By cause of rejection of sampled poses, an example configuration, shape (len(dofs),).
     """
 
     robot: Robot
@@ -84,7 +84,7 @@ def check_output(path: str) -> None:
 
 
 def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> None:
-    """Write a motion, its video or picture; without a motion, a page of the reasons or a picture of the trees."""
+    """Write a motion, its video or picture; if there is none, a page of the reasons or a picture of the trees."""
     robot, path = plan.robot, options.output
     suffix = Path(path).suffix.lower()
     notes = [] if plan.certificate is None else [str(plan.certificate), f"scene {_fingerprint(robot.GetEnv())}"]
@@ -148,7 +148,7 @@ def _write_picture(plan: Plan, camera: Camera | None, options: argparse.Namespac
 
 
 def _draw(plan: Plan, *, path: bool, trees: bool) -> list[GraphHandle | None]:
-    """Draw the smallest clearance and, if requested, end-effector path and search trees; return their handles."""
+    """Draw the smallest clearance and, if requested, end-effector path and search trees; return the handles."""
     env, drawn = plan.robot.GetEnv(), list[GraphHandle | None]()
     env.SetViewer("offscreen")  # handles of drawings
     grown = plan.search.trees if trees and plan.search is not None else ()
@@ -178,7 +178,7 @@ def _segments(plan: Plan, nodes: Floats, lines: Sequence[tuple[int, int]]) -> Fl
 
 
 def _hand(plan: Plan, values: Floats) -> Floats:
-    """Return the tool positions in the world, or those of the last link's centre, for configurations, shape (n, 3)."""
+    """Return the tool positions in the world (without an arm, those of the last link) for configurations, (n, 3)."""
     if plan.arm is None:
         link = plan.robot.GetLinks()[-1]
         place = np.nan_to_num(link.GetLocalCOM())

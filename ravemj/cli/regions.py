@@ -46,7 +46,7 @@ def goal_regions(env: Environment, arm: Manipulator, options: argparse.Namespace
 
 
 def upright(arm: Manipulator, degrees: float) -> Region:
-    """Return the region of tool poses at any position whose tilt from the present pose is limited [degrees]."""
+    """Return the region of tool poses at any position with a limited tilt from the present pose [degrees]."""
     return _upright(arm, np.eye(4), [_ANY] * 3, degrees, "upright")
 
 
@@ -60,7 +60,7 @@ def read_regions(path: str, env: Environment) -> list[Region]:
     """Read the regions of a JSON file.
 
     Raises:
-        SourceError: the file cannot be read, or has something other than regions.
+        SourceError: the file cannot be read, or does not contain regions.
     """
     try:
         content: Any = json.loads(json_bytes(path))
@@ -98,7 +98,7 @@ def _frame(text: str, env: Environment) -> KinBody | Link:
     """Return the body ``BODY`` or the link ``BODY/LINK``.
 
     Raises:
-        ArgumentError: there is no such body or link.
+        ArgumentError: it does not exist.
     """
     body = env.GetKinBody(text)
     if body is not None:

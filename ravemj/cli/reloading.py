@@ -28,7 +28,7 @@ class Reloader:
 
         Args:
             env: The environment loaded from the model.
-            viewer: Its viewer.
+            viewer: The environment's viewer.
             options: The options of the command: the models, and ``watch``: whether to reload them when a file changes,
                 or only on request.
         """
@@ -40,7 +40,7 @@ class Reloader:
         viewer.interaction.controls.display.wants_reload = False
 
     def update(self) -> None:
-        """Reload the model if that was requested, or if a watched file has changed."""
+        """Reload the model if requested, or if a watched file has changed."""
         display = self._viewer.interaction.controls.display
         is_asked, display.wants_reload = display.wants_reload, False
         stamps = _stamps(self._files)
@@ -134,7 +134,7 @@ def _found_again(selected: Selection | None, env: Environment) -> Selection | No
 
 
 def _stamps(files: tuple[str, ...]) -> _Stamps:
-    """Return modification time and size of each file; None for a missing one, as while it is being saved."""
+    """Return modification time and size of each file; None if it is missing, as while it is being saved."""
     stamps: _Stamps = {}
     for file in files:
         try:

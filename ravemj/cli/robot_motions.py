@@ -24,7 +24,7 @@ from ravemj.trajectories.motion_reading import problems_in
 
 
 def robot_names(path: str | None, robot: Robot) -> dict[str, str]:
-    """Read the robot's joint names by those of the model from the file of ``--rename``; empty without a file.
+    """Read the robot's joint names by model joint name from the file of ``--rename``; empty without a file.
 
     Raises:
         SourceError: the file cannot be read.
@@ -50,7 +50,7 @@ def set_accelerations(robot: Robot, limits: Sequence[float] | None) -> None:
     """Set the acceleration limits of ``--acceleration``.
 
     Raises:
-        ArgumentError: the number of limits is neither 1 nor the number of joints, or one is not above 0.
+        ArgumentError: the number of limits is neither 1 nor the number of joints, or a limit is not above 0.
     """
     if limits is None:
         return
@@ -83,7 +83,7 @@ def motion_file(env: Environment, options: argparse.Namespace) -> MotionFile:
 
 
 def export(env: Environment, motion: MotionFile, options: argparse.Namespace) -> None:
-    """Write a motion for a robot controller; for a table, only the joints that it names.
+    """Write a motion for a robot controller; of a table, only the joints that it names.
 
     Raises:
         ArgumentError: it fails a check.

@@ -31,7 +31,7 @@ class Touching(NamedTuple):
     """A link pair with spurious collisions: at the start, or in almost all configurations.
 
     Attributes:
-        links: Their names.
+        links: Names of the links.
         at_start: Whether they collide in the initial configuration.
         share: Fraction of the random configurations with a collision.
     """
@@ -49,7 +49,7 @@ class Touching(NamedTuple):
 def find(robot: Robot, samples: int = SAMPLES) -> list[Touching]:
     """Return the non-adjacent link pairs that collide at the start or in more than 95 % of configurations.
 
-    The configurations are random within the limits, for circular joints within half a turn, with a fixed seed.
+    The configurations are random within the limits, or [-pi, pi] for circular joints, with a fixed seed.
     """
     names = [link.GetName() for link in robot.GetLinks()]
     at_start = _touching(robot)
@@ -102,7 +102,7 @@ def check(options: argparse.Namespace, model: str) -> int:
 
 
 def _write(path: str, robot: str, pairs: Sequence[Touching], beside: str | None) -> None:
-    """Write an SRDF with disabled pairs: a copy of the robot's own with additions, or a new one."""
+    """Write an SRDF with disabled pairs: the robot's own SRDF with additions, or a new one."""
     lines = [
         f"  <disable_collisions link1={quoteattr(pair.links[0])} link2={quoteattr(pair.links[1])} "
         f'reason="{pair.reason}"/>\n'

@@ -1,4 +1,4 @@
-"""Commands that run scripts and start prompts: ``run``, ``shell`` and ``alias``."""
+"""Commands that run scripts and open prompts: ``run``, ``shell`` and ``alias``."""
 
 import argparse
 import itertools
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _execute(script: str, main: ModuleType, py2: bool) -> int:
-    """Run a script as the main module; return 1, after its traceback, if it raises."""
+    """Run a script as the main module; if it raises, print its traceback and return 1."""
     signals.leave_signals_to_python()
     with open(script, "rb") as file:
         source = file.read()

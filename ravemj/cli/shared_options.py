@@ -12,7 +12,7 @@ from ravemj.model.look import FLOORS, LIGHTS
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
 
 VIDEOS = ".mp4, .avi, .mpg, .gif, .webp, or a folder for PNG frames"
-"""The files that ``-o`` accepts in commands that write videos."""
+"""Targets that ``-o`` accepts in commands that write videos."""
 
 
 def command(commands: Commands, run: str, summary: str, *examples: str) -> argparse.ArgumentParser:

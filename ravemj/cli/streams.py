@@ -1,4 +1,4 @@
-"""Robust standard streams: they may be closed, full, or lack characters."""
+"""Robust standard streams, which may be closed, full, or lack characters."""
 
 import codecs
 import io
@@ -9,7 +9,7 @@ from typing import cast
 
 _PLAIN = {"…": "...", "─": "-", "│": "|", "├": "|", "└": "`", "╴": "-", "←": "<-", "²": "^2", "³": "^3", "±": "+-"}
 _CHOSEN = {"replace", "ignore", "xmlcharrefreplace", "namereplace"}
-"""Error handlers that never fail; they are kept if the user has set them."""
+"""Error handlers that never fail; they are not replaced if the user has set them."""
 
 
 def prepare_streams() -> None:

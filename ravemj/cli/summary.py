@@ -18,7 +18,7 @@ _OF_CAMERAS = ("fx", "fy", "cx", "cy", "width", "height")
 def summarize(body: KinBody) -> Summary:
     """Return a body with its links, joints, manipulators and sensors; SI units, quaternions as w x y z.
 
-    Links and DOFs are referred to by their numbers; a number that is not finite is None.
+    Links and DOFs are referred to by index; numbers that are not finite are None.
     """
     first_dofs = dof_starts(body)
     summary = {

@@ -27,7 +27,7 @@ _BETWEEN_LINES = 30.0  # s
 
 
 def sweep(options: argparse.Namespace) -> int:
-    """Compute the missing shards of a sweep, and report progress."""
+    """Compute the missing result files (shards) of a sweep, and report progress."""
     env = load_model(options)
     robots = chosen_robots(env, options.robot) if env.GetRobots() else []
     before = read_manifest(Path(options.output)) or {}
@@ -68,7 +68,7 @@ def _job_options(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
-    """Return the items; for a continued sweep their number may be omitted.
+    """Return the items; their number may be omitted if the sweep is continued.
 
     Raises:
         ArgumentError: they are not given.
@@ -97,10 +97,10 @@ def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
 
 
 def _function(name: str, option: str) -> Callable[..., Any]:
-    """Import the function ``MODULE:FUNCTION``; modules of the working folder have priority.
+    """Import the function ``MODULE:FUNCTION``; modules of the working folder have precedence.
 
     Raises:
-        ArgumentError: there is none.
+        ArgumentError: it does not exist.
     """
     module, colon, attribute = name.partition(":")
     if not (module and colon and attribute):

@@ -1,4 +1,4 @@
-"""The arguments of the command ``sweep``."""
+"""Arguments of the command ``sweep``."""
 
 import argparse
 
@@ -60,12 +60,12 @@ def add_sweep(commands: Commands) -> None:
 
 
 def count(text: str) -> int:
-    """Parse a whole number from 1 on, such as 1000 or 1e6."""
+    """Parse a whole number, at least 1, such as 1000 or 1e6."""
     return _whole(text, 1)
 
 
 def count_from_0(text: str) -> int:
-    """Parse a whole number from 0 on."""
+    """Parse a whole number, at least 0."""
     return _whole(text, 0)
 
 

@@ -81,7 +81,7 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Set the title to the model's name; unless the file has a camera, view the robot or everything from a corner."""
+    """Set the model's name as title; if the file has no camera, view the robot or everything from a corner."""
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)

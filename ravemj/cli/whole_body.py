@@ -40,7 +40,7 @@ def reach(options: argparse.Namespace) -> int:
 
 
 def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
-    """Solve and move the robot. With kept limbs the base is free, and the centre of mass keeps its ground position.
+    """Solve and move the robot. If limbs are kept, the base is free, and the centre of mass keeps its x and y.
 
     Raises:
         ArgumentError: a limb does not exist, or a goal is invalid.
