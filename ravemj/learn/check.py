@@ -1,4 +1,4 @@
-"""The check of an exercise: its questions, their right answers, and how an answer is compared with them."""
+"""Check of an exercise: questions, right answers, and comparison of answers."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -14,7 +14,7 @@ Arguments: TypeAlias = tuple[object, ...]
 Function: TypeAlias = Callable[..., object]
 
 Kind = Literal["number", "vector", "position", "rotation", "pose", "quaternion", "direction", "joint values", "boolean"]
-"""Meaning of an answer, by which mistakes are recognized: of positions [m], frames (3, 3) and (4, 4), wxyz, angles."""
+"""Meaning of an answer, by which mistakes are recognized: positions [m], frames (3, 3) and (4, 4), wxyz, angles."""
 
 _POINTS = {"position", "joint values"}
 
@@ -24,12 +24,12 @@ SINGLE_PRECISION = 1e-4
 
 @dataclass(frozen=True)
 class Scene:
-    """What a picture of an answer shows.
+    """Content of a picture of an answer.
 
     Attributes:
         model: File or shipped name of a model with one robot; "" for none.
-        values: Joint values of the robot [rad or m]; None for an answer that is joint values itself.
-        frame: Name of the link whose pose an answer is relative to; "" for the world.
+        values: Joint values of the robot [rad or m]; None if the answer is joint values.
+        frame: Name of the link whose frame the answer refers to; "" for the world.
         line: Points of a line [m], such as the links of an arm, each of two or three numbers.
     """
 
@@ -44,21 +44,22 @@ class Check:
     """The check of one exercise.
 
     Attributes:
-        function: Name of the function that the student writes. For files that are no Python: a function of the file's
-            path that returns what answers the questions.
-        question: Returns the arguments of one call, from a random generator.
-        answer: Returns the right answer to these arguments.
-        hints: Three hints; the last one nearly tells the answer.
+        function: Name of the function that the student writes. If the file is not Python: a function of the file's
+            path that returns the function to check.
+        question: Returns the arguments of one call, given a random generator.
+        answer: Returns the right answer for these arguments.
+        hints: Three hints; the last one nearly gives the answer.
         kind: Meaning of the answer.
-        angles: Indices of the arguments that are angles [rad], which one may take for degrees.
-        mistakes: Further mistakes: a sentence that names it, and a function that makes it.
-        judge: Decides where several answers are right: called with the answer and the arguments, it returns None, or
-            what is wrong as a sentence. The answer is an array of numbers then, float32 if it was, and has the
-            ``precision`` of these.
-        any_length: Whether an answer may have any number of rows, such as a path; else it has those of the right one.
-        scene: Returns, for the arguments, what a picture of the answer shows; None if there is none.
+        angles: Indices of the arguments that are angles [rad], which might be mistaken for degrees.
+        mistakes: Further mistakes: a sentence that names the mistake, and a function that makes it.
+        judge: Judges answers if several are right: called with the answer and the arguments, it returns None or the
+            error as a sentence. The answer is then an array of numbers, float32 if the student's was, with the
+            tolerance ``precision``.
+        any_length: Whether an answer may have any number of rows, as a path; otherwise the number is that of the
+            right answer.
+        scene: Returns the content of a picture of the answer for given arguments; None if there is no picture.
         questions: Number of questions.
-        tolerance: Largest difference of any number.
+        tolerance: Maximum error of each number.
     """
 
     function: str | Callable[[Path], Function]
@@ -75,7 +76,7 @@ class Check:
     tolerance: float = 1e-6
 
     def complaint(self, given: object, arguments: Arguments) -> str | None:
-        """Return what is wrong with an answer, as a sentence, or None if it is right."""
+        """Return the error of an answer as a sentence, or None if it is right."""
         wrong = self.misshapen(given, arguments)
         if wrong is not None:
             return wrong
@@ -93,7 +94,7 @@ class Check:
         return f"off by {off:.3g}" + {"position": " m", "joint values": " rad"}.get(self.kind, "")
 
     def misshapen(self, given: object, arguments: Arguments) -> str | None:
-        """Return what is wrong with the form of an answer: its type, its shape, or numbers that are not finite."""
+        """Return the error in an answer's form as a sentence: type, shape, numbers that are not finite; or None."""
         if given is None:
             return "it returns None; is there a return at its end?"
         if given is ...:
@@ -112,9 +113,9 @@ class Check:
         return None
 
     def distance(self, answer: Floats, other: Floats) -> float:
-        """Return the largest difference of two answers.
+        """Return the maximum difference of two answers, regardless of the signs of quaternions.
 
-        Quaternions may have the other sign. Rows in any order are points or joint values that a judge decides about.
+        Points and joint values that a judge decides about may be in any order.
         """
         if not answer.size:
             return 0.0
@@ -139,14 +140,14 @@ class Check:
 
 
 def precision(given: object) -> float:
-    """Return the largest difference that an answer may have where a judge decides: 1e-6, of numbers in float32 1e-4."""
+    """Return the tolerance of an answer for judges: 1e-6, or 1e-4 for numbers in float32."""
     return SINGLE_PRECISION if _is_single(given) else 1e-6
 
 
 def shortened(thing: object, length: int = 60) -> str:
-    """Return the text of an object in one line, cut at some length; arrays and lists of numbers alike.
+    """Return the text of an object, or the name of a robot, in one line of limited length.
 
-    Of a robot it is the name.
+    Arrays and lists of numbers have the same text.
     """
     name = getattr(thing, "GetName", None)
     if callable(name):

@@ -1,4 +1,4 @@
-"""Checks one exercise in a process of its own: ``python -m ravemj.learn.child EXERCISE CHECK VERDICT SEED SECONDS``."""
+"""Checks one exercise in a separate process: ``python -m ravemj.learn.child EXERCISE CHECK VERDICT SEED SECONDS``."""
 
 import ast
 import copy
@@ -20,10 +20,10 @@ from ravemj.learn.mistakes import recognized
 Status: TypeAlias = Literal["solved", "wrong", "error", "untouched"]
 
 _WIDTH = 200
-"""Largest length of the text of an answer."""
+"""Maximum length of the text of an answer."""
 
 _MEMORY = 4 << 30
-"""Largest memory of a process that runs students' code [bytes]."""
+"""Memory limit of a process that runs students' code [bytes]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,18 +31,18 @@ class Verdict:
     """Result of checking an exercise.
 
     Attributes:
-        status: Whether it is solved; ``untouched`` while the hole ``...`` is still there.
-        message: What is wrong, in a sentence; "" if solved.
-        mistake: The classical mistake that explains it; "" if none does.
-        tried: The call that shows it.
-        yours: What it returned.
-        expected: What it should have returned; "" where several answers are right.
-        right: Number of questions answered rightly.
+        status: Whether it is solved; ``untouched`` while the placeholder ``...`` is in the file.
+        message: The error as a sentence; "" if solved.
+        mistake: The classical mistake that explains the error; "" if none does.
+        tried: The call that shows the error.
+        yours: The student's result.
+        expected: The right result; "" if several are right.
+        right: Number of right answers.
         asked: Number of questions.
         seed: Seed of the questions.
-        question: Index of the question that the message is about.
-        answer: What the student's function returned, as numbers; None if it is not numbers.
-        output: What the student's code printed.
+        question: Index of the question of the message.
+        answer: The student's result as numbers; None if it is not numbers.
+        output: Printed output of the student's code.
     """
 
     status: Status
@@ -87,7 +87,7 @@ def check_file(exercise: Path, check: Check, seed: int) -> Verdict:
 
 
 def _copied(arguments: Arguments) -> Arguments:
-    """Return arguments with arrays of their own, which a function may change."""
+    """Return arguments with copied arrays, which a function may change."""
     return tuple(copy.copy(argument) if hasattr(argument, "dtype") else argument for argument in arguments)
 
 
@@ -124,7 +124,7 @@ def _numbers(given: object) -> object:
 
 
 def questions(check: Check, seed: int) -> list[Arguments]:
-    """Return the arguments of all questions of a seed."""
+    """Return the arguments of all questions for a seed."""
     random = np.random.default_rng(seed)
     return [check.question(random) for _ in range(check.questions)]
 
@@ -137,11 +137,11 @@ def load_check(path: Path) -> Check:
 
 
 class _RefusalError(Exception):
-    """A file that cannot be asked: the status and the message of its verdict."""
+    """A file that cannot be checked: status and message of its verdict."""
 
 
 def student_function(path: Path, check: Check) -> Function:
-    """Return the function that a student's file defines, by running the file."""
+    """Run a student's file, and return the function that it defines."""
     try:
         text = path.read_text(encoding="utf-8-sig")  # editors on Windows may write a byte order mark
     except (OSError, UnicodeDecodeError) as error:
@@ -163,7 +163,7 @@ def student_function(path: Path, check: Check) -> Function:
 
 
 def _defined(path: Path, text: str, function: str) -> dict[str, object]:
-    """Return what a student's file defines."""
+    """Return the names that a student's file defines."""
     tree = ast.parse(text, str(path))
     if _has_hole(tree, function):
         message = f"{function} still has ... in it: put your code in its place"
@@ -174,7 +174,7 @@ def _defined(path: Path, text: str, function: str) -> dict[str, object]:
 
 
 def _has_hole(tree: ast.Module, name: str) -> bool:
-    """Return whether a function still consists of ``...``, alone or as a value."""
+    """Return whether a function still contains the placeholder ``...``, alone or as a value."""
     functions = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name == name)
     values = (
         node
@@ -186,7 +186,7 @@ def _has_hole(tree: ast.Module, name: str) -> bool:
 
 
 def call_text(check: Check, arguments: Arguments) -> str:
-    """Return a call of the student's function, as text; "" for a model that does not move."""
+    """Return a call of the student's function as text; "" for a model, which has no arguments."""
     if not arguments:
         return ""
     name = check.function if isinstance(check.function, str) else "joint values"
@@ -194,7 +194,7 @@ def call_text(check: Check, arguments: Arguments) -> str:
 
 
 def error_text(error: BaseException, path: Path) -> str:
-    """Return an exception with the lines of the student's file that led to it, and no others."""
+    """Return an exception with those lines of its traceback that are in the student's file."""
     if path.suffix != ".py":  # a model: its errors name file and line
         return " ".join(str(error).split())
     name = type(error).__name__

@@ -1,4 +1,4 @@
-"""Courses and their exercises, as files: finding them, and starting a folder of one's own."""
+"""Courses and exercises as files, and a student's folder."""
 
 import shutil
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ class Exercise:
 
     Attributes:
         name: Its name, such as ``fk-2``.
-        original: The file that a student completes, as the course has it.
+        original: The course's version of the file that a student completes.
         check: The file of its check.
     """
 
@@ -29,7 +29,7 @@ class Exercise:
 
     @property
     def title(self) -> str:
-        """The first line of the file: what is to be done."""
+        """The first line of the file: the task."""
         first = self.original.read_text(encoding="utf-8").splitlines()[0]
         return first.strip().strip('"<!->').strip().removeprefix(f"{self.name}: ")
 
@@ -44,7 +44,7 @@ class Lesson:
 
     @property
     def number(self) -> str:
-        """The number with which the folder's name begins."""
+        """The number at the start of the folder's name."""
         return self.folder.name.partition("-")[0].lstrip("0")
 
 
@@ -56,7 +56,7 @@ class Course:
 
     @cached_property
     def lessons(self) -> tuple[Lesson, ...]:
-        """The lessons, in the order of their folders' names.
+        """The lessons, sorted by folder name.
 
         Raises:
             RavemjError: there are none, or an exercise has no check.
@@ -72,10 +72,10 @@ class Course:
         return tuple(exercise for lesson in self.lessons for exercise in lesson.exercises)
 
     def exercise(self, name: str) -> Exercise:
-        """Return the exercise of a name, or of a file of that name.
+        """Return the exercise with a name, or with a file of this name.
 
         Raises:
-            ArgumentError: there is none.
+            ArgumentError: it does not exist.
         """
         wanted = Path(name).stem.replace("_", "-")
         for exercise in self.exercises:
@@ -87,14 +87,14 @@ class Course:
 
 
 def our_course() -> Course:
-    """Return the course that comes with ravemj."""
+    """Return the course that is shipped with ravemj."""
     package = Path(__file__).parents[1]
     installed = package / "course"  # the wheel holds it there; a clone has it among the pages
     return Course(installed if installed.is_dir() else package.parent / "docs" / "course")
 
 
 def start(course: Course, folder: Path) -> list[Exercise]:
-    """Copy the exercises that a folder does not have yet into it, and return these."""
+    """Copy the exercises that a folder does not contain yet into it; return these exercises."""
     missing = [exercise for exercise in course.exercises if not (folder / exercise.original.name).exists()]
     for exercise in missing:
         _copy(exercise, folder)
@@ -102,7 +102,7 @@ def start(course: Course, folder: Path) -> list[Exercise]:
 
 
 def start_again(exercise: Exercise, folder: Path) -> Path | None:
-    """Put an exercise into a folder as it was at first, and return where one's own file is kept; None if none was."""
+    """Restore an exercise in a folder; return the path of the student's renamed version, or None if there was none."""
     own, kept = folder / exercise.original.name, None
     if own.exists():
         number = 1

@@ -1,4 +1,4 @@
-"""Tables of many students' folders."""
+"""Tables of the results in students' folders."""
 
 import csv
 import dataclasses
@@ -12,18 +12,18 @@ from ravemj.learn.course import Course, Exercise
 from ravemj.learn.running import run_check
 
 _FORMULAS = ("=", "+", "-", "@", "\t", "\r")
-"""Beginnings of cells that spreadsheets would compute."""
+"""First characters of cells that spreadsheets interpret as formulas."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Grade:
-    """One row: a student's folder and an exercise.
+    """Result of a student's exercise.
 
     Attributes:
         student: Name of the folder.
         exercise: Name of the exercise.
         status: ``solved``, ``wrong``, ``error``, ``untouched`` or ``missing``.
-        message: What is wrong; "" if nothing is.
+        message: The error; "" if there is none.
     """
 
     student: str
@@ -33,7 +33,7 @@ class Grade:
 
 
 def grades(course: Course, folders: Sequence[Path]) -> Iterator[Grade]:
-    """Check all exercises of students' folders, each in a process of its own; yield the rows in order."""
+    """Check all exercises of students' folders, each in a separate process; yield the results in order."""
     exercises = course.exercises
     owners = [folder for folder in folders for _ in exercises]
     pool = ThreadPoolExecutor(os.cpu_count())
@@ -52,7 +52,7 @@ def _grade(folder: Path, exercise: Exercise) -> Grade:
 
 
 def as_csv(rows: Sequence[Grade]) -> str:
-    """Return rows as CSV; cells that a spreadsheet would take for formulas begin with an apostrophe."""
+    """Return rows as CSV; cells that a spreadsheet would interpret as formulas begin with an apostrophe."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([field.name for field in dataclasses.fields(Grade)])

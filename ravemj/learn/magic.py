@@ -1,4 +1,4 @@
-"""``%learn`` in IPython and notebooks: checks the function that a cell has defined."""
+"""``%learn`` in IPython and notebooks, which checks the function defined in a cell."""
 
 import inspect
 import json
@@ -20,7 +20,7 @@ _USAGE = "%learn check NAME, %learn hint NAME [1-3] or %learn list"
 
 
 def register(ipython: Any) -> None:  # noqa: ANN401 - IPython's shell; IPython is not imported here
-    """Give a session ``%learn``."""
+    """Register ``%learn`` in a session."""
 
     def magic(words: str) -> object:
         try:
@@ -33,10 +33,10 @@ def register(ipython: Any) -> None:  # noqa: ANN401 - IPython's shell; IPython i
 
 
 def learn(words: str, namespace: Mapping[str, object]) -> object:
-    """Do what ``%learn`` asks for, with the functions of a notebook's namespace; return a picture if there is one.
+    """Run ``%learn`` with the functions in a notebook's namespace; return a picture or None.
 
     Raises:
-        ArgumentError: the words are not understood, or there is no such function.
+        ArgumentError: the words are invalid, or the function does not exist.
     """
     match words.split():
         case ["list"] | []:
@@ -69,7 +69,7 @@ def _check(exercise: Exercise, namespace: Mapping[str, object]) -> Verdict:
 
 
 def _picture(exercise: Exercise, verdict: Verdict) -> object:
-    """Return a picture of a wrong answer, as notebooks show it; None where there is nothing to show."""
+    """Return a picture of a wrong answer for notebooks; None if there is nothing to show."""
     from IPython.core.display import Image  # noqa: PLC0415 - only in IPython
 
     from ravemj.graphics.video import picture_bytes  # noqa: PLC0415
@@ -89,7 +89,7 @@ def _picture(exercise: Exercise, verdict: Verdict) -> object:
 
 
 def _sources(function: FunctionType, namespace: Mapping[str, object]) -> Iterator[str]:
-    """Yield the lines that define a function, with the modules, numbers and functions of the notebook that it uses."""
+    """Yield the lines that define a function, and the modules, numbers and functions of the notebook that it uses."""
     waiting, seen = [function], {function.__name__}
     parts: list[str] = []
     while waiting:
@@ -110,7 +110,7 @@ def _sources(function: FunctionType, namespace: Mapping[str, object]) -> Iterato
 
 
 def _names(function: FunctionType) -> Iterator[str]:
-    """Yield the global names that a function uses, also in functions within it."""
+    """Yield the global names that a function and its inner functions use."""
     codes = [function.__code__]
     while codes:
         code = codes.pop()
@@ -139,7 +139,7 @@ def notebook(lesson: Lesson) -> str:
 
 
 def _page_cells(page: str) -> Iterator[tuple[str, str]]:
-    """Yield a lesson's page as cells; a figure of a shipped model becomes the code that shows it."""
+    """Yield a lesson's page as cells; a figure of a shipped model is replaced by the code that shows it."""
     parts = re.split(r'<iframe src="[^"]*/move-(\w+)\.html".*?</iframe>\n\n`.*\n', page)
     for number, part in enumerate(parts):
         figure = f'import ravemj\n\nravemj.load(ravemj.model_path("{part}")).animation()'

@@ -1,4 +1,4 @@
-"""Recognizes classical mistakes in wrong answers."""
+"""Recognition of classical mistakes in wrong answers."""
 
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -11,7 +11,7 @@ from ravemj.learn.check import Arguments, Check, Floats
 Transformation = Callable[[Floats], Floats]
 
 _MOST_PERMUTED = 4
-"""Largest number of joints of which all orders are tried; of more, the reversed order alone."""
+"""Maximum number of joints of which all orders are tried; for more joints, only the reversed order is."""
 
 _CONJUGATE = np.array([1.0, -1, -1, -1])
 _TRANSPOSED = "The rotation is transposed: R_world_link turns link coordinates into world ones."
@@ -43,7 +43,7 @@ _ANSWERS: dict[str, tuple[tuple[str, Transformation], ...]] = {
     ),
     "joint values": (("The result is in degrees; joint values are in radians.", np.rad2deg),),
 }
-"""For each kind of answer what a mistake makes of the right one."""
+"""For each kind of answer, mistakes by their sentences, and functions that apply them to the right answer."""
 
 _LENGTHS: tuple[tuple[str, Transformation], ...] = (
     ("It is in millimetres; lengths here are in metres.", lambda answer: answer * 1000),
@@ -72,7 +72,7 @@ def recognized(check: Check, asked: Sequence[Arguments], given: Sequence[object]
     Args:
         check: The check.
         asked: The arguments of each question.
-        given: What the student's function answered to each.
+        given: The student's answer to each question.
     """
     try:
         answers = [np.asarray(answer, dtype=float) for answer in given]
@@ -88,7 +88,7 @@ def recognized(check: Check, asked: Sequence[Arguments], given: Sequence[object]
 def _candidates(
     check: Check, asked: Sequence[Arguments], right: Sequence[Floats], given: Sequence[Floats]
 ) -> Iterator[tuple[str, list[Floats] | None]]:
-    """Yield each mistake with the answers it leads to; None where it cannot be made."""
+    """Yield each mistake with its answers; None if the mistake is impossible."""
     for sentence, function in check.mistakes.items():
         yield sentence, _answers(function, asked)
     for sentence, convert in _ANGLES if check.angles else ():
@@ -103,7 +103,7 @@ def _candidates(
 
 
 def _by_turns(right: Sequence[Floats], given: Sequence[Floats]) -> list[Floats] | None:
-    """Return the right answers, turned to those that are given."""
+    """Return the right answers, shifted by full turns to the given ones."""
     if any(answer.shape != other.shape for answer, other in zip(right, given, strict=True)):
         return None
     turn = 2 * np.pi
@@ -121,7 +121,7 @@ def _reordered(right: Sequence[Floats]) -> Iterator[tuple[str, list[Floats]]]:
 
 
 def _answers(function: Callable[..., object], asked: Sequence[Arguments]) -> list[Floats] | None:
-    """Return what a function answers; None if it fails."""
+    """Return the results of a function; None if it fails."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
             return [np.asarray(function(*arguments), dtype=float) for arguments in asked]

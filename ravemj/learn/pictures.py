@@ -1,4 +1,4 @@
-"""Pictures of an answer beside the right one: yours solid, the right one as a ghost, frames, the error as an arrow."""
+"""Pictures of an answer (solid) and the right answer (transparent), with frames, and the error as an arrow."""
 
 import warnings
 from collections.abc import Iterator
@@ -26,16 +26,16 @@ _LENGTH = 0.15  # of the axes of frames, in parts of the size of what is shown
 
 
 def has_picture(check: Check) -> bool:
-    """Return whether answers of an exercise can be shown."""
+    """Return whether answers to an exercise can be drawn."""
     return check.scene is not None or check.kind in {"position", "pose", "rotation", "quaternion"}
 
 
 class Shown(NamedTuple):
-    """An answer beside the right one.
+    """An answer and the right one, drawn together.
 
     Attributes:
-        env: The environment; its user destroys it.
-        drawn: What keeps the drawings.
+        env: The environment; the caller destroys it.
+        drawn: Handles of the drawings.
         camera: ``T_world_camera``.
     """
 
@@ -45,15 +45,15 @@ class Shown(NamedTuple):
 
     @property
     def floor(self) -> str:
-        """Whether there is a floor: not where it would hide what is below it."""
+        """Choice of the floor: none if it would hide what is below it."""
         return "auto" if self.env.GetBodies() else "off"
 
 
 def answer_scene(check: Check, verdict: Verdict) -> Shown:
-    """Return the answer of a verdict beside the right one.
+    """Return the answer of a verdict drawn together with the right one.
 
     Raises:
-        RavemjError: the answer is not numbers of the right shape, or the exercise has nothing to show.
+        RavemjError: the answer is not numbers of the right shape, or the exercise has no picture.
     """
     if not has_picture(check):
         raise ArgumentError(
@@ -81,7 +81,7 @@ def answer_scene(check: Check, verdict: Verdict) -> Shown:
 
 
 def _camera(env: Environment, points: list[Floats], *, flat: bool) -> Floats:
-    """Return ``T_world_camera`` of a view of all robots and points; answers in the plane are seen from above."""
+    """Return ``T_world_camera`` of a view of all robots and points; planar answers are seen from above."""
     center, radius = env.renderer.bounding_sphere() if env.GetBodies() else (np.zeros(3), 0.0)
     corners = np.array([np.zeros(3), center, *points])
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -99,7 +99,7 @@ def _first_row(check: Check, answer: Floats) -> Floats:
 
 
 def save_picture(check: Check, verdict: Verdict, output: Path) -> None:
-    """Write a picture of an answer, or a page that can be turned (``.html``)."""
+    """Write a picture of an answer, or a page with a movable camera (``.html``)."""
     shown = answer_scene(check, verdict)
     try:
         if output.suffix.lower() == ".html":
@@ -112,7 +112,7 @@ def save_picture(check: Check, verdict: Verdict, output: Path) -> None:
 
 
 def _add_robots(env: Environment, scene: Scene, check: Check, given: Floats, right: Floats) -> Floats:
-    """Add the robot of a scene, and a ghost for joint values; return the pose of the frame of the answer."""
+    """Add the robot of a scene, and a transparent copy for joint values; return the pose of the answer's frame."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)
         env.Load(model_path(scene.model) if scene.model in SHIPPED_MODELS else scene.model)
@@ -147,12 +147,12 @@ def _pose(check: Check, answer: Floats) -> Floats:
 
 
 def _in_space(point: Floats) -> Floats:
-    """Return a point of the plane, or of space, in space."""
+    """Return a point of the plane or of space as a point of space."""
     return np.pad(point, (0, 3 - len(point)))
 
 
 def _drawn(env: Environment, given: Floats, right: Floats, *, turned: bool) -> Iterator[GraphHandle | None]:
-    """Draw the frames of two poses, or two points, and an arrow from one to the other."""
+    """Draw the frames of two poses, or two points, and an arrow between them."""
     size = max(float(np.abs([given[:3, 3], right[:3, 3]]).max()), 0.2)
     for T, colour, width in ((np.eye(4), None, 1), (given, _YOURS, 4), (right, _RIGHT, 2)):
         origin = T[:3, 3]

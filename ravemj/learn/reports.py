@@ -1,4 +1,4 @@
-"""What a student reads about an answer."""
+"""Texts for students about their answers."""
 
 from collections.abc import Iterator
 
@@ -9,12 +9,12 @@ _WORDS = {"solved": "solved", "wrong": "not yet", "error": "it does not run", "u
 
 
 def report(exercise: Exercise, verdict: Verdict) -> str:
-    """Return a verdict as some lines."""
+    """Return a verdict as text of several lines."""
     return "\n".join([f"{exercise.name}: {exercise.title}", *(f"  {line}" for line in _lines(verdict))])
 
 
 def state(verdict: Verdict) -> str:
-    """Return the state of an exercise in a word or two."""
+    """Return the state of an exercise in one or two words."""
     return _WORDS[verdict.status]
 
 

@@ -1,4 +1,4 @@
-"""Runs checks in processes of their own, several at once, with limits, and keeps what they said."""
+"""Runs checks in separate processes, several at once, with limits, and stores the verdicts."""
 
 import dataclasses
 import hashlib
@@ -25,22 +25,22 @@ SECONDS = 10.0
 """Time limit of one check [s]."""
 
 MOST_OUTPUT = 10_000
-"""What is kept of the output of one check [bytes]."""
+"""Maximum stored output of one check [bytes]."""
 
 PROGRESS = ".ravemj-learn.json"
-"""The file of a student's folder that keeps verdicts."""
+"""File of verdicts in a student's folder."""
 
 _GRACE = 5.0
 
 
 def run_check(exercise: Exercise, file: Path, seconds: float = SECONDS, seed: int | None = None) -> Verdict:
-    """Check a student's file in a process of its own, with new questions.
+    """Check a student's file in a separate process, with new questions.
 
     Args:
         exercise: The exercise.
         file: The student's file.
         seconds: Time limit.
-        seed: Seed of the questions; None: another one each time.
+        seed: Seed of the questions; None: a random one.
     """
     seed = secrets.randbelow(1 << 31) if seed is None else seed
     with TemporaryDirectory(prefix="ravemj-learn-") as folder:
@@ -55,7 +55,7 @@ def run_check(exercise: Exercise, file: Path, seconds: float = SECONDS, seed: in
 
 
 class _Output:
-    """A process that runs to its end, or to a time limit, and the beginning of what it prints."""
+    """Runs a process to its end or to a time limit, and stores the beginning of its output."""
 
     def __init__(self, words: list[str], folder: Path, seconds: float) -> None:
         variables = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
@@ -82,7 +82,7 @@ class _Output:
         self.printed, self.errors = (reader.text() for reader in readers)
 
     def _kill(self) -> None:
-        """End the process, and what it has forked."""
+        """Kill the process and its children."""
         if hasattr(os, "killpg"):
             with suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, signal.SIGKILL)
@@ -90,7 +90,7 @@ class _Output:
         self._process.wait()
 
     def reason(self, file: Path, seconds: float) -> str:
-        """Return why there is no verdict."""
+        """Return the reason why there is no verdict."""
         if "Timeout (" in self.errors:
             name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it
             last_place = re.search(rf'File "{re.escape(name)}", line (\d+)', self.errors)
@@ -102,7 +102,7 @@ class _Output:
 
 
 class _Reader:
-    """Reads a stream to its end in a thread, and keeps its beginning."""
+    """Reads a stream to its end in a thread, and stores its beginning."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._kept = b""
@@ -115,14 +115,14 @@ class _Reader:
                 self._kept += part[: MOST_OUTPUT - len(self._kept)]
 
     def text(self) -> str:
-        """Return the beginning of what came."""
+        """Return the beginning of the stream."""
         self._thread.join(_GRACE)
         cut = "… (cut)" if len(self._kept) >= MOST_OUTPUT else ""
         return self._kept.decode(errors="replace") + cut
 
 
 class Progress:
-    """The verdicts on the exercises in a student's folder; those of unchanged files are remembered there."""
+    """The verdicts on the exercises in a student's folder; those of unchanged files are cached in it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -140,17 +140,17 @@ class Progress:
         return self.folder / exercise.original.name
 
     def known(self, exercise: Exercise) -> Verdict | None:
-        """Return the last verdict on a file that has not changed since, nor has its check."""
+        """Return the last verdict on a file if the file and its check have not changed since."""
         known = self._known.get(exercise.name)
         return known[1] if known is not None and known[0] == self._key(exercise) else None
 
     def check(self, exercise: Exercise) -> Verdict:
-        """Check the file of an exercise now, and remember the verdict."""
+        """Check the file of an exercise, and store the verdict."""
         gone = Verdict("error", "there is no such file any more")
         return dict(self.check_all([exercise], fresh=True)).get(exercise, gone)
 
     def check_all(self, exercises: Iterable[Exercise], *, fresh: bool = False) -> Iterator[tuple[Exercise, Verdict]]:
-        """Yield the verdicts on the files that exist, as they come, and remember them.
+        """Yield the verdicts on existing files in the order of completion, and store them.
 
         Args:
             exercises: The exercises.
@@ -189,7 +189,7 @@ class Progress:
 def _side_by_side(
     work: Callable[[Exercise], tuple[Exercise, str, Verdict]], exercises: list[Exercise]
 ) -> Iterator[tuple[Exercise, str, Verdict]]:
-    """Yield results of a function of exercises as they come; an interrupt waits for none that has not begun."""
+    """Yield the results of a function of exercises in the order of completion; an interrupt cancels pending calls."""
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
         waiting = {pool.submit(work, exercise) for exercise in exercises}
