@@ -22,13 +22,13 @@ Told = Callable[[ShardOutcome], object]
 _Result = TypeVar("_Result")
 
 _MOST_OUTPUT_ERRORS = 3
-"""Number of consecutive files that cannot be written, after which a sweep ends."""
+"""Number of consecutive output errors after which a sweep ends."""
 
 _PATIENCE = 0.5  # s, between checks of the time limit
 
 
 class SweepError(RavemjError):
-    """A sweep is incomplete; the other shards are done, and repeating the call computes the missing ones.
+    """A sweep is incomplete; repeating the call computes the missing shards.
 
     Attributes:
         failures: The shards that failed.
@@ -56,10 +56,11 @@ class Driver:
     """Computes the shards of a sweep.
 
     Args:
-        executor: Runs them.
+        executor: Executor of the shards.
         folder: The folder of the sweep.
         retries: Number of retries of a shard whose process died.
-        timeout: Time limit of a shard [s], for a user's executor the limit within which any shard ends; None: no limit.
+        timeout: Time limit of a shard [s]; for a user's executor, the maximum time without a finished shard. None: no
+            limit.
         progress: Called after each shard.
         told: Called with the outcome of each shard.
     """
@@ -87,8 +88,8 @@ class Driver:
         """Compute shards.
 
         Args:
-            tasks: The shards that are missing.
-            count: The number of these.
+            tasks: The missing shards.
+            count: The number of missing shards.
             total: The number of all shards.
             most: Maximum number of submitted shards at a time.
 
@@ -128,7 +129,7 @@ class Driver:
         self._running[future] = task, time.monotonic()
 
     def _finished(self) -> list[ShardTask]:
-        """Wait until shards end; return those to compute again."""
+        """Wait until shards end; return those to be computed again."""
         wait([*self._running], timeout=_PATIENCE, return_when=FIRST_COMPLETED)
         if any(future.done() for future in self._running):
             return self._collect()
@@ -136,7 +137,7 @@ class Driver:
         return []
 
     def _collect(self) -> list[ShardTask]:
-        """Collect the outcomes of shards that ended; return those to compute again."""
+        """Collect the outcomes of shards that ended; return those to be computed again."""
         again: list[ShardTask] = []
         for future in [future for future in self._running if future.done()]:
             task, _ = self._running.pop(future)
@@ -175,7 +176,7 @@ class Driver:
             note_failure(self._folder, failure)
 
     def _lost(self, task: ShardTask, error: Exception) -> list[ShardTask]:
-        """Return the shards to compute again after one was lost."""
+        """Return the shards to be computed again after the loss of one."""
         if not isinstance(self._executor, Workers):
             if isinstance(error, BrokenExecutor):
                 raise self._broken(error) from error

@@ -1,4 +1,4 @@
-"""The folder of a sweep: a manifest of all inputs of its numbers, files of shards, and files of failures."""
+"""The folder of a sweep: a manifest of all inputs of the results, shard files, and failure files."""
 
 import json
 import os
@@ -43,7 +43,7 @@ class Sweep:
 
     Attributes:
         folder: The folder.
-        manifest: All inputs of the numbers, as JSON data.
+        manifest: All inputs of the results, as JSON data.
 
     Example:
         >>> sweep = ravemj.Sweep.open("labels")
@@ -55,10 +55,10 @@ class Sweep:
 
     @classmethod
     def open(cls, folder: str | os.PathLike[str]) -> Self:
-        """Return the sweep of a folder, also while it is being computed.
+        """Return the sweep in a folder, which may still be in progress.
 
         Raises:
-            ArgumentError: the folder has no manifest, or one of another format.
+            ArgumentError: the folder has no manifest, or a manifest of another format.
         """
         manifest = read_manifest(Path(folder))
         if manifest is None:
@@ -78,29 +78,29 @@ class Sweep:
 
     @property
     def files(self) -> list[Path]:
-        """The files of the shards that are done, in order."""
+        """The files of the finished shards, in order."""
         present = set(os.listdir(self.folder / SHARDS))
         paths = [shard_path(self.folder, self.manifest["what"], *span) for span in self.spans]
         return [path for path in paths if path.name in present]
 
     @property
     def done(self) -> int:
-        """The number of items that are done."""
+        """The number of finished items."""
         names = {path.stem for path in self.files}
         return sum(stop - start for start, stop in self.spans if span_name(start, stop) in names)
 
     @property
     def failed(self) -> list[Failure]:
-        """The shards that failed when they were last computed."""
+        """The shards whose last computation failed."""
         paths = sorted((self.folder / FAILED).glob("*.json"))
         return [Failure(**json.loads(path.read_text(encoding="utf-8"))) for path in paths]
 
     def arrays(self, name: str | None = None, partial: bool = False) -> Any:  # noqa: ANN401 - one array, or all by name
-        """Return the concatenated arrays of all shards; shorter rows are padded by NaN, 0 or False.
+        """Return the concatenated arrays of all shards; shorter rows are padded with NaN, 0 or False.
 
         Args:
-            name: The name of an array; None: all, by name.
-            partial: Whether shards may be missing; their items are left out.
+            name: The name of an array; None: all arrays, by name.
+            partial: Whether shards may be missing; their items are omitted.
 
         Raises:
             ArgumentError: shards are missing, or no array has this name.
@@ -116,7 +116,7 @@ class Sweep:
         return joined([{name: part[name]} for part in parts]).get(name, np.zeros(0))
 
     def __iter__(self) -> Iterator[dict[str, NDArray[Any]]]:
-        """Yield the arrays of each shard that is done, in order."""
+        """Yield the arrays of each finished shard, in order."""
         return map(read_shard, self.files)
 
     def __repr__(self) -> str:

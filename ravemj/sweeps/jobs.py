@@ -18,13 +18,13 @@ from ravemj.sweeps import pictures
 from ravemj.sweeps.shards import PICTURES, Arrays, joined
 
 Function = Callable[..., Arrays]
-"""A user's function of an environment, the items of a block, the random generator of the block, and options."""
+"""User's function of an environment, the items of a block, the random generator of the block, and options."""
 
 BLOCK = 1000
-"""Items that share a random generator."""
+"""Default number of items that share a random generator."""
 
 _UNLIMITED = 1e3
-"""Joints with larger limits count as continuous; their values are sampled in [-pi, pi]."""
+"""Limit above which joints are treated as continuous; their values are sampled in [-pi, pi]."""
 
 
 _ITERATIONS = 4000
@@ -64,7 +64,7 @@ class Work(NamedTuple):
 
     @classmethod
     def for_job(cls, job: Job, env: Environment) -> "Work":
-        """Find the robot and the manipulator of a job."""
+        """Return the work for a job in an environment."""
         robot = env.GetRobot(job.robot)
         arm = robot.GetManipulator(job.manip) if robot is not None and job.manip else None
         return cls(env, robot, arm, job.options)
@@ -74,7 +74,7 @@ class Work(NamedTuple):
         """The robot.
 
         Raises:
-            ArgumentError: there is none.
+            ArgumentError: there is no robot.
         """
         if self.robot is None:
             raise ArgumentError("sweep: model: there is no robot in it, and this needs one")
@@ -85,7 +85,7 @@ class Work(NamedTuple):
         """The manipulator.
 
         Raises:
-            ArgumentError: there is none.
+            ArgumentError: there is no manipulator.
         """
         if self.arm is None:
             raise ArgumentError(f"sweep: manip: '{self.mover.GetName()}' has no manipulator, and this needs one")
@@ -96,9 +96,9 @@ class Kind(NamedTuple):
     """A built-in job.
 
     Attributes:
-        compute: Function of the work, the items and a random generator, which returns arrays with a row for each item.
+        compute: Function of the work, the items and a random generator that returns arrays with a row for each item.
         shape: Returns the shape of an item.
-        sample: Draws a number of items.
+        sample: Draws random items.
         options: Names of the options.
         block: Number of items that share a random generator.
     """
@@ -180,7 +180,7 @@ def _ik(work: Work, items: Floats, random: np.random.Generator) -> Arrays:
 
 
 def _plan(work: Work, items: Floats, random: np.random.Generator) -> Arrays:
-    """Plan each motion with its own seed. Iterations limit the search, since results under time limits vary."""
+    """Plan each motion with its own seed. The number of iterations is limited, since results of time limits vary."""
     robot, env = work.mover, work.env
     robot.SetActiveDOFs(_moved(work))
     spec = robot.GetActiveConfigurationSpecification()

@@ -14,7 +14,7 @@ from ravemj.rave import Environment, Robot
 from ravemj.sweeps.shards import Arrays, joined
 
 Prepare = Callable[[Environment, Floats, np.random.Generator], ArrayLike | None]
-"""A user's function that changes an environment before a picture; it may return ``T_world_camera``, shape (4, 4)."""
+"""User's function that changes an environment before a picture; it may return ``T_world_camera``, shape (4, 4)."""
 
 OUTPUTS = ("rgb", "depth", "links")
 OPTIONS = frozenset({"camera", "size", "outputs", "prepare"})
@@ -38,9 +38,9 @@ def pictures(
             ``prepare``: a ``Prepare``.
 
     Returns:
-        ``rgb`` (N, height, width, 3); ``depth`` [mm] and ``links``, the index in ``link_names`` counted from 1, both 0
-        for the background, (N, height, width); ``T_world_camera`` (N, 4, 4), the camera
-        matrix ``K`` (N, 3, 3), ``T_camera_link`` (N, links, 4, 4) and ``link_names`` (N, links).
+        ``rgb`` (N, height, width, 3); ``depth`` [mm] and ``links`` (N, height, width), where ``links`` are indices in
+        ``link_names`` counted from 1, both 0 for the background; ``T_world_camera`` (N, 4, 4); the camera matrix ``K``
+        (N, 3, 3); ``T_camera_link`` (N, links, 4, 4); and ``link_names`` (N, links).
     """
     width, height = _size(options)
     outputs = _outputs(options)

@@ -1,4 +1,4 @@
-"""Worker processes on this machine, each of which can die or be killed without effect on the others."""
+"""Worker processes on this machine, which can die or be killed without effect on each other."""
 
 import contextlib
 import os
@@ -19,7 +19,7 @@ _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VE
 
 
 def _begin() -> None:
-    """Initialize a worker: Ctrl-C is handled by the driver, and warnings were shown there."""
+    """Initialize a worker: the driver handles Ctrl-C, and has already shown warnings."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RavemjWarning)
     threading.Thread(target=_end_with_driver, daemon=True).start()
@@ -94,7 +94,7 @@ class Workers(Executor):
         self._busy[future].kill()
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Kill all processes immediately; their files are written atomically."""
+        """Kill all processes immediately, which is safe since their files are written atomically."""
         del wait, cancel_futures
         for worker in [*self._idle, *self._busy.values()]:
             worker.kill()

@@ -1,4 +1,4 @@
-"""Files of shards: arrays as ``.npz``, written atomically."""
+"""Shard files: arrays as ``.npz``, or pictures as tar files, written atomically."""
 
 import io
 import os
@@ -29,7 +29,7 @@ def shard_path(folder: Path, what: object, start: int, stop: int) -> Path:
 
 
 def span_name(start: int, stop: int) -> str:
-    """Return the name of a range of items, which sorts by its numbers."""
+    """Return the name of a range of items; names sort like the ranges."""
     return f"{start:012d}-{stop:012d}"
 
 
@@ -73,7 +73,7 @@ def is_sound(path: Path) -> bool:
 
 
 def joined(parts: Sequence[Arrays]) -> dict[str, NDArray[Any]]:
-    """Concatenate arrays by name; shorter rows are padded by NaN, 0 or False."""
+    """Concatenate arrays by name; shorter rows are padded with NaN, 0 or False."""
     return {name: _joined([part[name] for part in parts]) for name in parts[0]} if parts else {}
 
 

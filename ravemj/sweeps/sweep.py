@@ -1,4 +1,4 @@
-"""``ravemj.sweep``: it checks the arguments and computes the missing shards."""
+"""``ravemj.sweep``: checks the arguments and computes the missing shards."""
 
 import json
 import operator
@@ -33,11 +33,11 @@ Model = str | os.PathLike[str] | Environment | Robot
 Items = ArrayLike | str | os.PathLike[str]
 
 _SECONDS = 20.0
-"""Target duration of a shard [s], unless that makes it too large or shards too few."""
+"""Target duration of a shard [s], unless the shard would be too large or shards too few."""
 _BYTES = 100e6
 """Maximum size of a shard [bytes]."""
 _EACH = 4
-"""Minimum number of shards per process, so that all end at about the same time."""
+"""Minimum number of shards per process, so that all processes end at about the same time."""
 
 
 def sweep(  # noqa: PLR0913 - keyword arguments
@@ -61,43 +61,44 @@ def sweep(  # noqa: PLR0913 - keyword arguments
 ) -> Sweep:
     """Compute a function of many items, in shards, and write the results to a folder.
 
-    Repeating the call computes only what is missing. The numbers do not depend on executor and shards, since random
-    numbers belong to blocks of items.
+    Repeating the call computes only what is missing. The results do not depend on executor and shards, since random
+    generators belong to blocks of items.
 
     Args:
-        model: A file, the name of a shipped model, an environment or a robot; their present state is sent.
+        model: A file, the name of a shipped model, an environment or a robot, which are sent in their present state.
         what: ``collides`` or ``poses`` of joint values, shape (N, dof); ``ik`` of tool poses in the world, shape
             (N, 4, 4) or (N, 7); ``plan`` of starts and goals, shape (N, 2, dof); ``pictures`` of joint values, as tar
-            files; or a function of an environment, the
-            items of a block and a random generator that returns a dict of arrays with a row for each item.
+            files; or a function of an environment, the items of a block and a random generator that returns a dict of
+            arrays with a row for each item.
         items: The items; or the path of a ``.npy``, ``.npz`` (its first array) or ``.csv`` file; or a number of items
             that are drawn within the joint limits, and written beside the results.
-        out: The folder, which is made if it is missing.
+        out: The folder, which is created if it is missing.
         executor: None: this process. A number: number of processes, with one thread each. Or an ``Executor`` whose
             processes can access the folder; it is not shut down.
         seed: The seed of random numbers.
         manip: The name of the manipulator; None: the active one for ``ik``, else the whole robot.
-        options: For ``ik``: ``type`` of the goals, and whether ``collisions`` exclude solutions. For ``plan``: most
-            ``iterations``. For ``pictures``: ``camera`` (``T_world_camera``), ``size`` (width, height), ``outputs``
-            (some of rgb, depth and links), and ``prepare``, a function of an environment, joint values and a random
-            generator that changes the environment before a picture, and may return another camera. For a function:
-            its further arguments, by name.
-        shard: Items in a file; None: as many as take 20 s or fill 100 MB. A function gets whole blocks.
+        options: For ``ik``: ``type`` of the goals, and whether ``collisions`` exclude solutions. For ``plan``: maximum
+            number of ``iterations``. For ``pictures``: ``camera`` (``T_world_camera``), ``size`` (width, height),
+            ``outputs`` (some of rgb, depth and links), and ``prepare``, a function of an environment, joint values and
+            a random generator that changes the environment before a picture, and may return another camera. For a
+            function: its further arguments, by name.
+        shard: Items per shard; None: as many as take 20 s or fill 100 MB. A function gets whole blocks.
         block: Items that share a random generator; None: 1 for ``plan``, else 1000.
-        ahead: Shards that an ``Executor`` has at a time; more than it has processes.
+        ahead: Maximum number of shards submitted to an ``Executor`` at a time; more than it has processes.
         retries: Number of retries of a shard whose process died.
-        timeout: Time limit of a shard [s]; for an executor, the limit within which any shard must end. None: no limit.
+        timeout: Time limit of a shard [s]; for an ``Executor``, the maximum time without a finished shard. None: no
+            limit.
         check: Whether to recompute shards with damaged files.
         progress: Called with the numbers of finished, of all and of failed shards.
         told: Called with the ``start``, ``stop``, ``seconds`` and ``error`` of each shard.
 
     Returns:
-        The results, complete.
+        The complete results.
 
     Raises:
-        ArgumentError: an argument is wrong, or the folder holds another sweep.
+        ArgumentError: an argument is wrong, or the folder contains another sweep.
         OutputError: the folder cannot be written.
-        SweepError: shards failed, or the executor did; all others are done.
+        SweepError: shards failed, or the executor did; all other shards are finished.
 
     Example:
         >>> labels = ravemj.sweep("panda", "collides", 1_000_000, "labels", executor=8)
@@ -129,7 +130,7 @@ def sweep(  # noqa: PLR0913 - keyword arguments
 
 
 class _SweepInputs(NamedTuple):
-    """All inputs of the numbers of a sweep, and its folder."""
+    """All inputs of the results of a sweep, and its folder."""
 
     first: ShardTask  # all items
     job: Job
@@ -162,12 +163,12 @@ class _SweepInputs(NamedTuple):
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of what computes numbers, by name."""
+    """Return the versions of the packages that compute results, by name."""
     return {"ravemj": __version__, "mujoco": mujoco.__version__, "numpy": np.__version__}
 
 
 def _plain(value: object) -> object:
-    """Convert an option to JSON; a function to its name and the digest of its source."""
+    """Convert an option to JSON data; a function to its name and the digest of its source."""
     if callable(value):
         return f"{value.__module__}:{value.__qualname__} {source_digest(value)}"
     return json.loads(json.dumps(np.asarray(value).tolist()))
@@ -178,7 +179,7 @@ def _choices(env: Environment) -> list[object]:
 
 
 def _environment(model: Model) -> tuple[Environment, Robot | None]:
-    """Return the environment of a model, and the given robot, if any."""
+    """Return the environment of a model, and the robot if ``model`` is one."""
     if isinstance(model, Robot):
         return model.GetEnv(), model
     if isinstance(model, Environment):
@@ -299,7 +300,7 @@ def _suggested(task: ShardTask, workers: int, least: int) -> int:
 
 
 def _is_done(path: Path, *, check: bool) -> bool:
-    """Return whether a shard exists; with ``check``, a damaged file is removed."""
+    """Return whether a shard is finished; with ``check``, remove a damaged file."""
     if not path.exists():
         return False
     if check and not is_sound(path):

@@ -23,7 +23,7 @@ _PICTURES = {(3, "uint8"): "RGB", (2, "uint16"): "I;16", (2, "uint8"): "L"}
 
 
 def pack(file: IO[bytes], arrays: dict[str, NDArray[Any]], first: int) -> None:
-    """Write arrays with a row for each item; ``first`` is the number of the first item."""
+    """Write arrays with a row for each item; ``first`` is the index of the first item."""
     count = len(next(iter(arrays.values())))
     with tarfile.open(fileobj=file, mode="w", format=tarfile.USTAR_FORMAT) as archive:
         for row in range(count):
@@ -51,7 +51,7 @@ def _add(archive: tarfile.TarFile, name: str, content: bytes) -> None:
 
 
 def unpack(path: Path) -> dict[str, NDArray[Any]]:
-    """Return the arrays of a file, with a row for each sample.
+    """Return the arrays of a file, with a row for each item.
 
     Raises:
         OSError: the file is damaged.

@@ -32,12 +32,12 @@ class ShardTask(NamedTuple):
 
     Attributes:
         content: The pickled environment.
-        job: What is computed.
+        job: The job.
         seed: The seed of the sweep.
-        block: Items that share a random generator.
+        block: Number of items that share a random generator.
         start: The first item.
         stop: One past the last item.
-        items: The items from ``start`` to ``stop``; None: they are drawn.
+        items: The items from ``start`` to ``stop``; None means random items.
         folder: The folder of the sweep.
         threads: Number of threads; 0 for the setting of the process.
     """
