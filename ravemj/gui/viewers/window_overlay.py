@@ -130,7 +130,7 @@ _SRC_ALPHA, _ONE_MINUS_SRC_ALPHA, _ALL_ATTRIB_BITS, _UNPACK_ALIGNMENT = 0x0302, 
 
 
 def blend(image: NDArray[np.uint8], x: int, y: int) -> None:
-    """Blend an image (height, width, 4), bottom row first, over the current window, from its lower left corner."""
+    """Blend an image (height, width, 4), bottom row first, over the current window at its lower left corner (x, y)."""
     contiguous = np.ascontiguousarray(image)
     call = _gl()
     call("glPushAttrib", _ALL_ATTRIB_BITS)

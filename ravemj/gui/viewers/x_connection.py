@@ -64,7 +64,7 @@ class XConnection:
         )
 
     def abandon(self) -> None:
-        """Release the display lock that this thread holds since the connection broke; else the process would hang."""
+        """Release the display lock that this thread has held since the connection broke, to avoid a deadlock."""
         for _ in range(3):
             self._xlib.XUnlockDisplay(self._display)
 
