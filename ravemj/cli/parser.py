@@ -88,7 +88,6 @@ def _add_view(commands: Commands) -> None:
 
 
 def _add_page_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for pages in a browser."""
     parser.add_argument("--web", action="store_true", help="a page, also where there is a display for a window")
     parser.add_argument(
         "--host",

@@ -23,9 +23,8 @@ def translation_columns(affinedofs: int) -> list[int]:
 class AffineMotion:
     """Motion of a base by its affine DOFs, at one pose.
 
-    Attributes:
-        translations: The translational components among them, counted from 0.
-        angular: Angular velocity of the base in the world per rate of each rotational value, shape (3, 0, 1, 3 or 4).
+    ``translations`` are the translational DOFs, counted from 0. ``angular`` is the base's angular velocity in the world
+    per rate of each rotational value, shape (3, 0, 1, 3 or 4).
     """
 
     def __init__(self, pose: Pose, affinedofs: int, axis: Vec3) -> None:

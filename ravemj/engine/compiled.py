@@ -67,8 +67,7 @@ class Compiled:
     def mechanism(cls, body: KinBody) -> "Compiled":
         """Compile the links and joints of one body without shapes; each root has a free joint.
 
-        The model has the true masses and inertias. Warnings are those of the whole scene's translation, so none are
-        given.
+        The model has the true masses and inertias. Only the translation of the whole scene gives warnings.
 
         Raises:
             CompileError: MuJoCo refuses the model.

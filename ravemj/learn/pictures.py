@@ -133,7 +133,6 @@ def _add_robots(env: Environment, scene: Scene, check: Check, given: Floats, rig
 
 
 def _pose(check: Check, answer: Floats) -> Floats:
-    """Return an answer as a pose (4, 4)."""
     T = np.eye(4)
     if check.kind == "pose":
         return answer

@@ -112,10 +112,7 @@ class ArmSearch:
     # Candidates
 
     def nearest(self, seed: Floats | None = None) -> Floats | None:
-        """Return the first accepted joint values in the order of ``nearest_first``, shape (n,), or None.
-
-        ``seed`` defaults to the present joint values.
-        """
+        """Return the first accepted joint values in ``nearest_first`` order from ``seed``, shape (n,), or None."""
         start, limits = self.present() if seed is None else seed, self.checks.limits
         if not self._is_tested and limits and self._free is None:
             return self.solver.nearest(self._goal, start, weights=self.weights)

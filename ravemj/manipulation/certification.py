@@ -128,10 +128,7 @@ class BodySpaces:
         self._clearances = Clearances(model, world.model.data, world.shapes, self.pairs, chains, ids)
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> Tested:
-        """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles.
-
-        ``asked`` selects the pairs to test around each of m middles, shape (m, pair_count).
-        """
+        """Test which pairs in ``asked``, shape (m, pairs), may come closer than ``apart`` [m] within m spreads."""
         place = self._bodies.placement()
         for slot, values in enumerate(middles):
             place(values)

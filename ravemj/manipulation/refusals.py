@@ -35,9 +35,7 @@ _ORDER = list(Cause)
 
 
 class Tally:
-    """Sample counts by region and cause.
-
-    The cause of a sample with several solutions is that of the solution that passed the most tests.
+    """Sample counts by region and cause. A sample with several solutions has the cause of the last test reached.
 
     Args:
         names: The names of the regions.

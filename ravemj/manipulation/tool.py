@@ -149,8 +149,7 @@ class MovedTool:
     def motion(self, values: Floats) -> tuple[Floats, Floats]:
         """Move the robot to a configuration (n,), and return ``T_world_tool`` and its Jacobian, shape (6, n).
 
-        The first three rows of the Jacobian are the linear velocity of the tool's origin, the others its angular
-        velocity, in world axes.
+        The Jacobian gives the linear velocity of the tool's origin, then the angular velocity, in world axes.
         """
         self.bodies.move(values)
         jacobian = np.zeros((6, self.dof))

@@ -155,10 +155,7 @@ class Spaces(Protocol):
         ...
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> PairTests:
-        """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles.
-
-        ``asked`` selects the pairs to test around each of m middles, shape (m, pair_count).
-        """
+        """Test which pairs in ``asked``, shape (m, pairs), may come closer than ``apart`` [m] within m spreads."""
         ...
 
 

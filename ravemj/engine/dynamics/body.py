@@ -48,12 +48,9 @@ class Motors:
     """Motors of the joints between links, one for each velocity coordinate."""
 
     def __init__(self, armature: Floats, coulomb: Floats, viscous: Floats) -> None:
-        """Store motor data, each of shape (coordinates,).
+        """Store rotor inertia at the joint [kg m^2], Coulomb friction [N m] and viscous friction [N m s/rad].
 
-        Args:
-            armature: Rotor inertia at the joint [kg m^2].
-            coulomb: Coulomb friction [N m].
-            viscous: Viscous friction [N m s/rad].
+        Their shape is (coordinates,).
         """
         self._armature, self._coulomb, self._viscous = armature, coulomb, viscous
 

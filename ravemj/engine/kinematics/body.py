@@ -118,7 +118,6 @@ class BodyKinematics:
         self.set_values(np.array([axis.value for axis in body.dof_axes]))
 
     def _find_joints(self, names: tuple[tuple[str, ...], ...]) -> None:
-        """Find the joints by their names in the model."""
         body = self.body
         # For each joint, active ones and then passive ones, the places of its axes in ``qpos``; none for a joint that
         # moves no link.

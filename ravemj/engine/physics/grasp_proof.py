@@ -127,7 +127,6 @@ class _Experiment:
         option.cone, option.integrator = mujoco.mjtCone.mjCONE_ELLIPTIC, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
 
     def _copy_values(self, state: BodyState, names: BodyNames) -> None:
-        """Copy the values of the remaining joints."""
         kinematics = state.kinematics
         for places, joint_names in zip(kinematics.joint_qpos, names.joints, strict=True):
             for place, name in zip(places, joint_names, strict=True):
@@ -144,7 +143,6 @@ class _Experiment:
         model.geom_contype[apart] = model.geom_conaffinity[apart] = 0
 
     def _place(self, robot: BodyState, target: BodyState, names: BodyNames) -> None:
-        """Place the object in the hand."""
         assert self._arm.effector is not None
         model, data = self._model, self._data
         mujoco.mj_kinematics(model, data)

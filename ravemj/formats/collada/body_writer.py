@@ -67,7 +67,6 @@ class BodyWriter:
                 self._write_formula(index, self._joints[index].mimic)
 
     def _write_formula(self, index: int, mimic: Mimic | None) -> None:
-        """Write the mimic formula of a joint."""
         if mimic is None or mimic.expression is None:
             return
         out, joint = self._sections.kinematics_models, self._joints[index]

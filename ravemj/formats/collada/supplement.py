@@ -138,7 +138,6 @@ def _name_joints(body: BodyBuilder, names: Sequence[str], listed: Sequence[Eleme
 
 
 def _order_links(body: BodyBuilder, order: Sequence[int], names: Sequence[str]) -> None:
-    """Reorder and rename the links."""
     place_of = {index: place for place, index in enumerate(order)}
     renamed = {body.links[index].name: name for index, name in zip(order, names, strict=True)}
     for manipulator in body.manipulators:

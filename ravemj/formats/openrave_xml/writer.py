@@ -140,7 +140,6 @@ class _Writer:
             write_parameters(self.out, link.parameters)
 
     def _write_groups(self, link: Link) -> None:
-        """Write the selectable geometry groups."""
         for group, geometries in link.groups:
             if group == OWN_SHAPES or not geometries:
                 message = f"of link '{link.name}' the group of shapes '{group}', which others replace, is left out"

@@ -302,7 +302,6 @@ def _turns_at_origin(joint: Joint, zero: Pose) -> bool:
 
 
 def _unique(names: Sequence[str]) -> list[str]:
-    """Make names unique."""
     return list(_distinct(names))
 
 

@@ -137,8 +137,7 @@ def open_renderer(
         model: The model; geoms may change poses and colours later, but not their number.
         width: Columns of the pictures.
         height: Rows of the pictures.
-        shadows: Whether lights cast shadows, which is slow without a graphics card; None: if there is one. The ray
-            caster has none.
+        shadows: Whether lights cast shadows; None: if there is a graphics card. The ray caster ignores it.
         samples: Samples per pixel for antialiasing: 4 for stills, 0 for speed.
         backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``; by default that of ``MUJOCO_GL``, or any.
 

@@ -154,7 +154,6 @@ class ControlLayout(NamedTuple):
         return *drawn, *self.help
 
     def _scroll_bar(self, table: Rect) -> Panel:
-        """Return the scroll bar of the rows."""
         shown = sum(control.group in {"joints", "tree"} for control in self.places)
         part = table.height / (shown + self.last_row)
         return Panel(Rect(table.x, table.y + self.first_row * part, _SCROLL_BAR, shown * part), _GROOVE)

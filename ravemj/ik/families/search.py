@@ -130,10 +130,7 @@ def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
 
 
 def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
-    """Yield variants of an arm with ``missing`` joints added.
-
-    First, all are appended at the tool; then one, two or three of them complete a block (see ``blocks``).
-    """
+    """Yield arms with ``missing`` joints added: at first all at the tool, then some of them completing a block."""
     if missing < 0:
         return
     if missing == 0:

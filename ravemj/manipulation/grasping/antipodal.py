@@ -156,10 +156,7 @@ def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bo
 
 
 def _distinct(candidates: list[Pair]) -> list[Pair]:
-    """Return point pairs without duplicates: (a, b) is the same as (b, a).
-
-    Refused pairs are duplicates if their first points are equal.
-    """
+    """Return pairs without duplicates: (a, b) equals (b, a); refused pairs are equal if they start at one point."""
     seen: set[tuple[tuple[int, ...], ...]] = set()
     distinct: list[Pair] = []
     for pair in candidates:

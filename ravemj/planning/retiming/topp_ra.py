@@ -74,14 +74,7 @@ def _fastest(corners: Floats, moving: Ints, limits: PathLimits) -> "_Rows":
 
 
 class _Rows(NamedTuple):
-    """Values and velocities at m grid points along a path.
-
-    Attributes:
-        values: Values [rad or m], shape (m, n).
-        velocities: Velocities, shape (m, n).
-        deltas: Times between neighbouring grid points [s], shape (m - 1,).
-        is_point: Whether each grid point is a waypoint of the path, shape (m,).
-    """
+    """Values and velocities at m grid points, time differences, shape (m - 1,), and which points are waypoints."""
 
     values: Floats
     velocities: Floats
