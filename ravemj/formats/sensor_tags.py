@@ -130,9 +130,7 @@ def is_text(device: Device, tag: SensorTag) -> bool:
 
 
 def written(device: Device, *, collada: bool = False) -> list[tuple[str, str | float | Sequence[float]]]:
-    """Return the elements that describe a device: names and contents of fields that differ from their defaults.
-
-    Of several names for a field, the first is written.
+    """Return the elements that describe a device, one name for each field whose value is not the default.
 
     Args:
         device: The device.
