@@ -128,7 +128,7 @@ class BodySpaces:
         self._clearances = Clearances(model, world.model.data, world.shapes, self.pairs, chains, ids)
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> Tested:
-        """Test which pairs in ``asked``, shape (m, pairs), may come closer than ``apart`` [m] within m spreads."""
+        """Test if pairs ``asked``, (m, pairs), may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``."""
         place = self._bodies.placement()
         for slot, values in enumerate(middles):
             place(values)

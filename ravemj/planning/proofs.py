@@ -155,7 +155,7 @@ class Spaces(Protocol):
         ...
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> PairTests:
-        """Test which pairs in ``asked``, shape (m, pairs), may come closer than ``apart`` [m] within m spreads."""
+        """Test if pairs ``asked``, (m, pairs), may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``."""
         ...
 
 

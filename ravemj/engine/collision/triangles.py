@@ -91,10 +91,7 @@ class TriangleTests:
         return min(distance, limit)
 
     def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
-        """Yield signed distance [m] and ``segment`` of each triangle that touches the other geom.
-
-        A solid is measured as a whole, a mesh triangle by triangle.
-        """
+        """Yield signed distance [m] and ``segment`` of each mesh triangle touching a solid or another triangle."""
         result, place = fcl.CollisionResult(), _OTHER_TRIANGLE
         if self._is_mesh(other):
             fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)
