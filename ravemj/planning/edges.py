@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.planning.certificates import Certificate
 from ravemj.planning.proofs import Curve, line_curve
 from ravemj.planning.space import Space
 
@@ -26,6 +27,9 @@ Allowed = Callable[[Floats], bool]
 
 Proof = Callable[[Sequence[Curve]], bool]
 """Proof that a motion is free of collisions at all times."""
+
+Certify = Callable[[Sequence[Curve]], Certificate | None]
+"""Returns the certificate of a motion, up to its first undecided span, or None if there can be none."""
 
 
 class Growth(NamedTuple):
@@ -50,13 +54,21 @@ class Edges:
         allowed: The test of one configuration.
         step: Distance of neighbouring nodes of a tree, a weighted distance; 0 selects ``STEP``.
         proof: Additional test of shortcuts, or None.
+        certify: Certifies motions of shortcuts, or None.
 
     Attributes:
         is_strict: Whether the edges of trees have to pass ``proof``, too.
     """
 
-    def __init__(self, space: Space, allowed: Allowed, step: float = STEP, proof: Proof | None = None) -> None:
-        self.space, self.allowed, self.proof = space, allowed, proof
+    def __init__(
+        self,
+        space: Space,
+        allowed: Allowed,
+        step: float = STEP,
+        proof: Proof | None = None,
+        certify: Certify | None = None,
+    ) -> None:
+        self.space, self.allowed, self.proof, self.certify = space, allowed, proof, certify
         self.step = step if step > 0 else STEP
         self.is_strict = False
 
