@@ -204,7 +204,7 @@ class ShortenedMotion:
                 self._insert(shortcut)
 
     def remove_shortcut(self, time: float) -> bool:
-        """Remove the shortcut at a time of the motion [s], and those that start or end on it; return whether one is there."""
+        """Remove the shortcut at a time [s], and those that start or end on it; return whether one is there."""
         source = self._at(time, self._ends())[0].source
         if source < len(self._straight):
             return False
