@@ -129,7 +129,9 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
         kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             description = "None" if value is None else f"of type {type(value).__name__}"
-            wanted = " or ".join(dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else f"a {kind}" for kind in kinds))
+            wanted = " or ".join(
+                dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else _with_article(kind) for kind in kinds)
+            )
             return f"{_caller(function, args)}: {name}: is {description}, and should be {wanted}"
     return None
 
@@ -154,6 +156,10 @@ def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwar
 def _caller(function: FunctionType, args: tuple[Any, ...]) -> str:
     """Return the name of a function, or of the class whose constructor it is."""
     return type(args[0]).__name__ if function.__name__ == "__init__" else function.__name__
+
+
+def _with_article(kind: str) -> str:
+    return f"{'an' if kind[0] in 'AEIO' else 'a'} {kind}"
 
 
 def _kinds(annotation: object) -> list[str]:

@@ -178,11 +178,11 @@ def test_a_value_alone_is_refused(value):
 @pytest.mark.parametrize("name", TABLE)
 def test_a_goal_beside_a_type_is_of_this_type(name):
     one = goal(name, ravemj.matrixFromPose([1, 0, 0, 0, 0.1, 0.2, 0.3]))
-    for given in (one, str(one)):
-        np.testing.assert_array_equal(IkParameterization(given, one.GetType()).GetValues(), one.GetValues())
+    for value in (one, str(one)):
+        np.testing.assert_array_equal(IkParameterization(value, one.GetType()).GetValues(), one.GetValues())
         for other in set(TABLE) - {name}:
             with pytest.raises(ravemj.openrave_exception, match=f"{other}, and the goal is of type {name}"):
-                IkParameterization(given, getattr(Type, other))
+                IkParameterization(value, getattr(Type, other))
 
 
 WRONG = [None, "x y", [], [1], [1, 2], [[1, 2], [3, 4]], list(range(5)), np.eye(3), np.zeros((2, 3, 3)), {}, object()]
@@ -205,7 +205,7 @@ def test_values_of_a_wrong_shape_are_refused(name, wrong):
 
 @pytest.mark.parametrize("number", [-1, 0, 3, 0x67000002, 10**12])
 def test_numbers_that_are_no_type_are_refused(number):
-    with pytest.raises((ravemj.openrave_exception, ValueError), match="IkParameterization|type: "):
+    with pytest.raises((ravemj.openrave_exception, ValueError), match=r"IkParameterization|type: "):
         IkParameterization([1, 2, 3], number)
 
 
