@@ -8,7 +8,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.planning.certificates import Certificate
 from ravemj.planning.edges import Edges, path_is_allowed
-from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
+from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, MatchedRamps, Parabolic, Quintic
 from ravemj.planning.retiming.segments import Interpolated, PathLimits, Profile, RetimingError, Timed, retime
 from ravemj.planning.retiming.spline import Spline
 from ravemj.planning.retiming.topp_ra import ToppRa
@@ -39,7 +39,8 @@ def flag(options: Mapping[str, str], name: str, *, default: bool = False) -> boo
 
 
 def _parabolic(options: Mapping[str, str]) -> Parabolic:
-    return Parabolic(with_changes=flag(options, "outputaccelchanges", default=True))
+    profile = MatchedRamps if options.get("multidofinterp", "").strip() == "2" else Parabolic
+    return profile(with_changes=flag(options, "outputaccelchanges", default=True))
 
 
 SPLINE = "splinetrajectoryretimer"

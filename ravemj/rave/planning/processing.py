@@ -34,8 +34,8 @@ TIMING: Mapping[str, str] = {
 }
 """Common parameters of OpenRAVE's retimers and smoothers, with its defaults.
 
-Of these, only ``interpolation``, ``hastimestamps``, ``hasvelocities``, ``outputaccelchanges`` and ``verifyinitialpath``
-have an effect.
+Of these, only ``interpolation``, ``hastimestamps``, ``hasvelocities``, ``outputaccelchanges``, ``multidofinterp`` 2
+(all joints change their accelerations at the same times) and ``verifyinitialpath`` have an effect.
 """
 
 _CONSTRAINTS: Mapping[str, str] = {
