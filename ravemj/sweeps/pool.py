@@ -3,12 +3,14 @@
 import contextlib
 import os
 import signal
+import sys
 import threading
 import warnings
 from collections.abc import Callable, Generator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context, parent_process
+from types import ModuleType
 from typing import Any, TypeVar
 
 from ravemj.errors import RavemjError, RavemjWarning
@@ -33,11 +35,13 @@ def _end_with_driver() -> None:
 
 
 class _Worker:
-    """A process in its own pool."""
+    """A process in its own pool; it runs the main module of the script only if ``needs_main``."""
 
-    def __init__(self) -> None:
-        self.pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_begin)
-        self.process = self.pool.submit(os.getpid)
+    def __init__(self, needs_main: bool) -> None:
+        self.needs_main = needs_main
+        with contextlib.nullcontext() if needs_main else _other_main():
+            self.pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_begin)
+            self.process = self.pool.submit(os.getpid)
 
     def kill(self) -> None:
         """Kill the process immediately."""
@@ -54,11 +58,12 @@ class Workers(Executor):
 
     Args:
         count: Number of processes.
+        needs_main: Whether calls use functions or classes of the script, which each process imports then.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, *, needs_main: bool = True) -> None:
         with _one_thread():
-            self._idle = [_Worker() for _ in range(count)]
+            self._idle = [_Worker(needs_main) for _ in range(count)]
             self._busy: dict[Future[Any], _Worker] = {}
             try:
                 for worker in self._idle:
@@ -103,7 +108,21 @@ class Workers(Executor):
 def _restarted(worker: _Worker) -> _Worker:
     worker.pool.shutdown(wait=False)
     with _one_thread():
-        return _Worker()
+        return _Worker(worker.needs_main)
+
+
+@contextlib.contextmanager
+def _other_main() -> Generator[None]:
+    """Have processes that start within the block not import the main module.
+
+    Importing it would repeat what a script does without ``if __name__ == "__main__":``, and fails for Python 2.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
 
 
 @contextlib.contextmanager

@@ -119,7 +119,8 @@ def sweep(  # noqa: PLR0913 - keyword arguments
     missing = [span for span in result.spans if not _is_done(shard_path(folder, what, *span), check=check)]
     tasks = (plan.task(*span, threads=executor is not None) for span in missing)
     if isinstance(executor, int):
-        with Workers(min(workers, max(1, len(missing)))) as pool:
+        needs_main = any(b"__main__" in content for content in (plan.first.content, pickle.dumps(job)))
+        with Workers(min(workers, max(1, len(missing))), needs_main=needs_main) as pool:
             driver = Driver(pool, folder, retries, timeout, progress, told)
             driver.run(tasks, len(missing), len(result.spans), min(workers, max(1, len(missing))))
     else:

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from ravemj.compat.databases.grasp_use import GraspUse
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation.record import WorldRecord
-from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.geometry_functions.poses import poseFromMatrix
 from ravemj.manipulation.grasping.wrenches import epsilon
@@ -321,20 +320,10 @@ def _run(
     processes: int,
     told: Callable[[int, int, int], object],
 ) -> None:
-    def call(executor: int | None) -> None:
-        named: dict[str, Any] = {"block": BLOCK, "shard": BLOCK, "progress": told, "options": options}
-        sweep(env, try_candidates, rows, parts, executor=executor, check=True, **named)
-
     try:
-        try:
-            call(processes if processes > 1 else None)
-        except SweepError:
-            raise
-        except RavemjError as error:
-            if isinstance(error, ArgumentError) or "__main__" not in str(error):
-                raise
-            _LOG.warning("%s; generating without processes", error)
-            call(None)
+        named: dict[str, Any] = {"block": BLOCK, "shard": BLOCK, "progress": told, "options": options}
+        executor = processes if processes > 1 else None
+        sweep(env, try_candidates, rows, parts, executor=executor, check=True, **named)
     except KeyboardInterrupt:
         done = Sweep.open(parts).done if (parts / MANIFEST).exists() else 0
         _LOG.warning("stopped: %d of %d candidates are tried; the same call goes on from there", done, len(rows))

@@ -119,7 +119,7 @@ class Grasper(Helper):
             transformrobot: Whether the hand is placed and moves to the target; otherwise only the fingers move.
             onlycontacttarget: Whether contact with another body is a failure.
             tightgrasp: Not used, as in OpenRAVE.
-            graspingnoise: Largest random error of a surface point of the target [m]: the target itself does not move.
+            graspingnoise: Largest random error of the target along each axis [m]: the target itself does not move.
             execute: Whether the controller moves the joints to those of the grasp; None: it does.
             translationstepmult: Factor of the steps for sliders and the flight [m/rad]; None: 0.1.
             outputfinal: Whether to return the last configuration.

@@ -35,6 +35,14 @@ unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """
 """Names that only later versions export by ``from numpy import *``; they would hide those of Python and ``math``."""
 
+_OF_ARRAYS = (np.repeat, np.reshape, np.resize, np.tile)
+"""Functions whose second argument is a size."""
+
+_SIZED = (np.empty, np.eye, np.identity, np.ones, np.zeros, *_OF_ARRAYS)
+"""Functions whose first argument is a size, and those of ``_OF_ARRAYS``."""
+
+_SIZES = {"M", "N", "n", "newshape", "repeats", "reps", "shape"}
+
 _WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
 
 
@@ -86,6 +94,26 @@ def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
+def _as_counts(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a function to truncate a size that is a float, as NumPy did up to 1.11."""
+    first = 1 if function in _OF_ARRAYS else 0
+
+    @functools.wraps(function)
+    def call(*args: Any, **options: Any) -> Any:
+        sizes = [_whole(value) for value in args[first : first + 1]]
+        options |= {name: _whole(options[name]) for name in _SIZES & options.keys()}
+        return function(*args[:first], *sizes, *args[first + 1 :], **options)
+
+    return call
+
+
+def _whole(size: Any) -> Any:
+    """Return a size with integers in place of floats."""
+    if isinstance(size, float):
+        return int(size)
+    return type(size)(map(_whole, size)) if isinstance(size, list | tuple) else size
+
+
 def _fromstring(string: Any, dtype: Any = float, count: int = -1, sep: str = "") -> Any:
     return np.fromstring(string, dtype, count, sep=sep) if sep else np.frombuffer(as_bytes(string), dtype, count).copy()
 
@@ -110,6 +138,7 @@ def _names() -> dict[str, object]:
     names |= {"math": "math", "NINF": -np.inf, "NZERO": -0.0, "PZERO": 0.0}
     own = (_alen, _array, _asfarray, _asscalar, _divide, _find_common_type, _fromstring, _in1d, _msort, _sum)
     names |= {function.__name__[1:]: function for function in own}
+    names |= {function.__name__: _as_counts(function) for function in _SIZED}
     names |= {function.__name__: _as_floats(function) for function in (np.ceil, np.fix, np.floor, np.trunc)}
     star = ({*np.__all__} - {*_ADDED.split()}) | {*names}
     types = {kind.__name__: kind for kind in (bool, complex, float, int, object, str)}

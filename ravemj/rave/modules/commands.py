@@ -283,9 +283,9 @@ def _jitter_active(base: BaseManipulation, arguments: str) -> str:
     return _final_and_reply(base, base.jitter_active(chosen(JitterMotion, options)), options)
 
 
-def _set_minimum_goal_paths(base: BaseManipulation, arguments: str) -> str:
+def _set_minimum_goal_paths(module: BaseManipulation | TaskManipulation, arguments: str) -> str:
     """Set the minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
-    del base
+    del module
     Tokens(arguments).count()
     return ""
 
@@ -366,6 +366,7 @@ TASK_COMMANDS: Mapping[str, Callable[[TaskManipulation, str], str | None]] = {
     "ReleaseActive": _release_active,
     "GraspPlanning": _grasp_planning,
     "EvaluateConstraints": _evaluate_constraints,
+    "SetMinimumGoalPaths": _set_minimum_goal_paths,
     "SetRobot": _set_robot,
 }
 """The commands of ``TaskManipulation``."""
