@@ -35,13 +35,14 @@ unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """
 """Names that only later versions export by ``from numpy import *``; they would hide those of Python and ``math``."""
 
-_OF_ARRAYS = (np.repeat, np.reshape, np.resize, np.tile)
+_OF_ARRAYS = ("repeat", "reshape", "resize", "tile")
 """Functions whose second argument is a size."""
 
-_SIZED = (np.empty, np.eye, np.identity, np.ones, np.zeros, *_OF_ARRAYS)
-"""Functions whose first argument is a size, and those of ``_OF_ARRAYS``."""
+_SIZED = ("empty", "eye", "identity", "ones", "zeros", *_OF_ARRAYS)
+"""Functions with a size as the first argument, and those of ``_OF_ARRAYS``."""
 
 _SIZES = {"M", "N", "n", "newshape", "repeats", "reps", "shape"}
+"""Names of arguments that are sizes."""
 
 _WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
 
@@ -94,9 +95,9 @@ def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
-def _as_counts(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a function to truncate a size that is a float, as NumPy did up to 1.11."""
-    first = 1 if function in _OF_ARRAYS else 0
+def _with_sizes(name: str) -> Callable[..., Any]:
+    """Return a function that truncates a size that is a float, as NumPy did up to 1.11."""
+    function, first = getattr(np, name), int(name in _OF_ARRAYS)
 
     @functools.wraps(function)
     def call(*args: Any, **options: Any) -> Any:
@@ -138,7 +139,7 @@ def _names() -> dict[str, object]:
     names |= {"math": "math", "NINF": -np.inf, "NZERO": -0.0, "PZERO": 0.0}
     own = (_alen, _array, _asfarray, _asscalar, _divide, _find_common_type, _fromstring, _in1d, _msort, _sum)
     names |= {function.__name__[1:]: function for function in own}
-    names |= {function.__name__: _as_counts(function) for function in _SIZED}
+    names |= {name: _with_sizes(name) for name in _SIZED}
     names |= {function.__name__: _as_floats(function) for function in (np.ceil, np.fix, np.floor, np.trunc)}
     star = ({*np.__all__} - {*_ADDED.split()}) | {*names}
     types = {kind.__name__: kind for kind in (bool, complex, float, int, object, str)}
