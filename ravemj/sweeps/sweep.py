@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.processes import Workers
 from ravemj.core.version import __version__
 from ravemj.engine.simulation.record import WorldRecord
 from ravemj.errors import ArgumentError
@@ -25,7 +26,6 @@ from ravemj.sweeps.driver import Driver, Here, Progress, Told
 from ravemj.sweeps.folder import FORMAT, Sweep, prepare, read_manifest
 from ravemj.sweeps.jobs import BLOCK, JOBS, Function, Job, Work, checked_items
 from ravemj.sweeps.pictures import check_options
-from ravemj.sweeps.pool import Workers
 from ravemj.sweeps.shards import PICTURES, is_sound, shard_path
 from ravemj.sweeps.worker import ShardTask, compute, state_restored
 

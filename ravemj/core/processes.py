@@ -6,8 +6,8 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Generator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context, parent_process
 from types import ModuleType
@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 from ravemj.errors import RavemjError, RavemjWarning
 
+_Part = TypeVar("_Part")
 _Result = TypeVar("_Result")
 
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -138,3 +139,43 @@ def _one_thread() -> Generator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+def map_parts(
+    function: Callable[[bytes, _Part], _Result], content: bytes, parts: Sequence[_Part], count: int
+) -> Generator[_Result]:
+    """Yield the results of a function for each part of some work, in the order of the parts, from several processes.
+
+    Ctrl-C, or closing the generator, kills the processes.
+
+    Args:
+        function: A function of a module, called with ``content`` and a part.
+        content: What all parts need, pickled.
+        parts: The parts.
+        count: Number of processes.
+
+    Raises:
+        RavemjError: a process died.
+    """
+    results, running, following = dict[int, _Result](), dict[Future[_Result], int](), 0
+    missing = iter(enumerate(parts))
+    with Workers(min(count, len(parts)), needs_main=b"__main__" in content) as pool:
+        while following < len(parts):
+            while len(running) < min(count, len(parts)) and (task := next(missing, None)) is not None:
+                running[pool.submit(function, content, task[1])] = task[0]
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                pool.release(future)
+                try:
+                    results[running.pop(future)] = future.result()
+                except BrokenProcessPool:
+                    raise RavemjError(
+                        "a worker process died, perhaps for lack of memory; use fewer processes"
+                    ) from None
+            while following in results:
+                yield results.pop(following)
+                following += 1
+
+
+def blocks_of(start: int, stop: int, size: int) -> list[tuple[int, int]]:
+    """Return first and one past the last index of consecutive blocks."""
+    return [(first, min(first + size, stop)) for first in range(start, stop, size)]
