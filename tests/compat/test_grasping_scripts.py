@@ -143,6 +143,34 @@ def test_graspplanning(env, gmodel):
     assert target.GetTransform() == pytest.approx(Tdest, abs=1e-3)
 
 
+@pytest.mark.parametrize("lacks", ["zeros", "columns"])
+def test_rows_without_a_pose_are_simulated(gmodel, lacks):
+    """The pose is that of the table, which was simulated in the same way."""
+    robot, target = gmodel.robot, gmodel.target
+    taskmanip = interfaces.TaskManipulation(robot)
+    valid, _ = gmodel.computeValidGrasps(returnnum=1)
+    past = valid[0].copy()  # flies past the target
+    past[list(gmodel.graspindices["igrasppos"])] += [0, 0, 1]
+    rows, columns = np.array([past, valid[0]]), dict(gmodel.graspindices)
+    for name in ("igrasptrans", "grasptrans_nocol"):
+        if lacks == "zeros":
+            rows[:, list(columns[name])] = 0
+        else:
+            del columns[name]
+    before = target.GetTransform(), robot.GetDOFValues()
+    _, index, _, traj = taskmanip.GraspPlanning(columns, rows, target, execute=False, outputtrajobj=True)
+    assert index == 1
+    assert np.array_equal(target.GetTransform(), before[0])
+    assert np.array_equal(robot.GetDOFValues(), before[1])
+    with robot:
+        robot.SetActiveDOFs(gmodel.manip.GetArmIndices())
+        robot.SetActiveDOFValues(traj.GetWaypoint(-1, robot.GetActiveConfigurationSpecification()))
+        T = gmodel.manip.GetTransform()
+    expected = gmodel.getGlobalGraspTransform(valid[0], collisionfree=True)
+    assert T[:3, :3] == pytest.approx(expected[:3, :3], abs=1e-6)
+    assert T[:3, 3] == pytest.approx(expected[:3, 3], abs=1.2e-3)  # OpenRAVE moves the hand back by steps of 1 mm
+
+
 def test_constraintplanning(env, gmodel):
     """A mug that stands a little inside of the table when it is grabbed moves upright, and along one plane."""
     robot, target = gmodel.robot, gmodel.target

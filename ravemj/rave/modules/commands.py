@@ -426,13 +426,12 @@ _CONSTRAINT: Mapping[str, Reader] = {
 
 GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),
-    *("igrasppos", "igrasproll", "igraspstandoff"),
+    *("igrasppos", "igrasproll", "igraspstandoff", "ichuckingdirection"),
 )
-"""Column names of a grasp table; the last three are for programs that close the hand, and have no effect."""
+"""Column names of a grasp table; the last four are for rows without a pose, which are simulated."""
 
 _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),
     **readers_of(GraspMotion),
-    **dict.fromkeys(("grasptranslationstepmult", "graspfinestep"), Tokens.number),
     **{"grasps": _table, "target": text, "posedests": _several(_pose), "matdests": _several(Tokens.matrix)},
 }
