@@ -151,17 +151,26 @@ def length(space: Space, points: Floats) -> float:
 
 
 def nearby(
-    space: Space, configuration: Floats, allowed: Allowed, tries: int, farthest: float, random: np.random.Generator
+    space: Space,
+    configuration: Floats,
+    allowed: Allowed,
+    tries: int,
+    farthest: float,
+    random: np.random.Generator,
+    projected: Callable[[Floats], Floats] | None = None,
 ) -> Floats | None:
     """Return a configuration if it is allowed, else an allowed one nearby, or None.
 
-    Each value changes by at most ``farthest`` [rad or m]; the first tries stay closer.
+    Each value changes by at most ``farthest`` [rad or m]; the first tries stay closer. Candidates are then moved by
+    ``projected``, if given.
     """
     if allowed(configuration):
         return configuration
     for attempt in range(tries if farthest > 0 else 0):
         reach = farthest * (attempt + 1) / tries
         candidate = space.clamp(configuration + random.uniform(-reach, reach, len(configuration)))
+        if projected is not None:
+            candidate = projected(candidate)
         if allowed(candidate):
             return candidate
     return None

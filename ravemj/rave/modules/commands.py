@@ -318,9 +318,9 @@ def _jitter_active(base: BaseManipulation, arguments: str) -> str:
     return _final_and_reply(base, base.jitter_active(chosen(JitterMotion, options)), options)
 
 
-def _set_minimum_goal_paths(base: BaseManipulation, arguments: str) -> str:
+def _set_minimum_goal_paths(module: BaseManipulation | TaskManipulation, arguments: str) -> str:
     """Set the minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
-    del base
+    del module
     Tokens(arguments).count()
     return ""
 
@@ -403,6 +403,7 @@ TASK_COMMANDS: Mapping[str, Callable[[TaskManipulation, str], str | None]] = {
     "GraspPlanning": _grasp_planning,
     "EvaluateConstraints": _evaluate_constraints,
     **_GRABBING,
+    "SetMinimumGoalPaths": _set_minimum_goal_paths,
     "SetRobot": _set_robot,
 }
 """The commands of ``TaskManipulation``."""
@@ -462,13 +463,12 @@ _CONSTRAINT: Mapping[str, Reader] = {
 
 GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),
-    *("igrasppos", "igrasproll", "igraspstandoff"),
+    *("igrasppos", "igrasproll", "igraspstandoff", "ichuckingdirection"),
 )
-"""Column names of a grasp table; the last three are for programs that close the hand, and have no effect."""
+"""Column names of a grasp table; the last four are for rows without a pose, which are simulated."""
 
 _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),
     **readers_of(GraspMotion),
-    **dict.fromkeys(("grasptranslationstepmult", "graspfinestep"), Tokens.number),
     **{"grasps": _table, "target": text, "posedests": _several(_pose), "matdests": _several(Tokens.matrix)},
 }
