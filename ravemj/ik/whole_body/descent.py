@@ -29,6 +29,8 @@ _NEWTON = 1e-5
 """Contact error from which one Newton step leaves less than ``EXACT``."""
 _TURNS = 3
 """Maximum number of multiplier updates, and of Newton steps on contacts."""
+_EXACTLY = 1e-6
+"""Part of a contact error that a displacement may leave, beside the damping of dependent rows."""
 _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
@@ -217,11 +219,12 @@ class Descent:
         contacts = [task for task in self.tasks if task.is_contact and task.enabled]
         for _ in range(_TURNS if contacts else 0):
             measured = [(task, task.rows()) for task in contacts]
-            left = max(float(np.abs(rows.error).max()) for _, rows in measured)
+            error = np.concatenate([rows.error for _, rows in measured])
+            left = _length(error)
             if not EXACT < left < _DRIFT:
                 break
             jacobian = np.vstack([rows.jacobian for _, rows in measured])
-            back = _shortest(jacobian, np.concatenate([rows.error for _, rows in measured]), lower - x, upper - x)
+            back = _shortest(jacobian, error, lower - x, upper - x)
             self._mechanism.move(back)
             x = x + back
             if left < _NEWTON:
@@ -232,30 +235,54 @@ class Descent:
 def _on_equalities(problem: BoxProblem, gradient: Floats, x: Floats, jacobian: Floats, error: Floats) -> Floats:
     """Return the minimizer with zero error in the equality rows, as far as the bounds allow."""
     left = error - jacobian.dot(x)
-    size = float(np.abs(left).max())
+    size = _length(left)
     for _ in range(_TURNS):
         if size < _NEAR:
             break
         gradient = gradient - left.dot(jacobian)
         ahead = problem.minimise(gradient)
         left = error - jacobian.dot(ahead)
-        before, size = size, float(np.abs(left).max())
+        before, size = size, _length(left)
         if size > before / 2:  # bounds, or contradictory rows
             return ahead if size < before else x
         x = ahead
     return x
 
 
+def _length(error: Floats) -> float:
+    """Return the Euclidean norm, which does not depend on the directions of the world's axes."""
+    return math.sqrt(float(error.dot(error)))
+
+
 def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> Floats:
-    """Return the shortest displacement that removes an error; if it leaves the box, the best one inside."""
+    """Return a short displacement that removes an error; if none is found in the box, the best one inside.
+
+    Variables that leave the box are fixed at their bounds, and the others remove the rest.
+    """
+    x = _least_norm(jacobian, error)
+    free = np.ones(len(x), dtype=bool)
+    for _ in range(_TURNS):
+        outside = (x < lower) | (x > upper)
+        if not outside.any():
+            return x
+        free &= ~outside
+        x = np.minimum(np.maximum(x, lower), upper)
+        if not free.any():
+            break
+        left = error - jacobian.dot(np.where(free, 0.0, x))
+        x[free] = _least_norm(jacobian[:, free], left)
+        if _length(error - jacobian.dot(x)) > _EXACTLY * _length(error):
+            break
+    hessian = jacobian.T.dot(jacobian)
+    hessian.ravel()[:: len(x) + 1] += 1e-6 * np.trace(hessian) / len(x)
+    return BoxProblem(hessian, lower, upper).minimise(-error.dot(jacobian))
+
+
+def _least_norm(jacobian: Floats, error: Floats) -> Floats:
+    """Return the shortest x with ``jacobian @ x = error``, slightly damped for dependent rows."""
     square = jacobian.dot(jacobian.T)
     square.ravel()[:: len(error) + 1] += 1e-9 * np.trace(square) / len(error)
-    x = np.asarray(np.linalg.solve(square, error), dtype=float) @ jacobian
-    if ((x < lower) | (x > upper)).any():
-        hessian = jacobian.T.dot(jacobian)
-        hessian.ravel()[:: len(x) + 1] += 1e-9 * np.trace(hessian) / len(x)
-        return BoxProblem(hessian, lower, upper).minimise(-error.dot(jacobian))
-    return x
+    return np.asarray(np.linalg.solve(square, error), dtype=float).dot(jacobian)
 
 
 def _weighted(measured: Sequence[tuple[WeightedTask, TaskRows]], count: int) -> tuple[Floats, Floats]:
