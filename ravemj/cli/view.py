@@ -55,7 +55,7 @@ def show(
         env: The environment; it is destroyed at the end.
         robot: The robot to look at; None: everything.
         options: The options of the command.
-        worker: Returns the function that is called periodically.
+        worker: Called once with the viewer; returns the function to call periodically.
         period: Period of the calls [s].
     """
     try:

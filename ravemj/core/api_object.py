@@ -12,24 +12,26 @@ Thing = TypeVar("Thing")
 
 
 class _ApiType(type):
-    """Metaclass that gives classes the ``dir`` of their objects, since IPython completes with the union of both."""
+    """Metaclass that makes ``dir`` of a class the same as that of its objects, since IPython completes with both."""
 
     def __dir__(cls) -> list[str]:
         return _listed(cls, super().__dir__())
 
 
 class ApiObject(metaclass=_ApiType):
-    """An object with a ``repr`` without an address, and a ``dir`` of the names that users call.
+    """Base class with a ``repr`` without an address, and a ``dir`` of the names that users call.
 
-    ``dir`` and tab completion omit names with an underscore and those in ``_internal``, which are for other modules of
-    this package. The latter have no underscore, since other modules may not call private names.
+    ``dir`` and tab completion omit names with an underscore, and those in ``_internal``, which are for other modules of
+    this package: they have no underscore, since other modules may not call private names.
     """
 
     _internal: ClassVar[tuple[str, ...]] = ()
 
     _often_called: ClassVar[tuple[str, ...]] = ()
-    """Performance-critical methods, and ``__init__`` of classes with many objects. They check their arguments, since a
-    wrapper would cost 0.1 µs per call."""
+    """Performance-critical methods, and ``__init__`` of classes with many objects.
+
+    They check their arguments themselves, since a wrapper would cost 0.1 µs per call.
+    """
 
     def __init_subclass__(cls, **kwargs: object) -> None:
         """Wrap public methods and the constructor for argument errors, and set their displayed signatures.
@@ -48,7 +50,7 @@ class ApiObject(metaclass=_ApiType):
 
 
 def published(thing: Thing, module: str) -> Thing:
-    """Return a function or class of a module as users get it: errors name its arguments, signatures are as written."""
+    """Return a function or class of a module for users: its errors name arguments, its signature is as written."""
     if isinstance(thing, FunctionType):
         thing = cast("Thing", explained(thing))
         thing.__module__ = module  # where pickle finds it

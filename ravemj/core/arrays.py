@@ -81,7 +81,7 @@ def checked_number(value: float, name: str, least: float = -math.inf, unit: str 
     """Return a finite number.
 
     Raises:
-        ArgumentError: it is no number, not finite, or below the least.
+        ArgumentError: it is not a number, not finite, or below ``least``.
     """
     (number,) = checked_vector([value], 1, name).tolist()
     if number < least:
@@ -102,7 +102,7 @@ def finite_vector(values: ArrayLike, length: int, name: str) -> Floats:
 
 
 def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
-    """Return the first numbers of a vector, which may be longer, as for velocities and accelerations in OpenRAVE.
+    """Return the first ``length`` numbers of a vector, as OpenRAVE takes velocities and accelerations.
 
     Raises:
         ArgumentError: there are fewer numbers, or one is not finite.
@@ -112,7 +112,7 @@ def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
 
 
 def checked_rows(numbers: ArrayLike, width: int, name: str) -> Floats:
-    """Return a finite array of shape (N, width); the given array itself if its type is right.
+    """Return a finite array of shape (N, width); the array itself if its type is right.
 
     Raises:
         ArgumentError: it has another shape, or an entry is not a finite number.
@@ -129,10 +129,10 @@ def checked_rows(numbers: ArrayLike, width: int, name: str) -> Floats:
 
 
 def checked_point(values: ArrayLike, name: str) -> Floats:
-    """Return a point, shape (3,), for read-only use: the given array itself if it is valid.
+    """Return a point, shape (3,), for read-only use: the array itself if it is valid.
 
     Raises:
-        ValueError: it has another shape; OpenRAVE's bindings raise this error too.
+        ValueError: it has another shape; OpenRAVE's bindings raise this error, too.
         ArgumentError: a number is not finite.
     """
     given = values if type(values) is np.ndarray else checked_numbers(values, name)
@@ -149,8 +149,8 @@ def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name
 
     Raises:
         ArgumentError: the indices are not whole numbers.
-        TypeError: they are an enumeration's member.
-        IndexError: one is not from 0 to ``count - 1``.
+        TypeError: they are members of an enumeration.
+        IndexError: an index is not from 0 to ``count - 1``.
     """
     if indices is ...:
         return np.arange(count)
@@ -167,7 +167,7 @@ def checked_whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
     """Return a copy as a one-dimensional array of whole numbers; None gives an empty one.
 
     Raises:
-        ArgumentError: they are no whole numbers.
+        ArgumentError: they are not whole numbers.
     """
     try:
         whole = np.array(numbers)  # without a type: 1.5 would become 1
@@ -184,10 +184,10 @@ def checked_whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
 def checked_transform(transform: ArrayLike, name: str) -> Floats:
     """Return a rigid transform as a 4x4 matrix; the input is 4x4, 3x4, or a pose [w, x, y, z, tx, ty, tz].
 
-    The quaternion is normalised, and so is a rotation that is scaled, as in OpenRAVE.
+    As in OpenRAVE, quaternions are normalized, and scale factors of rotations are removed.
 
     Raises:
-        ValueError: it has another shape; OpenRAVE raises this error too.
+        ValueError: it has another shape; OpenRAVE raises this error, too.
         ArgumentError: a number is not finite, or the rotation matrix is not orthonormal.
     """
     given = checked_numbers(transform, name)
@@ -228,10 +228,10 @@ def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
 def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
     """Return whether a rotation matrix, which may be scaled, is orthonormal up to rounding.
 
-    It uses plain floats, which are several times faster than numpy for nine numbers.
+    It uses Python floats, which are several times faster than numpy for nine numbers.
 
     Raises:
-        ArgumentError: it is not orthonormal even without its scale.
+        ArgumentError: it is not orthonormal even after removing the scale.
     """
     x, y, z = rows
     determinant = dot(x, cross(y, z))

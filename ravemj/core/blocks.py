@@ -18,7 +18,7 @@ _T = TypeVar("_T")
 
 
 class _CodeInC(io.IOBase):
-    """Uses only the ``__exit__`` of ``io.IOBase``: C code that calls ``close()``, whatever its arguments."""
+    """Base class whose ``__exit__``, that of ``io.IOBase``, is C code that calls ``close()`` for any arguments."""
 
     closed = True  # pyright: ignore - garbage collection should not call ``close``
 
@@ -26,7 +26,7 @@ class _CodeInC(io.IOBase):
 class Block(_CodeInC, Generic[_T]):
     """Runs a generator up to its ``yield`` at the start of a ``with`` block, and the rest at its end.
 
-    Unlike with ``contextlib.contextmanager``, the generator does not see the error that ends the block.
+    Unlike with ``contextlib.contextmanager``, the generator does not receive the error that ends the block.
     """
 
     def __init__(self, generator: Generator[_T]) -> None:
@@ -78,7 +78,7 @@ def exit_in_c(
 
 @block
 def restoring(action: Callable[[], object]) -> Generator[None]:
-    """Call a function at the end of the block, and again if an interrupt stops it before it is complete."""
+    """Call a function at the end of the block; if an interrupt stops the call, repeat it."""
     try:
         yield
     finally:
@@ -97,7 +97,7 @@ def always(action: Callable[[], object]) -> Callable[..., object]:
 
 
 class Closing(_CodeInC):
-    """Has an ``__exit__`` in C that closes the owner's current ``innermost_block``."""
+    """Base class with an ``__exit__`` in C that closes the object's current ``innermost_block``."""
 
     close = property(attrgetter("_owner.innermost_block.close"))  # pyright: ignore[reportAssignmentType]
 

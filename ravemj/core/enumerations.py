@@ -14,7 +14,7 @@ class _Listed(EnumMeta):
         return dict(cls.__members__)
 
     def __dir__(cls) -> list[str]:
-        """Return all names, also those of combinations of flags and of second names, which Python leaves out."""
+        """Return all names, including combinations of flags and aliases, which Python omits."""
         return sorted({*super().__dir__(), *cls.__members__})
 
     @property
@@ -24,7 +24,7 @@ class _Listed(EnumMeta):
 
 
 class NamedInt(IntEnum, metaclass=_Listed):
-    """An enumeration of numbers; ``str`` gives class and name, ``format`` the number."""
+    """Enumeration of numbers; ``str`` gives class and name, ``format`` the number."""
 
     __str__ = Enum.__str__
 

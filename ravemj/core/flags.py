@@ -1,4 +1,4 @@
-"""Interrupt-safe waiting between threads. Ctrl-C can leave ``threading.Event`` and ``queue.Queue`` locked for ever."""
+"""Interrupt-safe waiting between threads. Ctrl-C can leave ``threading.Event`` and ``queue.Queue`` locked forever."""
 
 from contextlib import suppress
 from queue import SimpleQueue
@@ -9,7 +9,7 @@ _T = TypeVar("_T")
 
 
 class Flag:
-    """A flag that one thread sets and others wait for, safe against interrupts."""
+    """Flag that one thread sets and others wait for, safe against interrupts."""
 
     def __init__(self) -> None:
         self._is_set = False
@@ -31,7 +31,7 @@ class Flag:
         self._gate.acquire(blocking=False)
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until the flag is set, at most for a time [s]; return whether it is set."""
+        """Wait until the flag is set, or for at most ``timeout`` [s]; return whether it is set."""
         try:
             if not self._is_set:
                 self._gate.acquire(timeout=-1 if timeout is None else max(timeout, 0.0))

@@ -1,6 +1,6 @@
-"""Handling of ``os.fork``: objects that the child process can and cannot use.
+"""Handling of ``os.fork``: which objects the child process can use.
 
-A child has copies of all objects, but only the thread that forked. So locks held by other threads stay locked for ever,
+A child has copies of all objects, but only the thread that forked. So locks held by other threads stay locked forever,
 and windows, pages and OpenGL contexts have no thread that serves them. Objects that depend on these belong to the
 process that created them; in the child they raise an error.
 """
@@ -29,7 +29,7 @@ def in_child(function: Callable[[], None]) -> Callable[[], None]:
 
 
 def _await_imports() -> None:
-    """Wait until no other thread is importing a module, since the child could not import that."""
+    """Wait until no other thread is importing a module, since the child could never finish that import."""
     locks: dict[str, Any] = vars(sys.modules["_frozen_importlib"]).get("_module_locks", {})
     harmless = {None, threading.get_ident()}
     deadline = time.monotonic() + _LONGEST_IMPORT

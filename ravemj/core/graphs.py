@@ -11,7 +11,7 @@ Pair = tuple[int, int]
 def topological_order(items: Iterable[int], dependencies: Callable[[int], Iterable[int]]) -> list[int]:
     """Return items and their dependencies in topological order: each comes after its own dependencies.
 
-    Items keep their order where dependencies allow it. Of the members of a cycle, the one visited first comes last.
+    Items keep their order if dependencies allow it. Of the members of a cycle, the one visited first comes last.
     """
     order: list[int] = []
     met: set[int] = set()
@@ -92,7 +92,7 @@ class ShortestPaths:
     """The shortest paths in an undirected graph.
 
     Of several shortest paths it selects the one whose largest inner node is smallest, as in OpenRAVE. Of several edges
-    between two nodes the last one counts.
+    between two nodes, the last one is used.
     """
 
     def __init__(self, count: int, edges: Sequence[Pair]) -> None:
@@ -104,7 +104,7 @@ class ShortestPaths:
         self._found: dict[Pair, list[int]] = {}
 
     def path(self, start: int, end: int) -> list[int]:
-        """Return the edges of the path between two nodes; none if there is no path, or if the nodes are the same."""
+        """Return the edges of the path between two nodes; none if there is no path, or if the nodes are equal."""
         path = self._found.get((start, end))
         if path is None:
             path = self._found[start, end] = list(self._steps(start, end))
@@ -127,7 +127,7 @@ class ShortestPaths:
         return nearer[0]
 
     def _largest_inner(self, start: int, end: int, distance: dict[int, int]) -> int:
-        """Return the smallest possible largest inner node of a shortest path."""
+        """Return the minimum, over the shortest paths between two nodes, of the largest inner node."""
         layers = [{start}]
         while end not in layers[-1]:
             layers.append({near for node in layers[-1] for near in self._nearer(node, distance)})
@@ -175,9 +175,10 @@ class ShortestPaths:
 
 
 def nodes_between(edges: Iterable[Pair], count: int, start: int, end: int) -> set[int]:
-    """Return the nodes on simple paths between two nodes, which visit no node twice; none if these are the same.
+    """Return the nodes on simple paths between two nodes, which visit no node twice; none if the two are equal.
 
-    An edge lies on such a path if both of its nodes do. They are in one block with an edge from the start to the end.
+    An edge lies on such a path if both of its nodes do. These nodes are in one block (biconnected component) with an
+    additional edge from the start to the end.
     """
     neighbours: list[list[int]] = [[] for _ in range(count)]
     for first, second in edges:

@@ -26,7 +26,7 @@ class Handle(ApiObject):
         self._release.atexit = False
 
     def Close(self) -> None:  # noqa: N802 - OpenRAVE's name
-        """Release it now; a second call does nothing."""
+        """Release the resource now; a second call does nothing."""
         self._release()
 
     close = Close
@@ -37,7 +37,7 @@ class Handle(ApiObject):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """Release it."""
+        """Release the resource."""
         self._release()
 
 
@@ -45,7 +45,7 @@ def registered(functions: list[_Function], function: _Function, name: str) -> Ha
     """Append a user's function to a list, and return a handle that removes it.
 
     Raises:
-        ArgumentError: it is not a function.
+        ArgumentError: ``function`` is not callable.
     """
     if not callable(function):
         raise ArgumentError(f"{name} is {function!r}, and should be a function")

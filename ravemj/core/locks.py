@@ -1,8 +1,8 @@
 """Locks for computations in C, and waiting for their threads at the exit of Python.
 
-Python does not stop daemon threads at exit. One that returns from MuJoCo or OpenGL afterwards crashes the process. So
-the exit acquires all ``StateLock`` s permanently: computing threads finish, others wait for ever. A thread that holds a
-lock for too long is ended by ``SystemExit``.
+Python does not stop daemon threads at exit. A thread that returns from MuJoCo or OpenGL afterwards crashes the process.
+So the exit acquires all ``StateLock`` s permanently: computing threads finish, others wait forever. A thread that holds
+a lock for too long is ended by ``SystemExit``.
 """
 
 import atexit
@@ -25,10 +25,10 @@ else:
     _Lock = type(RLock())
 
 LAST_CALL = 1.0
-"""Maximum time that the exit waits for computing threads, and then for those that it ends [s]."""
+"""Maximum time [s] that the exit waits for computing threads, and again for those that it ends."""
 
 _EACH = 0.05
-"""Minimum waiting time for a thread that it has ended [s]; another may have been waiting for the same lock."""
+"""Minimum waiting time [s] for a thread that the exit has ended; another may have been waiting for the same lock."""
 
 _locks: "WeakValueDictionary[int, StateLock]" = WeakValueDictionary()
 _before_end: list[Callable[[], object]] = []
@@ -37,7 +37,7 @@ _is_ending = False
 
 
 class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for pyright alone
-    """A reentrant lock for computations in C. Acquired by ``with``, it is released despite any interrupt."""
+    """A reentrant lock for computations in C. A ``with`` statement releases it despite any interrupt."""
 
     def __init__(self) -> None:
         while is_left_to_end():
@@ -50,12 +50,12 @@ class StateLock(_Lock):  # pyright: ignore[reportGeneralTypeIssues] - final for 
         return self._is_owned()  # pyright: ignore
 
     def release_if_held(self) -> None:
-        """Release the lock after an error, which may have come before it was acquired."""
+        """Release the lock after an error that may have occurred before it was acquired."""
         if self.is_held:
             self.release()
 
     def hold(self, timeout: float = -1.0) -> bool:
-        """Acquire the lock, or raise an error without it; return whether it was acquired in time [s]."""
+        """Acquire the lock within ``timeout`` [s], and return whether it is acquired; after an error it is not."""
         try:
             return self.acquire(timeout=timeout)
         except BaseException:

@@ -1,8 +1,8 @@
 """Atomic writing of files and folders.
 
 They are written under a temporary name beside the target and renamed at the end. If writing fails, nothing is left
-behind, and an older target is unchanged. If a process is killed, the next process that writes into the folder removes
-its temporary files.
+behind, and an existing target is unchanged. If a process is killed, the next process that writes into the folder
+removes its temporary files.
 """
 
 import os
@@ -143,7 +143,7 @@ def output_error(path: AnyPath, error: Exception) -> OutputError:
 
 @contextmanager
 def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError, ValueError)) -> Generator[None]:
-    """Convert errors of some types to ``OutputError``; by default also those of paths with null bytes."""
+    """Convert errors of some types to ``OutputError``; by default also the ``ValueError`` of paths with null bytes."""
     try:
         yield
     except (OutputError, BrokenPipeError):  # a pipe is not the target
@@ -153,7 +153,7 @@ def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError,
 
 
 def _real(path: AnyPath) -> Path:
-    """Return the absolute path; a symbolic link stays, and its target is replaced."""
+    """Return the absolute path with symbolic links resolved, so that their targets are replaced."""
     return Path(os.path.realpath(path))
 
 
@@ -198,7 +198,7 @@ def temporary_folder() -> Generator[str]:
 
 @cache
 def _realm() -> str:
-    """Return eight hexadecimal digits for the process id namespace: the machine, and the container on it."""
+    """Return eight hexadecimal digits for the namespace of process ids: the machine, and the container on it."""
     import hashlib  # noqa: PLC0415 - slow to import
 
     try:
@@ -230,7 +230,7 @@ def _is_running(process: int) -> bool:
 
 
 def _remove(path: Path) -> None:
-    """Remove a file or a folder if it is there, though another thread may be writing into it."""
+    """Remove a file or a folder if it exists, even if another thread is writing into it."""
     with suppress(OSError):
         if path.is_dir() and not path.is_symlink():
             doomed = path.with_name(f"{path.name}-")  # where nothing new gets in

@@ -1,7 +1,7 @@
 """Termination of commands by Ctrl-C (SIGINT), SIGTERM and SIGHUP, with the exit code 128 + the signal's number.
 
 The command ends immediately, during imports, loading or drawing, after the functions of ``on_signal``. An exception at
-an arbitrary point, as Python raises it, is not safe: C code converts it to other errors, and threads may wait for ever.
+an arbitrary point, as Python raises it, is not safe: C code converts it to other errors, and threads may wait forever.
 Only while a command waits for its user, ``signals_raised`` raises an exception.
 
 ``ravemj/__init__.py`` imports this module first, so that it is active from the first line on; therefore it has very few
@@ -13,7 +13,7 @@ import sys
 
 
 def _is_command() -> bool:
-    """Return whether this process is ``ravemj …`` or ``python -m ravemj …``, before any code of the command has run."""
+    """Return whether this process is ``ravemj …`` or ``python -m ravemj …``; valid before the command's code runs."""
     program = sys.argv[0] if sys.argv else ""
     if program == "-m":  # until Python has found the module to run, for which it imports the package
         return sys.orig_argv[-len(sys.argv)] in ("ravemj", "-mravemj")
@@ -48,7 +48,7 @@ class Terminated(SystemExit):
 
 @contextmanager
 def on_signal(function: Callable[[], object]) -> Generator[None]:
-    """Call a function if a signal ends the process within the block."""
+    """Call a function if a signal ends the process during the block."""
     _functions.append(function)
     try:
         yield
@@ -59,7 +59,7 @@ def on_signal(function: Callable[[], object]) -> Generator[None]:
 
 @contextmanager
 def signals_delayed() -> Generator[None]:
-    """Delay signals until the end of the block, whichever thread runs it."""
+    """Delay signals until the end of the block, in whichever thread it runs."""
     block = object()
     _delays.append(block)
     try:

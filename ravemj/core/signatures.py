@@ -38,7 +38,7 @@ class WrittenSignature(inspect.Signature):
         return getattr(self, name)
 
     def replace(self, **changes: Any) -> inspect.Signature:  # noqa: ANN401 - those of the base class
-        """Return a changed copy, as ``inspect`` makes one without ``self`` for bound methods."""
+        """Return a changed copy, which ``inspect`` requests to remove ``self`` from bound methods."""
         plain = inspect.Signature(list(self.parameters.values()), return_annotation=self.return_annotation)
         return plain.replace(**changes)
 
@@ -75,7 +75,7 @@ def _made(function: FunctionType, evaluated: inspect.Signature | None) -> inspec
 
 
 def _annotations(function: FunctionType) -> dict[str, str]:
-    """Return the annotations of the arguments of a function, and of what it returns; none if it has no source."""
+    """Return the annotations of a function's arguments and result; none if its source is not available."""
     definition = _definition(function)
     if not isinstance(definition, ast.FunctionDef):
         return {}
@@ -85,7 +85,7 @@ def _annotations(function: FunctionType) -> dict[str, str]:
 
 
 def _fields(constructor: FunctionType) -> dict[str, str]:
-    """Return the annotations of the fields of a dataclass, which has made its constructor."""
+    """Return the annotations of a dataclass's fields, given its generated constructor."""
     try:
         kind = pkgutil.resolve_name(f"{constructor.__module__}:{constructor.__qualname__.rpartition('.')[0]}")
     except (AttributeError, ImportError, ValueError):

@@ -12,11 +12,11 @@ def set_batch_threads(count: int) -> None:
     """Set how many threads batch calls such as ``batch_collides`` use in this process. Results do not depend on it.
 
     Args:
-        count: Number of threads; 0, the default, for as many as there are processors that the process may use. Where
-            several processes share the processors, each should have one.
+        count: Number of threads; 0, the default, means the number of processors that the process may use. If several
+            processes share the processors, set 1 in each.
 
     Raises:
-        ArgumentError: the count is negative or no integer.
+        ArgumentError: the count is negative or not an integer.
 
     Example:
         >>> ravemj.set_batch_threads(1)

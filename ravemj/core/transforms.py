@@ -1,7 +1,7 @@
-"""Rigid transforms as plain tuples of floats.
+"""Rigid transforms as tuples of floats.
 
 A ``Pose`` is a unit quaternion (w, x, y, z) and a translation, as in OpenRAVE. Tuples can be compared, hashed and
-printed, which frozen scene data needs, and for single poses they are faster than numpy arrays. ``T_a_b`` maps
+printed, as frozen scene data requires, and for single poses they are faster than numpy arrays. ``T_a_b`` maps
 coordinates of frame b to frame a, so ``T_a_c = T_a_b @ T_b_c``.
 """
 
@@ -142,11 +142,11 @@ def normalize(wxyz: Wxyz) -> Wxyz:
 
 
 _SHORTEST = 1e-290
-"""Below this length a vector's components may be subnormal."""
+"""Length of a vector below which its components may be subnormal."""
 
 
 def not_subnormal(vector: Vec3) -> Vec3:
-    """Return a vector of the same direction whose length has an inverse; 0 stays 0."""
+    """Return a vector of the same direction and a length whose inverse is finite; 0 stays 0."""
     if math.hypot(*vector) < _SHORTEST:  # subnormal numbers have few digits; a power of two loses none
         return (vector[0] * 2.0**600, vector[1] * 2.0**600, vector[2] * 2.0**600)
     return vector

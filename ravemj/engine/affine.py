@@ -23,8 +23,9 @@ def translation_columns(affinedofs: int) -> list[int]:
 class AffineMotion:
     """Motion of a base by its affine DOFs, at one pose.
 
-    ``translations`` are the translational components among them, counted from 0. ``angular`` is the base's angular
-    velocity in the world per unit of the rates of the rotation's values, shape (3, 0, 1, 3 or 4).
+    Attributes:
+        translations: The translational components among them, counted from 0.
+        angular: Angular velocity of the base in the world per rate of each rotational value, shape (3, 0, 1, 3 or 4).
     """
 
     def __init__(self, pose: Pose, affinedofs: int, axis: Vec3) -> None:
@@ -40,7 +41,7 @@ class AffineMotion:
         return np.concatenate([velocity[:3][self.translations], np.linalg.pinv(self.angular) @ velocity[3:]])
 
     def velocity(self, rates: Floats, before: Floats) -> Floats:
-        """Return the base velocity, shape (6,), with new rates of the affine values."""
+        """Return the base velocity ``before``, shape (6,), changed to have the given rates of the affine values."""
         velocity, split = before.copy(), len(self.translations)
         velocity[self.translations] = rates[:split]
         if self.angular.shape[1]:
@@ -57,7 +58,7 @@ class AffineMotion:
         return jacobian
 
     def rotation_jacobian(self) -> Floats:
-        """Return the base's angular velocity per unit of the rates of the affine values, shape (3, n)."""
+        """Return the base's angular velocity in the world per rate of each affine value, shape (3, n)."""
         return np.hstack([np.zeros((3, len(self.translations))), self.angular])
 
 

@@ -23,13 +23,13 @@ PAUSE = 1e-4
 """Minimum time [s] without the lock between steps, so that other threads can acquire it."""
 
 BEHIND = 0.1
-"""Maximum delay in real time [s] that the thread catches up with; more is lost."""
+"""Maximum delay in real time [s] that the thread catches up with; a longer delay is cut to it."""
 
 LAST_STEP = 1.0
 """Time limit [s] for a running step at the exit of Python; a script's controller may block in it."""
 
 POLL = 0.05
-"""Interval [s] at which the thread checks for its end while others have the lock."""
+"""Interval [s] at which the thread checks whether to end while other threads have the lock."""
 
 
 class Clock:
@@ -40,7 +40,7 @@ class Clock:
     """
 
     def __init__(self, lock: StateLock, step: Callable[[float], None]) -> None:
-        """Make a clock at time 0; with the lock held, it calls ``step`` for each time step [s]."""
+        """Make a clock at time 0; it calls ``step`` with the length of each time step [s], holding the lock."""
         self.now = 0  # simulation time since the start [microseconds]
         self.is_allowed = True  # whether the thread may run; ``stop`` ends that
         self._lock = lock
@@ -72,7 +72,7 @@ class Clock:
                     raise
 
     def start(self, timestep: float, *, realtime: bool) -> None:
-        """Run time steps of a length [s] in the thread, in real time or as fast as possible."""
+        """Run time steps of length ``timestep`` [s] in the thread, in real time or as fast as possible."""
         self.stop()
         self._rhythm = replace(self._rhythm, timestep=timestep, pace=1.0 if realtime else math.inf)
         self.resume()
@@ -111,7 +111,7 @@ class Clock:
             thread.join()
 
     def lose_thread(self) -> None:
-        """Note that the calling thread ends, if it is the clock's; ``wake`` then starts another."""
+        """If the calling thread is the clock's, note that it ends; ``wake`` then starts another one."""
         with self._starting:
             if self._thread is threading.current_thread():
                 self._thread = None
@@ -130,7 +130,7 @@ def _forget_threads() -> None:
 
 @before_end
 def _end_threads() -> None:
-    """Stop the threads before Python exits; one that returns from MuJoCo later would crash the process."""
+    """Stop the threads before Python exits; a thread that returns from MuJoCo later would crash the process."""
     for thread, ending in tuple(_threads.items()):
         ending.set()
         thread.join(LAST_STEP)

@@ -36,9 +36,9 @@ class Compiled:
         edit: "Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None" = None,
         written: "mjcf.Mjcf | None" = None,
     ) -> None:
-        """Compile a scene; ``edit`` changes the model before, and ``diagnostics`` receives warnings of the translation.
+        """Compile a scene; ``diagnostics`` receives warnings of the translation.
 
-        ``written`` is an existing translation of the scene.
+        ``edit`` changes MuJoCo's spec before compilation; ``written`` is an existing translation of the scene.
 
         Raises:
             CompileError: MuJoCo refuses the model.
@@ -67,7 +67,8 @@ class Compiled:
     def mechanism(cls, body: KinBody) -> "Compiled":
         """Compile the links and joints of one body without shapes; each root has a free joint.
 
-        The model has the true masses and inertias. Warnings are left to the translation of the whole scene.
+        The model has the true masses and inertias. Warnings are those of the whole scene's translation, so none are
+        given.
 
         Raises:
             CompileError: MuJoCo refuses the model.
@@ -128,7 +129,7 @@ def compile_text(
 
 
 def _keep_centers(model: mujoco.MjModel) -> None:
-    """Make MuJoCo use every inertial frame; it replaces one within 1e-6 of its body's frame by that frame."""
+    """Make MuJoCo use every inertial frame; it would replace frames within 1e-6 of the body's frame by the latter."""
     moved = (model.body_ipos != 0).any(axis=1) | (model.body_iquat[:, 0] != 1)
     model.body_sameframe[moved] = 0
 

@@ -26,7 +26,7 @@ def marked(text: str, model: AnyPath) -> str:
 
 
 def _former_mark(model: AnyPath) -> str:
-    """Return the first line of a model that is itself a translation; empty for others."""
+    """Return the first line of a model that was written by ravemj; empty for other models."""
     try:
         with open(model, encoding="utf-8", errors="replace") as file:
             line = file.readline().rstrip("\n")
@@ -51,7 +51,7 @@ def write(path: AnyPath, model: AnyPath, translation: Translation, read: Collect
         read: Files that must not be overwritten.
 
     Raises:
-        OutputError: it cannot be written, is not such a folder, or is a file that was read.
+        OutputError: the target cannot be written, is another kind of folder, or is a file that was read.
     """
     if not is_folder(path):
         return write_file(path, model, translation.mjcf, read)
@@ -120,7 +120,7 @@ def _is_ours(file: Path) -> bool:
 
 
 def _check_untouched(path: AnyPath, lost: Collection[AnyPath]) -> None:
-    """Check that no file that the model was read from is overwritten."""
+    """Check that no file that the model was read from would be overwritten."""
     if lost:
         names = ", ".join(str(Path(file)) for file in lost)
         raise OutputError(f"cannot write {os.fspath(path)}: the model was read from {names}")

@@ -15,14 +15,14 @@ _HALF_VIEW = np.radians(45.0 / 2)
 """Half of the angle of view of MuJoCo's cameras."""
 
 _ROOM = 1.1
-"""Camera distance as a multiple of the one at which everything just fits."""
+"""Camera distance as a multiple of that at which everything just fits."""
 
 
 def scene_text(translation: Translation, file: str) -> str:
     """Return a scene document that includes the translated model ``file``.
 
-    The floor is at the lowest point of the start pose, unless that belongs to a static body that is not a robot: the
-    model then has its own floor.
+    The floor is at the lowest point of the start pose; there is none if that point belongs to a static body that is not
+    a robot, which then is the floor.
     """
     model, data = translation.model, translation.home
     height, body = lowest(model, data)

@@ -15,7 +15,7 @@ from ravemj.model.drawing import NOTHING, Primitives, line_list, merge, mesh, po
 from ravemj.model.scene import Device, FlashLidar, ForceTorque, Intrinsics, Laser
 
 _WHOLE = 1e-9
-"""Tolerance in angle steps within which the last ray of a range is included."""
+"""Rounding tolerance of the last ray of a range, as a fraction of the angle step."""
 
 _FRUSTUM = 0.15
 """Depth of a drawn camera frustum [m]."""
@@ -77,8 +77,7 @@ def spun(laser: Laser, T_world_sensor: Floats, angle: float) -> Floats:
 def scan(world: CollisionWorld, device: Laser | FlashLidar, T_world_rays: Floats) -> Scan:
     """Return the hits of a device's rays with the bodies of a world, including its own robot.
 
-    All rays are cast in one call of ``mj_multiRay``. A ray that hits something below the minimum range continues behind
-    it.
+    All rays are cast in one call of ``mj_multiRay``. Hits below the minimum range are ignored.
     """
     origin = T_world_rays[:3, 3].copy()
     directions = ray_directions(device) @ T_world_rays[:3, :3].T
@@ -102,7 +101,7 @@ def motion_at(state: BodyState, link: int, point: Floats) -> tuple[Floats, Float
 
 
 def acceleration_at(physics: Physics, state: BodyState, link: int, point: Floats) -> Floats:
-    """Return the reading of an accelerometer at a point on a link: its acceleration minus gravity.
+    """Return the reading of an accelerometer at a point on a link: the point's acceleration minus gravity.
 
     Point and acceleration [m/s^2] are in world axes, shape (3,).
     """
@@ -115,7 +114,7 @@ def acceleration_at(physics: Physics, state: BodyState, link: int, point: Floats
 def encoder_values(state: BodyState, resolution: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
     """Return the readings of a robot's joint encoders: values, velocities and steps, each of shape (dof,).
 
-    Values [rad or m] are rounded to steps: one for each DOF, one for all, or none.
+    Values [rad or m] are rounded to multiples of ``resolution``: one for each DOF, one for all, or none.
     """
     values = state.kinematics.values()
     velocities = state.dynamics.dof_velocities(state.link_velocities())
@@ -152,7 +151,7 @@ def touches(physics: Physics, state: BodyState, link: int, T_world_sensor: Float
 
 
 def shape_figure(device: Device, color: Vec3) -> Primitives:
-    """Return the drawing of a sensor in its own frame: camera frustum, laser fan, nothing for others."""
+    """Return the drawing of a sensor in its own frame: camera frustum, laser fan, or nothing."""
     match device:
         case Intrinsics() | FlashLidar() if device.problem() is None:
             return _frustum(device, color)
@@ -183,7 +182,7 @@ def scan_figure(device: Laser | FlashLidar, measured: Scan, color: Vec3) -> Prim
 
 
 def _fan(origin: Floats, ends: Floats, color: Vec3, opacity: float) -> Primitives:
-    """Return the triangles between a point and consecutive ends."""
+    """Return the triangles between an origin and consecutive ray ends."""
     first = np.arange(1, len(ends))
     triangles = np.column_stack([np.zeros_like(first), first, first + 1])
     return mesh(np.vstack([origin, ends]), triangles, _colors(len(ends) + 1, color, opacity))

@@ -24,10 +24,10 @@ FREQUENCY = 60.0
 """Minimum natural frequency of a servo [rad/s]."""
 
 SAG = 0.005
-"""Maximum sag under gravity [rad]; a tenth of it for sliders [m]."""
+"""Maximum sag under gravity [rad]; for sliders a tenth of it [m]."""
 
 STEP = 0.1
-"""Step without overshoot [rad]; a tenth of it for sliders [m]."""
+"""Step that servos follow without overshoot [rad]; for sliders a tenth of it [m]."""
 
 POSES = 32
 """Number of random configurations, besides the start, in which inertias and loads are measured."""
@@ -64,33 +64,33 @@ def servo_gains(loads: ServoLoads, timestep: float = TIMESTEP, stiffness: Floats
 
     A DOF of inertia M, loaded with the torque T, is a mass on a spring of stiffness kp with a damper kv:
 
-    * It sags by ``T / kp``, stops within ``D / kp`` of its target with the dry friction D, and answers at the frequency
-      ``sqrt(kp / M)``. So ``kp = max(M w^2, (T + D) / sag)`` with w = 60 rad/s, and 5 mrad (0.5 mm) of sag.
-    * Critical damping is ``2 sqrt(kp M')``; M' is M with the armature of below. After a step s the motor is at its
-      limit E at first. Gravity leaves ``F = max(E - T, E / 5)`` of it to brake. Half of the step on, the speed is at
-      most ``sqrt(s F / M')``, and the damper has to turn the torque round: ``kv sqrt(s F / M') >= kp s / 2`` with room
-      to spare for ``kv = kp sqrt(s M' / (2 F))``. The larger one of the two is taken: ``kv = b sqrt(M')``.
-    * A simulation with the time step h follows no motion faster than ``1 / h``. Where axes line up, one of them feels
-      far less inertia than M while the others give way. An armature, as of a rotor behind a gear, is the least that is
-      left of it. With ``kp (2 h)^2`` no mode is faster than ``1 / (2 h)``. With ``kv h / 2`` a motor at its limit
-      cannot turn the speed from ``E / kv`` to less than ``-E / kv`` in one step and back in the next, for ever. That
-      is ``a = (b h / 2) sqrt(M + a)``, a quadratic equation. The larger one is taken.
+    * It sags by ``T / kp``, stops within ``D / kp`` of its target with the dry friction D, and has the natural
+      frequency ``sqrt(kp / M)``. So ``kp = max(M w^2, (T + D) / sag)`` with w = 60 rad/s, and 5 mrad (0.5 mm) of sag.
+    * Critical damping is ``2 sqrt(kp M')``, where M' is M plus the armature. After a step s the motor is at its limit
+      E; gravity leaves ``F = max(E - T, E / 5)`` to brake. Halfway, the speed is at most ``sqrt(s F / M')``, and the
+      damper has to reverse the torque: ``kv sqrt(s F / M') >= kp s / 2``, which ``kv = kp sqrt(s M' / (2 F))`` does
+      with a margin. The larger kv is taken: ``kv = b sqrt(M')``.
+    * A simulation with the time step h cannot represent motions faster than ``1 / h``. If axes are aligned, one of them
+      moves far less inertia than M, since the others give way. An armature, as of a rotor behind a gear, is a lower
+      bound of the inertia. With ``kp (2 h)^2`` no mode is faster than ``1 / (2 h)``. With ``kv h / 2`` a motor at its
+      limit cannot change the speed from ``E / kv`` to less than ``-E / kv`` in one step and back in the next,
+      endlessly. That is ``a = (b h / 2) sqrt(M + a)``, a quadratic equation. The larger armature is taken.
 
-    Joints that follow the DOF count in M and T.
+    M and T include the mimic joints of the DOF.
 
     Args:
         loads: Inertias, loads and efforts.
         timestep: Time step of the simulation [s].
-        stiffness: Stiffnesses [N m/rad or N/m], shape (dof,), in place of the rule's where they are not NaN.
+        stiffness: Given stiffnesses [N m/rad or N/m], shape (dof,); NaN selects the rule above.
 
     Returns:
         Stiffness [N m/rad or N/m], damping [N m s/rad or N s/m] and armature [kg m^2 or kg] of each DOF.
 
     Example:
         >>> import numpy as np
-        >>> from ravemj.engine.servo_gains import Loads, servo_gains
+        >>> from ravemj.engine.servo_gains import ServoLoads, servo_gains
         >>> one, none = np.ones(1), np.zeros(1)
-        >>> servo_gains(Loads(one, none, none, none, np.full(1, np.inf), none > 0)).kp
+        >>> servo_gains(ServoLoads(one, none, none, none, np.full(1, np.inf), none > 0)).kp
         array([3600.])
     """
     scale = np.where(loads.slides, 0.1, 1.0)
@@ -142,7 +142,7 @@ def _slides(body: KinBody) -> NDArray[np.bool_]:
 
 
 def _poses(body: KinBody, start: Floats) -> Iterator[Floats]:
-    """Yield the start pose, and random poses within the limits and near it; the same at each call."""
+    """Yield the start pose, then random poses within the limits and near the start; the same at each call."""
     yield start
     reach = [(-np.pi, np.pi) if axis.circular else (axis.lower, axis.upper) for axis in body.dof_axes]
     lower, upper = np.array(reach).reshape(-1, 2).T
@@ -167,7 +167,7 @@ def _measured(kinematics: BodyKinematics, coupling: Coupling) -> tuple[Floats, F
 def _standing(
     kinematics: BodyKinematics, coupling: Coupling, body: KinBody, gravity: Sequence[float]
 ) -> tuple[Floats, Floats]:
-    """Return inertia and torque at each DOF due to the weight on half of the feet, as in a trot."""
+    """Return inertia and torque at each DOF due to the robot's weight on half of the feet, as in a trot."""
     transforms = kinematics.link_transforms()
     bounds = [link_bounds(link, T_world_link) for link, T_world_link in zip(body.links, transforms, strict=True)]
     lows = [np.inf if extent is None else extent.low[2] for extent in bounds]

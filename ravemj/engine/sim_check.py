@@ -18,7 +18,7 @@ SECONDS = 2.0
 """Simulated time of the check [s]."""
 
 HOLDS = {False: 0.01, True: 0.001}
-"""Maximum error of a holding servo [rad]; of sliders [m]."""
+"""Maximum error of a servo that holds a pose [rad]; for sliders [m]."""
 
 _STEP = {False: 0.1, True: 0.01}
 _OVERSHOOT, _ARRIVAL, _ARRIVED = 0.1, 0.5, 0.9
@@ -65,7 +65,7 @@ def check(translation: Translation) -> Iterator[Point]:
 
 
 def summary(translation: Translation) -> str:
-    """Summarize in one line how well servos hold the start pose, and what was excluded; empty if nothing."""
+    """Summarize in one line how well servos hold the start pose, and which pairs were excluded; may be empty."""
     parts: list[str] = []
     if translation.choices.actuators == "position" and translation.model.nu:
         parts.append(_standing(translation).value if _is_free(translation) else _holding(translation).value)
@@ -198,7 +198,7 @@ def _warnings(data: mujoco.MjData) -> list[str]:
 
 
 def droop(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, tuple[float, bool]]:
-    """Simulate servos at the start pose; return the errors [rad or m], and whether they are of sliders."""
+    """Simulate servos at the start pose; return by name the error [rad or m], and whether the joint is a slider."""
     servos = _servos(model)
     joints = model.actuator_trnid[servos, 0]
     qpos = model.jnt_qposadr[joints]
@@ -212,7 +212,7 @@ def droop(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, tuple[float, 
 
 
 def _servos(model: mujoco.MjModel) -> list[int]:
-    """Return the position servos of joints; a fragment may have added other actuators."""
+    """Return the position servos of joints; a fragment of MJCF may have added other actuators."""
     return np.flatnonzero((model.actuator_trntype == 0) & (model.actuator_biasprm[:, 1] != 0)).tolist()
 
 
@@ -264,7 +264,7 @@ def _stepping(translation: Translation) -> Point:
 
 
 def _step_size(model: mujoco.MjModel, data: mujoco.MjData, actuator: int) -> float:
-    """Return the step of a joint; 0 if its limits are too narrow."""
+    """Return the size of a joint's test step; 0 if its limits are too narrow."""
     joint = int(model.actuator_trnid[actuator, 0])
     size = _STEP[bool(model.jnt_type[joint] == _SLIDE)]
     if not model.jnt_limited[joint]:
@@ -276,7 +276,7 @@ def _step_size(model: mujoco.MjModel, data: mujoco.MjData, actuator: int) -> flo
 
 
 def _response(model: mujoco.MjModel, data: mujoco.MjData, actuator: int, size: float) -> tuple[float, float]:
-    """Return overshoot, as a fraction of the step, and the 90 % rise time [s]; infinite if it is not reached."""
+    """Return overshoot, as a fraction of the step, and 90 % rise time [s]; infinite if 90 % is not reached."""
     place = model.jnt_qposadr[model.actuator_trnid[actuator, 0]]
     before, over, arrival = float(data.qpos[place]), 0.0, np.inf
     data.ctrl[actuator] += size

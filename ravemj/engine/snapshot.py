@@ -15,7 +15,7 @@ from ravemj.model.scene import Grab, Joint, KinBody
 def snapshot(body: BodyState) -> KinBody:
     """Return the description of a body in its present state.
 
-    The joint of a displaced link gets the pose of that link as its own.
+    The joint of a displaced link gets the link's present pose as its ``T_parent_child``.
     """
     scene = body.scene
     links = [replace(link, enabled=enabled) for link, enabled in zip(scene.links, body.link_enabled, strict=True)]
@@ -47,7 +47,7 @@ def snapshot(body: BodyState) -> KinBody:
 
 
 def _settled(joint: Joint, values: Sequence[float], poses: Sequence[Pose]) -> Joint:
-    """Return a joint with its values, and with the pose of its child if that differs from the values."""
+    """Return a joint with its present values; if its child is displaced, also with the child's pose."""
     axes = tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
     expected = relative_pose(joint, values)
     T_parent_child = poses[joint.parent].inverse() @ poses[joint.child]

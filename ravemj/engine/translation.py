@@ -36,7 +36,7 @@ HOME = "home"
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 _LIGHT = 1e-8
-"""Inertia [kg m^2 or kg] below which a joint's inertia is suspicious."""
+"""Inertia [kg m^2 or kg] below which that of a joint is suspicious."""
 
 _LIGHT_DISTANCE = 2.0
 """Distance of lights from the centre of a model, in multiples of its extent."""
@@ -58,7 +58,7 @@ class TranslationChoices(NamedTuple):
         decompose: Whether meshes collide as several convex parts.
         hull_vertices: Maximum number of vertices of a collision hull; 0 means no limit.
         merge_fixed: Whether links that cannot move become shapes and sites of their parents.
-        sensors: Whether there are sensors of joints, of the base, and the model's own.
+        sensors: Whether to add sensors of joints and of the base, and the model's own.
         append: File with a fragment of MJCF to add, or None.
         timestep: Time step [s], or None for MuJoCo's.
     """
@@ -133,7 +133,7 @@ class Translation:
 
     @property
     def home(self) -> mujoco.MjData:
-        """The state at the start pose, with derived quantities; a new one each time."""
+        """The state at the start pose, with derived quantities; a new object at each access."""
         data = mujoco.MjData(self.model)
         if self.model.nkey:
             mujoco.mj_resetDataKeyframe(self.model, data, 0)
@@ -150,8 +150,8 @@ def translated(
 ) -> Translation:
     """Translate the bodies of a simulation in their present state; arguments and errors as for ``translate``.
 
-    ``model`` is the file that they were read from. ``sensors`` are sensors without a robot, stored only for reading the
-    document back.
+    ``model`` is the file that they were read from. ``sensors`` are sensors without a robot, which are stored only for
+    reading the document again.
     """
     with simulation.lock:
         scene = Scene(tuple(map(snapshot, simulation.bodies)), simulation.view, simulation.gravity, sensors)
@@ -214,7 +214,7 @@ def translate(scene: Scene, diagnostics: Diagnostics, choices: TranslationChoice
 
 
 def _scene_text(scene: Scene, excluded: Sequence[tuple[str, str]]) -> XmlLines:
-    """Return the text of scene properties that belong to no body, for reading it back."""
+    """Return the text of scene properties that belong to no body, for reading the document again."""
     content = XmlLines(2)
     content.text_element(SCENE, scene_text(scene, excluded))
     return content
@@ -254,7 +254,7 @@ def _with_given(body: KinBody, loads: ServoLoads, timestep: float, given: Sequen
 
 
 def _warn_of_motors(body: KinBody, loads: ServoLoads, diagnostics: Diagnostics) -> None:
-    """Warn of motors too weak for their load at the start pose, and of suspicious inertias."""
+    """Warn of motors that are too weak for their load at the start pose, and of suspicious inertias."""
     unlimited: list[Joint] = []
     dof = 0
     for joint in body.joints:
@@ -302,7 +302,7 @@ class _Poses:
         return qpos
 
     def targets(self, qpos: Floats) -> Floats:
-        """Return the targets with which servos, named like their joints, hold a pose; shape (nu,)."""
+        """Return the targets of servos that hold a pose, shape (nu,); servos have the names of their joints."""
         model, joints = self.model, {name for body in self._names for names in body.joints for name in names}
         names = [model.actuator(number).name for number in range(model.nu)]
         return np.array([qpos[model.joint(name).qposadr[0]] if name in joints else 0.0 for name in names])

@@ -130,7 +130,9 @@ def is_text(device: Device, tag: SensorTag) -> bool:
 
 
 def written(device: Device, *, collada: bool = False) -> list[tuple[str, str | float | Sequence[float]]]:
-    """Return the elements that describe a device, with their content; the first tag of each field.
+    """Return the elements that describe a device: names and contents of fields that differ from their defaults.
+
+    Of several names for a field, the first is written.
 
     Args:
         device: The device.

@@ -25,7 +25,7 @@ class DOFAffine(NamedFlag):
     RotationAxis = 8
     """Rotation about a given axis: one angle [rad]."""
     Rotation3D = 16
-    """Any rotation: its axis times its angle [rad], three values."""
+    """Any rotation: a rotation vector (axis times angle [rad]), three values."""
     RotationQuat = 32
     """Any rotation: a quaternion, four values."""
     XYZ = 7
@@ -128,7 +128,7 @@ def RaveGetTransformFromAffineDOFValues(
     """Return a transform with replaced components.
 
     Args:
-        values: One for each DOF, in the order of ``RaveGetAffineDOFValuesFromTransform``.
+        values: The affine values, in the order of ``RaveGetAffineDOFValuesFromTransform``.
         affinedofs: ``DOFAffine`` values, combined.
         rotationaxis: The axis of ``RotationAxis``; by default z.
         transform: The initial transform, a 4x4 matrix or a pose of 7 numbers; by default the identity.

@@ -1,7 +1,7 @@
 """Checks of the arguments of the geometry functions.
 
 As in OpenRAVE, too short vectors are errors, and longer ones are truncated. A wrong shape is a ``ValueError``, as in
-OpenRAVE, whose bindings raise Python's own error (gap-03, random-api-6).
+OpenRAVE's bindings (gap-03, random-api-6).
 """
 
 import numpy as np
@@ -40,7 +40,7 @@ def unit_wxyz(values: ArrayLike, name: str) -> Wxyz:
     """Return a quaternion of nearly unit length, normalized.
 
     Raises:
-        ArgumentError: its squared length is not within 0.99 and 1.01 (code Assert), or it has too few numbers.
+        ArgumentError: its squared length is not between 0.99 and 1.01 (code Assert), or it has too few numbers.
     """
     quaternion = wxyz(values, name)
     if not 0.99 < sum(part * part for part in quaternion) < 1.01:
@@ -52,7 +52,7 @@ def unit_wxyz(values: ArrayLike, name: str) -> Wxyz:
 
 
 def matrix(values: ArrayLike, columns: int, name: str) -> Floats:
-    """Return the upper three rows and first columns of a matrix."""
+    """Return the upper three rows and first ``columns`` columns of a matrix."""
     given = checked_numbers(values, name)
     if given.ndim != 2 or given.shape[0] < 3 or given.shape[1] < columns:
         raise ValueError(f"{name}: has shape {given.shape}, and should have shape (4, 4)")
@@ -60,7 +60,7 @@ def matrix(values: ArrayLike, columns: int, name: str) -> Floats:
 
 
 def table(values: ArrayLike, columns: int, name: str) -> Floats:
-    """Return a copy of a two-dimensional array with a number of columns; [] means no rows."""
+    """Return a copy of an array with ``columns`` columns; an empty list means no rows."""
     rows = checked_numbers(values, name)
     if rows.size == 0:
         return np.empty((0, columns))

@@ -12,7 +12,7 @@ from ravemj.geometry_functions import arguments
 
 
 class Ray(ApiObject):
-    """Ray; its length is that of its direction.
+    """Ray; the length of its direction is its range.
 
     Example:
         >>> ray = Ray([0, 0, 2], [0, 0, -5])  # reaches down to z = -3

@@ -11,7 +11,7 @@ from ravemj.errors import ArgumentError
 
 
 def fitCircle(points: ArrayLike, geometric_refinement: bool = True) -> tuple[Floats, float, float]:
-    """Return the circle that fits points best: a least-squares fit of squared distances to the centre.
+    """Return the circle that fits points best, by least squares of squared distances to the centre.
 
     Args:
         points: At least three points in a plane, shape (n, 2), or in space, shape (n, 3).
@@ -54,7 +54,7 @@ def _fitted(points: Floats) -> tuple[Floats, float, float]:
 
 
 def intersectSegments(L0: ArrayLike, L1: ArrayLike) -> tuple[Floats, float]:
-    """Return the point where two lines in space are closest, each given by two points, shape (2, 3).
+    """Return the midpoint of the shortest connection of two lines in space, each given by two points, shape (2, 3).
 
     Returns:
         The point halfway between ``L0`` and ``L1``, shape (3,), and their distance, signed by the side.

@@ -1,10 +1,10 @@
 """Values of IK goals: extraction from poses, transforms, distances.
 
-The numbers are, by type: of ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; of ``Rotation3D`` the quaternion; of
-``Translation3D`` and ``Lookat3D`` the point; of ``Direction3D`` the direction; of ``Ray4D`` and
-``TranslationDirection5D`` direction and point; of ``TranslationXY2D`` x and y, of ``TranslationXYOrientation3D`` the
-angle behind them; of ``TranslationLocalGlobal6D`` a point of the tool and its desired position; of the types with
-``AxisAngle`` angle and point. This angle is in the arm's base frame, and transforms of goals do not change it.
+By type, the values are: ``Transform6D``: the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D``: the quaternion;
+``Translation3D`` and ``Lookat3D``: the point; ``Direction3D``: the direction; ``Ray4D`` and ``TranslationDirection5D``:
+direction and point; ``TranslationXY2D``: x and y; ``TranslationXYOrientation3D``: x, y and the angle;
+``TranslationLocalGlobal6D``: a point of the tool and its desired position; types with ``AxisAngle``: angle and point.
+The last angle is in the arm's base frame, and transforms of goals do not change it.
 """
 
 import math
@@ -45,8 +45,8 @@ def goal_transform(value: ArrayLike, name: str) -> Floats:
     As in OpenRAVE, scaling a matrix changes its rotation.
 
     Raises:
-        ValueError: as there.
-        ArgumentError: as there.
+        ValueError: as for ``checked_transform``.
+        ArgumentError: as for ``checked_transform``.
     """
     matrix = checked_transform(value, name)
     given = np.asarray(value, dtype=np.float64)
@@ -64,7 +64,7 @@ def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: A
     """Return the values of a user's goal, given as a matrix, a ray or a vector, shape (n,).
 
     Raises:
-        ArgumentError: they do not match the type; with the code ``Assert``, a direction is not a unit vector.
+        ArgumentError: they do not match the type; or a direction is not a unit vector (code ``Assert``).
     """
     if kind not in GOAL_TYPES:
         known = ", ".join(sorted(goal_type.name for goal_type in GOAL_TYPES))
@@ -115,7 +115,7 @@ def goal_of_tool(
         kind: The type of goal.
         T_frame_tool: The tool's pose, shape (4, 4).
         direction: The tool direction in its own frame, shape (3,).
-        like: A goal of that type, which supplies the tool point or the look-at point.
+        like: A goal of this type, which supplies the tool point or the look-at point.
     """
     position, pointing = T_frame_tool[:3, 3], T_frame_tool[:3, :3] @ direction
     x, y, z = pointing.tolist()
@@ -185,7 +185,7 @@ _FOLLOW = "_transform="
 
 
 def moved_custom_values(name: str, values: Floats, pose: Pose) -> Floats:
-    """Return custom values of a goal after a transform by a pose; their name determines their type.
+    """Return custom values of a goal after a transform by a pose; a word in their name determines their type.
 
     Raises:
         ArgumentError: the word after ``_transform=`` is not ``point``, ``direction``, ``quat`` or ``ikparam``
@@ -273,5 +273,5 @@ def _angle(a: Floats, b: Floats) -> float:
 
 
 def _half_turn(a: Floats, b: Floats) -> float:
-    """Return half the angle between the rotations of two unit quaternions, shape (4,) or more [rad]."""
+    """Return half the angle between two rotations [rad]; the first four values of each are a unit quaternion."""
     return _angle(a[:4], b[:4] if a[:4] @ b[:4] >= 0 else -b[:4])

@@ -6,7 +6,7 @@ from ravemj.core.enumerations import NamedInt
 class IkParameterizationType(NamedInt):
     """Constrained components of the tool pose.
 
-    Each number encodes the degrees of freedom, the count of values, and a unique number.
+    Each number encodes the degrees of freedom, the number of values, and a unique number.
 
     Types that end in ``Velocity`` are velocities in trajectories, not goals.
     """

@@ -97,7 +97,7 @@ def _linear(matrix: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def transformLookat(lookat: ArrayLike, camerapos: ArrayLike, cameraup: ArrayLike) -> Floats:
-    """Return the pose, shape (4, 4), of a camera that looks at a point, with z towards it.
+    """Return the pose, shape (4, 4), of a camera whose z axis points at ``lookat``.
 
     If camera and point coincide, z is that of the world; if the y axis is undefined, it is y of the world, then x.
 
@@ -124,7 +124,7 @@ TransformLookat = transformLookat
 
 
 def ComputePoseDistSqr(pose0: ArrayLike, pose1: ArrayLike, quatweight: float = 1.0) -> float:
-    """Return the squared distance of two poses: of positions, plus ``quatweight`` times that of quaternions.
+    """Return the squared distance of positions, plus ``quatweight`` times the squared distance of quaternions.
 
     The sign of a quaternion is ignored.
 
@@ -213,7 +213,7 @@ def normalizeZRotation(qarray: ArrayLike) -> tuple[Floats, Floats]:
     """Remove the rotation about z from the unit quaternions ``qarray``, shape (n, 4).
 
     Returns:
-        The quaternions after a rotation about z that brings them closest to the identity, shape (n, 4); and the removed
+        The quaternions after a rotation about z that brings each closest to the identity, shape (n, 4); and the removed
         angles [rad], shape (n,).
     """
     quaternions = arguments.table(qarray, 4, "qarray")

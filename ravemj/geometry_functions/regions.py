@@ -18,10 +18,10 @@ _LOCK = 1e-7
 """Cosine of the pitch below which roll and yaw rotate about one axis."""
 
 _LENGTH, _PART, _ANGLE = 1e-9, 1e-6, 1e-6
-"""Tolerances of a membership test: lengths [m], relative to the lengths involved, angles [rad]."""
+"""Tolerances of a membership test: lengths [m], lengths relative to those involved, and angles [rad]."""
 
 _POINT_SHARE = 0.1
-"""Minimum weight of a region in a union relative to the mean width, so that points are sampled, too."""
+"""Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled, too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,15 +29,14 @@ class PoseSet:
     """The poses ``T0_w @ D @ Tw_e`` with ``D = translate(x, y, z) Rz(yaw) Ry(pitch) Rx(roll)`` within bounds.
 
     With a lean, ``D = translate(x, y, z) S Rz(yaw)``: S is a rotation about a horizontal axis of *w*, by the angle
-    between the z axes of ``D`` and *w*. The coordinates roll and pitch are then x and y of its rotation vector.
+    between the z axes of ``D`` and *w*. The coordinates roll and pitch are then x and y of the rotation vector of S.
 
     Attributes:
-        T0_w: The frame of the region, shape (4, 4).
-        Tw_e: The tool in that frame if all coordinates are 0, shape (4, 4).
+        T0_w: The frame *w* of the region, shape (4, 4).
+        Tw_e: The tool in *w* if all coordinates are 0, shape (4, 4).
         lower: Lower bounds of x, y, z [m], roll, pitch, yaw [rad], shape (6,).
         upper: Upper bounds, shape (6,).
-        lean: Maximum angle between the z axes [rad], which replaces the bounds of roll and pitch; None if there are
-            such bounds.
+        lean: Maximum angle between the z axes [rad], which replaces the bounds of roll and pitch; None to use these.
     """
 
     T0_w: Floats
@@ -56,7 +55,7 @@ class PoseSet:
         object.__setattr__(self, "_bounds", bounds[:3] + [_at_most_a_turn(*interval) for interval in bounds[3:]])
 
     def moved(self, T_world_0: Floats) -> "PoseSet":
-        """Return the same region in another frame; ``T_world_0`` is the present pose of frame 0, shape (4, 4)."""
+        """Return the same region relative to the world; ``T_world_0`` is the present pose of frame 0, shape (4, 4)."""
         return replace(self, T0_w=T_world_0 @ self.T0_w)
 
     def relative(self, T0_s: Floats) -> Floats:
@@ -64,11 +63,11 @@ class PoseSet:
         return self._Tw_0 @ T0_s @ self._Te_w
 
     def coordinates(self, T0_s: Floats) -> Floats:
-        """Return the six coordinates of a pose; of equivalent angle triples, the one nearest to the bounds."""
+        """Return the six coordinates of a pose; of equivalent roll, pitch and yaw, those nearest to the bounds."""
         return self._displaced(self.relative(T0_s))[0]
 
     def displacement(self, T0_s: Floats) -> Floats:
-        """Return the excess of each coordinate over its bounds [m and rad], 0 inside, shape (6,)."""
+        """Return by how much each coordinate exceeds its bounds [m and rad], shape (6,); 0 inside."""
         return self._displaced(self.relative(T0_s))[1]
 
     def distance(self, T0_s: Floats) -> float:
@@ -76,7 +75,7 @@ class PoseSet:
         return float(np.linalg.norm(self.displacement(T0_s)))
 
     def nearest(self, T0_s: Floats) -> Floats:
-        """Return the pose of the region with the coordinates of another pose, clipped to the bounds."""
+        """Return the pose of the region whose coordinates are those of another pose, clipped to the bounds."""
         coordinates, displacement = self._displaced(self.relative(T0_s))
         return self.poses((coordinates - displacement)[None])[0]
 
@@ -104,7 +103,7 @@ class PoseSet:
         Args:
             random: The random generator.
             count: The number of poses.
-            over_rotations: Sample the rotations uniformly, not their coordinates.
+            over_rotations: Whether to sample rotations uniformly, instead of their coordinates.
 
         Raises:
             ArgumentError: a length has no bounds.
@@ -126,7 +125,7 @@ class PoseSet:
         return self.poses(drawn)
 
     def beyond(self, D: Floats) -> Floats:
-        """Return the excess of each coordinate over its bounds, for ``D``, shape (6,)."""
+        """Return by how much each coordinate of ``D`` exceeds its bounds, shape (6,)."""
         return self._displaced(D)[1]
 
     def error(self, D: Floats) -> tuple[Floats, Floats]:
@@ -137,7 +136,7 @@ class PoseSet:
 
         Returns:
             The error [m and rad], shape (6,), 0 inside the bounds; and its derivative by the velocity of the origin of
-            ``D`` and the angular velocity, in axes of *w*, shape (6, 6), 0 in the same rows.
+            ``D`` and the angular velocity, in axes of *w*, shape (6, 6). Rows of zero errors are 0.
         """
         coordinates, displacement = self._displaced(D)
         rates = np.zeros((6, 6))
@@ -152,7 +151,7 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of ``D`` nearest to the bounds, and their excess."""
+        """Return the coordinates of ``D`` nearest to the bounds, and by how much they exceed these."""
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf
@@ -197,8 +196,8 @@ def weights(regions: "list[PoseSet]") -> Floats:
     """Return the sampling probabilities of the regions of a union, shape (n,).
 
     As in the paper, they are proportional to the sums of widths, so that lines and planes are sampled often enough. The
-    weight of a region is at least a tenth of the mean, so that points are sampled, too; if all are points, all weights
-    are equal.
+    weight of a region is at least a tenth of the mean, so that points are sampled, too; if all regions are points, all
+    weights are equal.
     """
     widths = np.array([region.width() for region in regions])
     mean = float(widths.mean())

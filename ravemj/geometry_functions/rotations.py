@@ -19,7 +19,7 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 
 FEW_DIGITS = 0.1
-"""Sine of the angle between two quaternions below which its cosine is too inaccurate for interpolation."""
+"""Sine of the angle between two quaternions below which the cosine is too inaccurate for interpolation."""
 
 
 def quatFromAxisAngle(
@@ -74,7 +74,7 @@ def quatFromRotationMatrix(rotation: ArrayLike) -> Floats:
     """Return the quaternion (w, x, y, z), shape (4,), of the matrix ``rotation``, shape (3, 3), (3, 4) or (4, 4).
 
     The sign is OpenRAVE's: if the trace is not negative, w is positive; else the component of the largest diagonal
-    element is.
+    element is positive.
     """
     return np.array(_of_matrix(rotation))
 
@@ -182,7 +182,7 @@ def quatRotateDirection(sourcedir: ArrayLike, targetdir: ArrayLike) -> Floats:
 
 
 def _orthogonal(direction: Floats) -> Floats:
-    """Return a vector orthogonal to a unit vector: the component of x, or else of z."""
+    """Return a vector orthogonal to a unit vector: the perpendicular component of x, or else of z."""
     for axis in (np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])):
         rest = axis - direction * direction[axis.argmax()]
         if rest @ rest >= 1e-8:
@@ -194,7 +194,7 @@ def normalizeAxisRotation(axis: ArrayLike, quat: ArrayLike) -> tuple[float, Floa
     """Return the rotation about an axis that brings ``quat``, a unit quaternion, closest to the identity.
 
     Returns:
-        The angle [rad], and the rotation by ``quat`` followed by that about ``axis``, a quaternion, shape (4,).
+        The angle [rad], and the quaternion of the rotation by ``quat`` followed by that about ``axis``, shape (4,).
     """
     direction, quaternion = arguments.vec3(axis, "axis"), arguments.wxyz(quat, "quat")
     along = sum(part * other for part, other in zip(direction, quaternion[1:], strict=True))

@@ -1,4 +1,4 @@
-"""Low-discrepancy sequences in a cube."""
+"""Low-discrepancy sequences in the unit cube."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from ravemj.core.transforms import Floats, Ints
 def halton(first: int, count: int, dimensions: int) -> Floats:
     """Return ``count`` points of Halton's sequence from the index ``first``, in the prime bases 2, 3, 5, ...
 
-    The point 0 is the origin. Shape (count, dimensions), from 0 to 1, without 1.
+    Point 0 is the origin. The shape is (count, dimensions), and values are in [0, 1).
 
     Source: J. H. Halton, On the efficiency of certain quasi-random sequences of points, 1960.
     """

@@ -17,7 +17,7 @@ _BOX_TRIANGLES = (
 )  # fmt: skip
 
 _FINEST = 10
-"""Most subdivisions of a sphere's triangles: 20 million triangles."""
+"""Maximum number of subdivisions of a sphere's triangles, which gives 20 million triangles."""
 
 _GOLDEN = (1 + 5**0.5) / 2
 _ICOSAHEDRON = [
@@ -86,7 +86,7 @@ def _faces(corners: Floats) -> list[tuple[int, int, int]]:
 
 
 def refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """Subdivide each triangle of a mesh into four, with new vertices on the unit sphere in the order of edges."""
+    """Subdivide each triangle of a mesh into four; the new vertices, in the order of edges, are on the unit sphere."""
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     unique, first, places = np.unique(edges, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
@@ -99,7 +99,7 @@ def refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
 
 
 def TSP(solutions: ArrayLike, distfn: Callable[[Floats, Floats], float]) -> Floats:
-    """Return points in a greedy order: each is followed by the nearest of the remaining ones.
+    """Return points in a greedy order: each is followed by the nearest of the remaining points.
 
     Args:
         solutions: The points, shape (n, k); the first one stays first.

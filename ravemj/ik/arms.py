@@ -22,10 +22,10 @@ from ravemj.model.scene import Axis, Joint, KinBody, Manipulator
 
 
 class _MovingAxis(NamedTuple):
-    """Joint axis of an arm: where it is in the body, and what it is in the base frame.
+    """Joint axis of an arm: its index in the body, and its line in the base frame.
 
     Attributes:
-        joint: Index of the joint, active ones and then passive ones.
+        joint: Index of the joint among active, then passive joints.
         number: Index of the axis in the joint.
         axis: The axis.
         slides: Whether it is prismatic.
@@ -104,7 +104,7 @@ def _axes(name: str, index: int, joint: Joint, T_base_parent: Pose) -> list[_Mov
 
 
 def _following(body: KinBody, manipulator: Manipulator, inner: Chain, moving: Sequence[_MovingAxis]) -> FollowingChain:
-    """Return the chain whose variables are the DOFs of an arm, for a chain of all its joints."""
+    """Return the chain whose variables are the DOFs of an arm, given the chain ``inner`` of all its joints."""
     places = {
         dof: (index, dofs.index(dof))
         for index in range(len(body.joints))
@@ -123,19 +123,19 @@ def _following(body: KinBody, manipulator: Manipulator, inner: Chain, moving: Se
 
 
 def _aside(body: KinBody, joint: int, number: int) -> _MovingAxis:
-    """Return the axis of a joint that moves the arm only through joints that follow it; its place does not matter."""
+    """Return the axis of a joint that moves the arm only through mimic joints; its position does not matter."""
     followed = body.all_joints[joint]
     return _MovingAxis(joint, number, followed.axes[number], followed.slides(number), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 
 
 class _Followers:
-    """Computes the values of all joints of an arm from those of its DOFs.
+    """Computes the values of all joints of an arm from its DOFs by mimic equations.
 
     Args:
         joints: All joints of the body; those that do not belong to the arm keep their loaded values.
-        own: Joint and number of its axis of each DOF.
-        columns: For each joint axis of the arm the index of its DOF; -1 for those of joints that follow others.
-        indices: For each joint axis of the arm the index of its joint.
+        own: For each DOF, its joint and the index of its axis in the joint.
+        columns: For each joint axis of the arm, the index of its DOF; -1 for mimic joints.
+        indices: For each joint axis of the arm, the index of its joint.
     """
 
     def __init__(
@@ -173,7 +173,7 @@ class ArmSolver:
         self._solver: ArmSolutions | None = None
 
     def solver_for(self, body: KinBody, manipulator: Manipulator) -> ArmSolutions:
-        """Return the solver for the present arm; changed limits do not require a new derivation.
+        """Return the solver for the present arm; if only limits changed, it is not derived again.
 
         Raises:
             ValueError: the arm cannot be solved; the message says why.

@@ -14,9 +14,9 @@ from ravemj.ik.tasks import goal_poses
 from ravemj.ik.vectors import Floats
 
 _FINEST = 0.02
-"""Resolution of the search in intervals, as a fraction of a step."""
+"""Resolution of the search within intervals of a free joint, as a fraction of its step."""
 _MOST = 240
-"""Maximum number of points tried in intervals."""
+"""Maximum number of free joint values tried in intervals."""
 
 
 def nearest_first(
@@ -40,7 +40,7 @@ def nearest_first(
         weights: Weight of each joint in distances, shape (n,); by default equal.
         free: Values of the free joints, shape (k,); by default samples, from the configuration outwards.
         limits: Whether to enforce limits; otherwise each branch is yielded once, with angles in [-pi, pi].
-        fine: Whether to try many points of intervals after the samples; see ``beyond_samples``.
+        fine: Whether to try many values between the samples; see ``beyond_samples``.
     """
     for rows in _groups(solver, goal, seed, free, limits=limits, fine=fine):
         turned = all_turns(solver.chain, rows) if limits else rows
@@ -86,7 +86,7 @@ def branch_names(solver: ArmSolutions, count: int) -> list[str]:
 def everything(
     solver: ArmSolutions, goal: Floats, *, free: Floats | None = None, limits: bool = True, fine: bool = True
 ) -> Iterator[Floats]:
-    """Yield all solutions of ``solve_one``, shape (K, n), then further ones in case all of these are rejected.
+    """Yield all solutions of ``solve_one``, shape (K, n), then further batches for callers that rejected these.
 
     The arguments are those of ``nearest_first``.
     """
@@ -145,17 +145,17 @@ def beyond_samples(
 ) -> Iterator[Floats]:
     """Yield batches of solutions (K, n) for callers that have rejected those at the samples of the free joints.
 
-    First come solutions at values far from all samples. Then, if one joint is free, those in the middle, at the ends
-    and at eight more points of each interval of its values, and then at points between these.
+    First come solutions between samples that have none. Then, if one joint is free, its solvable intervals are tried:
+    in the middle, at the ends, at eight more values, and then at values between these.
 
     Args:
         solver: A solver in closed form with free joints.
         pose: A pose (4, 4).
         samples: The samples, shape (K, k).
-        solutions: The results of ``at`` for them.
+        solutions: The results of ``solver.at`` for the samples.
         seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
         limits: Whether to enforce joint limits.
-        fine: Whether to continue after the ends, the middle and eight points of each interval.
+        fine: Whether to continue after the ends, the middle and eight values of each interval.
     """
     values = [samples]
     for rows in solver.between(pose, samples, solutions, seed, limits=limits):
@@ -182,7 +182,7 @@ def beyond_samples(
 
 
 def shortfall(solver: ArmSolutions, goal: Floats, free: Floats | None = None) -> tuple[bool, bool]:
-    """Return whether a goal is unreachable for free joint values, and whether limits exclude solutions."""
+    """Return whether the goal is out of reach for some free joint values, and whether limits exclude solutions."""
     if solver.closed is None:
         return True, False
     solutions = solver.solve(goal[None], free=free, limits=False)

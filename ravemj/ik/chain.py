@@ -18,7 +18,7 @@ Turns = Sequence[Floats] | Floats
 """Cosines and sines, shape (2, …), or distances, (1, …), of each joint; one array if all joints are revolute."""
 _IDENTITY = np.eye(3)
 _EXACT, _NEARLY = 1e-12, 1e-3
-"""Deviations of a rotation that are rounding errors, and that are small enough to correct."""
+"""Maximum error of a rotation that is a rounding error, and of one that is corrected."""
 _FEW = 128
 """Number of configurations up to which the overhead of numpy calls dominates."""
 
@@ -119,7 +119,7 @@ class Chain:
 
     @cached_property
     def wide(self) -> list[int]:
-        """Joints whose limits admit several turns of the same configuration."""
+        """Revolute joints whose range is a full turn or more, so that angles have several equivalents."""
         span = self.upper - self.lower
         several = self.turning & ~self.circular & np.isfinite(span) & (span >= 2 * np.pi - 1e-9)
         return np.nonzero(several)[0].tolist()
@@ -134,7 +134,7 @@ class Chain:
 
     @cached_property
     def _steps(self) -> list[Floats]:
-        """Transposed rotations between consecutive joint frames, whose z are the axes; the first starts at the base."""
+        """Transposed transforms between consecutive joint frames, from the base to the tool; z is along each axis."""
         frames = [np.eye(4)]
         for axis, point in zip(self.axes, self.points, strict=True):
             side = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
@@ -147,7 +147,7 @@ class Chain:
         return [np.array(step.T, dtype=float, order="C") for step in steps]
 
     def _frames(self, turns: Turns) -> list[Floats]:
-        """Return the joint frames before their motions, and the tool frame: x, y, z and origin (4, 3, M)."""
+        """Return each joint frame before the joint's own motion, then the tool frame: x, y, z, origin (4, 3, M)."""
         count = turns[0].shape[-1] if len(turns) else 1
         frame = np.repeat(self._steps[0][:, :3, None], count, axis=2)
         frames = [frame]
@@ -181,7 +181,7 @@ class Chain:
         return motions.reshape(self.dof, 3, 16)
 
     def _few_tool_columns(self, turns: Turns) -> Floats:
-        """Same as ``tool_columns``, with fewer numpy calls and more arithmetic."""
+        """Return the result of ``tool_columns``, with fewer numpy calls and more arithmetic."""
         count = turns[0].shape[-1]
         factors = np.zeros((self.dof, 3, count))
         factors[:, 0] = 1
@@ -204,7 +204,7 @@ class Chain:
         ]
 
     def tool_columns(self, turns: Turns) -> Floats:
-        """Return the tool's x, y, z and origin, shape (4, 3, M), for cosines and sines; see ``turns``."""
+        """Return the tool's x, y, z and origin, shape (4, 3, M), for joint values in the form of ``turns``."""
         if len(turns) and turns[0].shape[-1] <= _FEW:
             return self._few_tool_columns(turns)
         return self._frames(turns)[-1]
@@ -219,7 +219,7 @@ class Chain:
         return poses.reshape(*values.shape[:-1], 4, 4)
 
     def forward_and_jacobian(self, values: Floats) -> tuple[Floats, Floats]:
-        """Return tool columns (4, 3, M) and Jacobians (M, 6, n) for joint values (M, n).
+        """Return ``tool_columns`` (4, 3, M) and Jacobians (M, 6, n) for joint values (M, n).
 
         The first three rows of a Jacobian are the linear velocity of the tool's origin, the others the angular
         velocity, in base axes.
@@ -235,7 +235,7 @@ class Chain:
         return tool, jacobians
 
     def placed_axes(self, values: Floats) -> tuple[Floats, Floats]:
-        """Return the axes and a point on each, both (n, M, 3), at joint values (M, n)."""
+        """Return the direction of each joint axis and a point on it, both (n, M, 3), at joint values (M, n)."""
         frames = np.array(self._frames(self.turns(values))[:-1])
         return frames[:, 2].transpose(0, 2, 1), frames[:, 3].transpose(0, 2, 1)
 
@@ -304,7 +304,7 @@ def check_poses(poses: Floats, most: float = 1e-6) -> float:
         most: Maximum entry of R^T R - I of a rotation R.
 
     Returns:
-        The largest such entry.
+        The largest entry of R^T R - I.
 
     Raises:
         ValueError: wrong shape, numbers that are not finite, a rotation with a larger error, or a reflection.

@@ -22,24 +22,24 @@ ACCURATE = 1e-9
 _CHUNK = 1536
 """Maximum number of poses per batch, so that the arrays fit into the processor's cache."""
 _MARGIN = 0.05
-"""Largest excess of an unrefined solution over the limits [rad or m]; refinement moves solutions less than that."""
+"""Distance from the limits [rad or m] within which solutions are refined; refinement moves them less than that."""
 _SAME = 1e-5
 """Tolerance of equal solutions."""
 _STEPS = 12
 """Maximum number of Newton steps."""
 _SETTLED, _SLOWEST = 3, 0.5
-"""Steps after which each must reduce the error by this factor; at double roots Newton reaches a quarter."""
+"""Number of steps after which each must reduce the error by a factor; Newton reaches 0.25 at double roots."""
 
 
 @dataclass(frozen=True, eq=False)
 class Solutions:
-    """Solutions of many poses.
+    """Solutions of N poses in B branches.
 
     Attributes:
         values: Joint values, shape (N, B, n), angles in [-pi, pi]; invalid rows have arbitrary values.
         valid: Whether each row is a solution, shape (N, B).
         merged: Whether equal solutions of a pose were merged, shape (N,), as in singular configurations.
-        errors: Error of each branch before its refinement [units of the reach, and rad], shape (N, B).
+        errors: Error before refinement, positions divided by the reach and angles in rad, shape (N, B).
     """
 
     values: Floats
@@ -55,7 +55,7 @@ class Solutions:
         return self.values[pose][self.valid[pose]]
 
     def only(self, pose: int) -> "Solutions":
-        """Return the solutions for one of the poses as those for a single pose."""
+        """Return the solutions of one pose as an object with N = 1."""
         row = slice(pose, pose + 1)
         return Solutions(self.values[row], self.valid[row], self.merged[row], self.errors[row])
 
@@ -109,7 +109,7 @@ class ClosedForm:
 
     @cached_property
     def branch_names(self) -> list[str]:
-        """A name for each branch: for each choice the joint, counted from 1, and the number of its solution."""
+        """A name for each branch: the joints with several solutions, counted from 1, each with a sign or letter."""
         names = [""]
         for place, count in self.family.names():
             joint = self.family.arm.joints[place]
@@ -125,7 +125,7 @@ class ClosedForm:
         Args:
             poses: Poses of the tool in the base, shape (N, 4, 4).
             locked: Values of the locked joints, shape (N, k).
-            limits: Whether to omit solutions far outside the limits instead of refining them.
+            limits: Whether to skip the refinement of solutions far outside the limits.
         """
         given = np.zeros((len(poses), 0)) if locked is None else locked
         branches = len(self.branch_names)
@@ -143,7 +143,7 @@ class ClosedForm:
     def _check(
         self, poses: Floats, turns: Turns, values: Floats, valid: Bools, merged: Bools, *, limits: bool
     ) -> Floats:
-        """Fill in values and validity of the family's solutions; return their errors."""
+        """Write the family's solutions into ``values``, ``valid`` and ``merged``; return their errors."""
         if isinstance(turns, np.ndarray):
             np.arctan2(turns[:, 1], turns[:, 0], out=values)
         else:
@@ -187,7 +187,7 @@ class ClosedForm:
         return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
 
     def _turns_of_one(self, pose: Floats, solver: OnePose) -> Floats:
-        """Return the family's solution of a single pose, computed in plain floats, shape (6, 2, B, 1)."""
+        """Return the family's solution of a single pose, computed in Python floats, shape (6, 2, B, 1)."""
         motion = pose @ self._tool
         motion[:3, 3] /= self.chain.reach
         x, y, z, _ = motion.tolist()
@@ -197,7 +197,7 @@ class ClosedForm:
         return turns[:, self._order].transpose(1, 2, 0)[..., None]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
-        """Return the required motion of the joints, or the required tool position, in units of the reach."""
+        """Return the required motion of the joints, or the required tool position; lengths are divided by the reach."""
         whole = self.task in (Task.TRANSFORM, Task.PLANAR)
         motion = poses @ self._tool if whole else poses
         rotation = np.ascontiguousarray(motion[:, :3, :3].transpose(1, 2, 0))[:, :, None]
@@ -205,13 +205,13 @@ class ClosedForm:
         return self.family.arm.trimmed(transform, locked) if whole and locked else transform
 
     def _error(self, tool: Floats, goal: Floats) -> Floats:
-        """Return the error of tool columns: the norm of the differences [units of the reach, and rad]."""
+        """Return the norm of the tool's error: position divided by the reach, angle in rad."""
         away = tool - goal
         away *= away
         return np.sqrt((self._counts @ away.reshape(12, -1)).reshape(away.shape[2:]))
 
     def errors(self, values: Floats, poses: Floats) -> Floats:
-        """Return the errors of values (M, n) for poses (M, 4, 4) [units of the reach, and rad]."""
+        """Return the errors of values (M, n) for poses (M, 4, 4): positions divided by the reach, angles in rad."""
         tool = self.chain.tool_columns(self.chain.turns(values))
         return self._error(tool, poses[:, :3].transpose(2, 1, 0))
 
@@ -226,9 +226,9 @@ class ClosedForm:
         valid[branch[good], pose[good]] = True
 
     def refine(self, values: Floats, goal: Floats) -> tuple[Floats, Floats]:
-        """Refine values (M, n) for tool columns (4, 3, M) by damped Newton steps; return them and their errors (M,).
+        """Refine values (M, n) by damped Newton steps towards M tool poses; return them and their errors (M,).
 
-        Locked joints keep their values.
+        ``goal`` has the axes x, y, z and the position of the tool, shape (4, 3, M). Locked joints keep their values.
         """
         chain, free = self.chain, [joint for joint in range(self.chain.dof) if joint not in self._locked]
         values = values.copy()
@@ -271,7 +271,7 @@ def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
 
 
 def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
-    """Merge equal solutions, where two axes or two branches coincide.
+    """Merge equal solutions, which occur if two axes or two branches coincide.
 
     ``parts`` are cosines, sines and distances of all joints, shape (K, B, N); ``valid`` (B, N) and ``merged`` (N,) are
     changed. Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.

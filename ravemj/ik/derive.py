@@ -28,8 +28,8 @@ class Validation:
 
     Attributes:
         configurations: Number of configurations.
-        found: Number of configurations found among the solutions.
-        error: The worst error of a solution, in units of the reach and in radians.
+        found: Number of configurations that are among the solutions.
+        error: The worst error of a solution: position divided by the reach, angle in rad.
         solutions: The mean number of solutions.
     """
 
@@ -77,11 +77,11 @@ def derive(
     Args:
         chain: The arm.
         task: The constrained components of the tool pose.
-        locked: Joints whose values will be given; at most as many others remain as the task constrains.
+        locked: Joints whose values will be given; the other joints are at most as many as the task constrains.
         general: Whether to try the eigenvalue problem of general arms, instead of the special families.
 
     Returns:
-        The solver and its certificate; None if no family fits.
+        The solver and its validation; None if no family fits.
     """
     free = [joint for joint in range(chain.dof) if joint not in locked]
     if task not in _SOLVED:
@@ -102,7 +102,7 @@ def derive(
 
 
 def _prove(solver: ClosedForm) -> Validation | None:
-    """Return a successful certificate, or None; a few configurations are tested first."""
+    """Validate a solver, first with few configurations; return the validation if it succeeds, else None."""
     try:
         if certify(solver, count=_FEW).holds:
             certificate = certify(solver)
@@ -130,6 +130,6 @@ def _is_planar(chain: Chain, free: Sequence[int]) -> bool:
 
 
 def _sideways(exact: Chain, chain: Chain) -> float:
-    """Return the largest displacement of revolute axes from their true positions, in units of the reach."""
+    """Return the largest displacement of nominal revolute axes from the true ones, divided by the reach."""
     away = np.cross(exact.points - chain.points / chain.reach, exact.axes)[~chain.prismatic]
     return float(np.abs(away).max(initial=0.0))

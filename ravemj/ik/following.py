@@ -1,4 +1,4 @@
-"""Chains in which some joints follow others, such as the levelled hand of an arm with parallel links."""
+"""Chains with mimic joints, such as the levelled hand of an arm with parallel links."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,18 +10,18 @@ from ravemj.ik.chain import Chain
 from ravemj.ik.vectors import Floats
 
 _STEP = 1e-6
-"""Difference of joint values for the rates of joints that follow [rad or m]; exact for affine equations."""
+"""Step of the numeric derivatives of mimic joints [rad or m]; exact for affine equations."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FollowingChain(Chain):
-    """Chain whose variables are the joints that follow none; only the numeric solver accepts it.
+    """Chain whose variables are the joints that are not mimic joints; only the numeric solver accepts it.
 
     Axes and points are those of the variables, which need not be joints of the chain.
 
     Attributes:
         inner: The chain of all N joints between base and tool.
-        expand: Returns the values of these joints, shape (N,), for values of the variables, shape (n,).
+        expand: Returns the values of all N joints for values of the variables, shape (n,).
     """
 
     inner: Chain

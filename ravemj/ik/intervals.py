@@ -1,8 +1,9 @@
 """Solutions between the samples of free joints.
 
 A redundant arm reaches a pose for intervals of its free joint's values. Samples miss intervals narrower than their
-step. Near these, the branches of the closed form nearly reach the pose within the limits, so descents from the closest
-samples find the interval. Its ends are found by section, as far as the closed form distinguishes branches.
+step. Near such an interval, the *excess* of a branch, its pose error plus the violation of limits, is small; so numeric
+descents from the samples with the least excess find the interval. Its ends are found by section, as far as the closed
+form distinguishes branches.
 """
 
 from collections.abc import Iterator
@@ -25,19 +26,19 @@ _STEEP = 1.0
 _CLOSE = 0.5
 """Maximum excess from which a descent is started."""
 _ENOUGH = 32
-"""If there are fewer samples, more are taken."""
+"""Number of samples below which twice as many are added."""
 _MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
-"""Maximum number of samples that are searched around, and how many of these are tried first."""
+"""Maximum number of samples with a minimum of the excess that are searched around, and how many come first."""
 _MOST_DESCENTS = 12
-"""Maximum number of descents when no sample has a solution."""
+"""Maximum number of descents if no sample has a solution."""
 _FRACTIONS = np.linspace(0, 1, 12)
-"""Fractions of the way between adjacent samples, or to the limits of the free joint, at which solutions are sought."""
+"""Fractions of the interval between the samples around a minimum, at which solutions are sought."""
 _PARTS, _SECTIONS = 8, 5
-"""Subdivisions per section and number of sections: the end of an interval is found to 1 / 9⁵ of a step."""
+"""Subdivisions per section, and number of sections: an end of an interval is found to 1 / 9⁵ of a step."""
 
 
 class FreeInterval(NamedTuple):
-    """Interval of the free joint in which one branch of solutions is within the limits.
+    """Interval of the free joint in which one branch is a solution within the limits.
 
     Attributes:
         branch: Index of the branch.
@@ -51,7 +52,7 @@ class FreeInterval(NamedTuple):
 
 
 def excess(chain: Chain, solutions: Solutions, *, limits: bool = True) -> Floats:
-    """Return the combined excess of branches over pose error and limits, shape (N, B); 0 for solutions."""
+    """Return pose error plus violation of limits of each branch, shape (N, B); 0 for solutions."""
     missed = np.where(solutions.valid, 0.0, solutions.errors)
     if limits:
         missed = missed + beyond_limits(chain, solutions.values)
@@ -66,7 +67,7 @@ def closest(chain: Chain, solutions: Solutions, most: int) -> list[Floats]:
 
 
 Found = tuple[Floats, Solutions | None]
-"""A solution within the limits, shape (n,), and what the closed form says of its free joints, if that is known."""
+"""Solution within the limits, shape (n,), and the closed-form solutions at its free joint values, if known."""
 
 
 def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, solutions: Solutions) -> Iterator[Found]:
@@ -103,7 +104,7 @@ def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, solution
 
 
 def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tuple[int, Ints]]) -> Iterator[Found]:
-    """Yield solutions about valleys: the indices of a sample and of the branches that have a minimum there."""
+    """Yield solutions around minima of the excess, each given by a sample and the branches with a minimum there."""
     count = len(_FRACTIONS)
     parts, rest = list[Solutions](), list[Ints]()
     for first, some in ((0, valleys[:_FIRST_VALLEYS]), (_FIRST_VALLEYS, valleys[_FIRST_VALLEYS:])):
@@ -140,7 +141,7 @@ def _descents(
 
 
 def _distinct(missed: Floats, places: Ints, most: int = _MOST_DESCENTS) -> Ints:
-    """Return the samples and branches with the least excess, shape (K, 2), one of equal ones per sample."""
+    """Return the samples and branches with the least excess, shape (K, 2); equal excesses of a sample count once."""
     sizes = missed[places[:, 0], places[:, 1]]
     kept: dict[tuple[int, float], int] = {}
     for index in np.argsort(sizes, kind="stable").tolist():
@@ -151,7 +152,7 @@ def _distinct(missed: Floats, places: Ints, most: int = _MOST_DESCENTS) -> Ints:
 
 
 def _valleys(missed: Floats) -> tuple[Ints, Ints]:
-    """Return the minima of the excess (K, B) over the free joint that may reach 0 between two samples."""
+    """Return the samples and branches with a minimum of the excess (K, B) that may reach 0 between two samples."""
     around = np.pad(missed, ((1, 1), (0, 0)), constant_values=np.inf)
     before, after = around[:-2], around[2:]
     lowest = (missed <= before) & (missed <= after) & (missed > 0) & (missed < _CLOSE)
@@ -182,7 +183,7 @@ def intervals(solver: "ArmSolutions", pose: Floats, free: Floats, *, limits: boo
 def _ends(
     solver: "ArmSolutions", pose: Floats, branch: Ints, inside: Floats, outside: Floats, *, limits: bool
 ) -> Floats:
-    """Return the last inside values, shape (C,), between values inside and outside of intervals."""
+    """Return the ends of intervals, shape (C,), each between a value inside and a value outside."""
     steps = np.arange(_PARTS + 2) / (_PARTS + 1)
     rows = np.arange(len(branch))
     for _ in range(_SECTIONS if len(branch) else 0):

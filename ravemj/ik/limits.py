@@ -23,7 +23,7 @@ def nearest_turns(
     Args:
         chain: The arm.
         values: Joint values, shape (..., n).
-        near: Reference joint values, which broadcast against them.
+        near: Reference joint values, which broadcast against ``values``.
         tolerance: Tolerance of limits.
 
     Returns:
@@ -41,10 +41,10 @@ def nearest_turns(
 
 
 def beyond_limits(chain: Chain, values: Floats) -> Floats:
-    """Return the largest excess over limits in rows (..., n) [rad, or units of the reach], shape (...).
+    """Return the largest violation of limits in configurations (..., n) [rad, or m divided by the reach], shape (...).
 
-    Angles are measured to the nearer limit, regardless of turns. Values within the tolerance of ``nearest_turns`` have
-    none.
+    Angles are measured to the nearer limit, regardless of turns. Violations within the tolerance of ``nearest_turns``
+    are 0.
     """
     lower, upper = chain.bounds
     below, above = lower - values, values - upper
@@ -57,7 +57,7 @@ def beyond_limits(chain: Chain, values: Floats) -> Floats:
 
 
 def all_turns(chain: Chain, values: Floats) -> Floats:
-    """Return all equivalents within the limits, shape (K, n), of given configurations.
+    """Return all equivalents of configurations ``values`` (N, n) within the limits, shape (K, n).
 
     A revolute joint with a range of more than a turn has several values, a circular joint one, in [-pi, pi].
     """
@@ -65,7 +65,7 @@ def all_turns(chain: Chain, values: Floats) -> Floats:
 
 
 def all_turns_with_sources(chain: Chain, values: Floats) -> tuple[Floats, Ints]:
-    """Return the rows of ``all_turns``, and the index of the given row of each, shape (K,)."""
+    """Return the rows of ``all_turns``, and for each the index of its row in ``values``, shape (K,)."""
     lower, upper = chain.bounds
     first, inside = nearest_turns(chain, values)
     rows, sources = first[inside], np.flatnonzero(inside)
@@ -84,7 +84,7 @@ def all_turns_with_sources(chain: Chain, values: Floats) -> tuple[Floats, Ints]:
 
 
 def distances(chain: Chain, values: Floats, start: Floats, weights: Floats | None = None) -> Floats:
-    """Return weighted distances (...) of joint values (..., n) from others; circular joints take the shorter arc."""
+    """Return weighted distances (...) of joint values (..., n) from ``start``; circular joints take the shorter arc."""
     away = values - start
     away = np.where(chain.circular, np.mod(away + np.pi, _TURN) - np.pi, away)
     return np.sqrt((away * away * (1.0 if weights is None else weights * weights)).sum(axis=-1))

@@ -20,7 +20,7 @@ from ravemj.ik.tasks import ANGLES, Task
 from ravemj.ik.vectors import Floats
 
 ACCURATE = 1e-9
-"""Error, in units of the reach and in radians, below which a configuration is a solution."""
+"""Error below which a configuration is a solution: position divided by the reach, angle in rad."""
 _STEPS = 40
 _NEAREST_STEPS = 100
 _PLAIN = np.ones(6)
@@ -34,7 +34,7 @@ class Nearest:
 
     Attributes:
         values: Joint values, shape (n,).
-        error: The remaining weighted error [units of the reach, and rad].
+        error: Norm of the weighted pose error: position divided by the chain's reach, and angle [rad].
         steps: Number of steps.
     """
 
@@ -86,7 +86,7 @@ class NumericSolver:
         return Nearest(at, float(np.sqrt(best)), step + 1)
 
     def shortfall(self, pose: Floats, values: Floats) -> tuple[float, float]:
-        """Return the distance [m] and angle [rad] between joint values (n,) and a pose, as far as constrained."""
+        """Return distance [m] and angle [rad] of the tool at joint values (n,) to a pose, as far as constrained."""
         error, _ = self._residual(pose, values, _PLAIN)
         turning = np.array(component_rows(self.task)) > 2
         distance, turn = float(np.linalg.norm(error[~turning])), float(np.linalg.norm(error[turning]))
@@ -98,7 +98,7 @@ class NumericSolver:
         return distance, turn
 
     def _residual(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
-        """Return the scaled error of a configuration and its Jacobian."""
+        """Return the tool's error against a pose, and the Jacobian that reduces it, multiplied by ``scale``."""
         rotation, place, jacobian = self._kinematics(values)
         if self.task is not Task.TRANSFORM:
             return residual_and_jacobian(self.chain, self.task, pose, ToolState(rotation, place, jacobian), scale)
@@ -108,7 +108,7 @@ class NumericSolver:
         return missing * scale, jacobian * scale[:, None]
 
     def _step(self, values: Floats, error: Floats, jacobian: Floats, damping: float) -> Floats:
-        """Return the values after a damped step, the best one within the limits."""
+        """Return the values after the best damped step within the limits."""
         pull = jacobian.T @ error
         matrix = jacobian.T @ jacobian + damping * self._identity
         ahead = values + np.linalg.solve(matrix, pull)
@@ -119,7 +119,7 @@ class NumericSolver:
         return ahead
 
     def start(self, number: int) -> Floats:
-        """Return a start by its number, shape (n,), from a low-discrepancy sequence."""
+        """Return start number ``number``, shape (n,), from a low-discrepancy sequence."""
         return self._low + (self._high - self._low) * _evenly(self.chain.dof, number)
 
     def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:
@@ -178,7 +178,7 @@ class NumericSolver:
 
 
 def _evenly(count: int, number: int) -> Floats:
-    """Return a point of a low-discrepancy sequence in the unit cube."""
+    """Return point ``number`` of a low-discrepancy sequence in the unit cube, shape (count,)."""
     ratio = 2.0
     for _ in range(30):
         ratio = (1 + ratio) ** (1 / (count + 1))
@@ -186,7 +186,7 @@ def _evenly(count: int, number: int) -> Floats:
 
 
 class CompiledKinematics:
-    """Pose and Jacobian of one configuration by MuJoCo, for one thread; for many, numpy is faster."""
+    """Pose and Jacobian of one configuration by MuJoCo, for one thread; numpy is faster for many configurations."""
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain

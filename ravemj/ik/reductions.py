@@ -63,8 +63,8 @@ def _centred(chain: Chain, task: Task) -> Reduction:
 def _with_joints(chain: Chain, sliding: list[bool], task: Task, how: str) -> Reduction:
     """Add virtual joints along or about the tool's direction.
 
-    They are inserted before real joints about the same line, since these commute: if such a joint is locked, the others
-    stay adjacent.
+    They are inserted before real joints about the same line, with which they commute: if such a joint is locked, the
+    others stay adjacent.
     """
     axis, place = chain.T_base_tool[:3, :3] @ chain.direction, chain.T_base_tool[:3, 3]
     at = chain.dof

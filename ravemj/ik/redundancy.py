@@ -18,7 +18,7 @@ from ravemj.ik.vectors import Floats, Screw, constant
 ANGLE_STEP = 0.1
 """Sampling step of a revolute free joint [rad]."""
 SLIDE_STEP = 0.01
-"""Sampling step of a prismatic free joint, in units of the reach."""
+"""Sampling step of a prismatic free joint, divided by the reach."""
 SINGULAR_STEP = np.pi / 8
 """Sampling step of the first of two joints that rotate about one line [rad]."""
 MOST = 4096
@@ -37,7 +37,7 @@ def rank(chain: Chain, task: Task) -> int:
 def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
     """Return the Jacobians of a task in configurations (M, n), each of shape (k, n).
 
-    Lengths are in units of the reach. ``goal`` is a pose (4, 4); by default the one that the configuration reaches.
+    Lengths are divided by the reach. ``goal`` is a pose (4, 4); by default the one that the configuration reaches.
     """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -102,7 +102,7 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
     Args:
         chain: The arm.
         free: The free joints, k of them.
-        steps: A step for each [rad or m].
+        steps: A step for each free joint [rad or m].
         start: Values of the first sample, shape (k,).
 
     Returns:
@@ -121,9 +121,9 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
-    """Return the configurations, of rows (K, n), in which two joints rotate about one line.
+    """Return those of configurations (K, n) in which two joints rotate about one line.
 
-    Each item is the row, the two joints, and 1 or -1 for equal or opposite directions.
+    Each item is the configuration, the two joints, and 1 or -1 for equal or opposite directions.
     """
     axes, points = chain.placed_axes(rows)
     turning = np.nonzero(~chain.prismatic)[0].tolist()
@@ -140,7 +140,7 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
     """Return other configurations (K, n) with the tool pose of a singular one, an item of ``singular_rows``.
 
-    With a seed, one result has its value of the first of the two joints, and another that of the second.
+    One result has the value of the first of the two joints in ``seed``, another that of the second.
     """
     row, first, second, sign = singular
     angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)
@@ -155,10 +155,10 @@ def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats 
 
 
 def default_free(chain: Chain, name: str, dof: int) -> list[int]:
-    """Return the default free joints of an arm with more joints than a goal type constrains.
+    """Return the default free joints of an arm with more joints than the ``dof`` values that a goal type constrains.
 
     They are counted from the tip. For goals with position and direction, the last joint is free if it rotates about the
-    direction; otherwise joints at the base are.
+    direction; otherwise joints at the base are free.
     """
     surplus = max(0, chain.dof - dof)
     joints = list(range(chain.dof))

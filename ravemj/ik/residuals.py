@@ -1,6 +1,6 @@
 """Residuals of all goal types and Jacobians of tasks, for least squares and null spaces.
 
-Positions are in units of the reach, rotations and directions in radians.
+Positions are divided by the reach, rotations and directions are in radians.
 """
 
 from collections.abc import Callable
@@ -41,7 +41,7 @@ def residual_and_jacobian(
 
 
 def component_rows(task: Task) -> list[int]:
-    """Return the indices of a residual's components among linear and angular velocities."""
+    """Return the index of each residual component among the linear and angular velocities x, y, z."""
     if task in ANGLES:
         return [0, 1, 2, 3 + ANGLES[task]]
     if task in (Task.ROTATION, Task.DIRECTION, Task.LOOK_AT):

@@ -12,7 +12,7 @@ from ravemj.ik.tasks import Task, goal_poses
 from ravemj.ik.vectors import Floats
 
 _SINGULAR = 1e-6
-"""Singular values below this, in units of the reach and in radians, are 0."""
+"""Singular values below this are 0; lengths are divided by the reach."""
 _JUMP = 0.5
 """Largest joint step [rad or m] between consecutive configurations of one branch."""
 
@@ -20,13 +20,13 @@ _JUMP = 0.5
 def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: ArrayLike | None = None) -> Floats:
     """Return an orthonormal basis of self-motion velocities, the null space of the task Jacobian, shape (n, k).
 
-    Singular configurations have more columns.
+    In singular configurations, k is larger.
 
     Args:
         chain: The arm.
         values: The configuration, shape (n,).
         task: The constrained components of the tool pose.
-        goal: A goal reached by the configuration, for tasks with many such goals, like ``LOOK_AT``.
+        goal: The goal that the configuration reaches, for tasks with several such goals, like ``LOOK_AT``.
     """
     pose = None if goal is None else goal_poses(chain, task, goal)
     jacobian = redundancy.task_jacobians(chain, task, values[None], pose)[0]
@@ -46,7 +46,7 @@ def null_space_path(
 ) -> Floats:
     """Return configurations along a path through the null space that keeps a goal.
 
-    It ends at a limit, when it returns to its start, or after a length.
+    It ends at a limit, when it returns to its start, or after ``length``.
 
     Args:
         solver: The solver of the arm.

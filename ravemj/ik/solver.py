@@ -30,7 +30,7 @@ _TRIED = 12
 _STARTS = 24
 """Number of starts of a search between the samples of a free joint."""
 FIRST, NEXT = 12, 96
-"""Batch sizes of free joint samples, the first small since samples near the present values mostly suffice."""
+"""Batch sizes of free joint samples; the first is small, since samples near the present values mostly suffice."""
 
 
 _NEAREST_STARTS = 12
@@ -72,7 +72,7 @@ class ArmSolutions:
         closed: The closed-form solver, or None if no family fits.
         certificate: The validation of ``closed`` on random configurations.
         free: The sampled joints.
-        steps: The step of each of them [rad or m]; several free joints may be sampled more coarsely.
+        steps: Sampling step of each free joint [rad or m]; several free joints may be sampled more coarsely.
         numeric: The numeric solver, used if there is no closed form.
     """
 
@@ -86,7 +86,7 @@ class ArmSolutions:
 
     @property
     def complete(self) -> bool:
-        """Whether all solutions are found; with free joints, all at each sample."""
+        """Whether all solutions are found; with free joints, all solutions at each sample."""
         return self.closed is not None
 
     def describe(self) -> str:
@@ -126,7 +126,7 @@ class ArmSolutions:
             limits: Whether only solutions within the limits are valid; else angles are in [-pi, pi].
 
         Returns:
-            Solutions with K times the branches of the family; of a numeric search, with the maximum number per goal.
+            The solutions; B is K times the number of branches, or for a numeric search the largest number of solutions.
 
         Raises:
             ValueError: goals have a wrong shape, are not finite, or are not rigid transforms.
@@ -193,7 +193,7 @@ class ArmSolutions:
         Args:
             pose: The pose (4, 4).
             samples: The samples, shape (K, k).
-            solutions: The result of ``at`` for them.
+            solutions: The result of ``at`` for the samples.
             seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
             limits: Whether to enforce limits; turns are left to the caller.
         """
@@ -251,8 +251,8 @@ class ArmSolutions:
     def nearest_reachable(self, goal: ArrayLike, seed: Floats | None = None) -> Reachable:
         """Return the configuration within the limits whose tool is nearest to a goal.
 
-        The measure is the root of the sum of squares of the distance, in units of the reach, and of the angle. Descents
-        from a few starts find a local minimum.
+        The measure is the norm of the distance, divided by the reach, and the angle [rad]. Descents from a few starts
+        find a local minimum.
 
         Args:
             goal: A pose (4, 4), or another goal of the task.
@@ -286,7 +286,7 @@ class ArmSolutions:
     def _best(
         self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None
     ) -> Floats | None:
-        """Return the nearest solution within the limits for one pose, also among additional ones."""
+        """Return the solution of pose ``index`` or of ``more`` that is within the limits and nearest to ``seed``."""
         rows = solutions.of(index)
         rows = self.spread(rows, seed) if solutions.merged[index] else rows
         rows = rows if more is None else np.vstack([rows, more])
@@ -296,7 +296,7 @@ class ArmSolutions:
 
 
 def _solve_alike(closed: ClosedForm | ReducedForm, poses: Floats, values: Floats | None, *, limits: bool) -> Solutions:
-    """Solve poses; a single one is duplicated, since solvers round single poses differently."""
+    """Solve poses; a single pose is solved twice at once, since BLAS rounds single poses differently."""
     if len(poses) != 1:
         return closed.solve(poses, values, limits=limits)
     both = closed.solve(
@@ -314,7 +314,7 @@ def make_solver(
 ) -> ArmSolutions:
     """Make the solver of an arm: the first family that passes validation, else a numeric search.
 
-    Arms with joints that follow others are always solved numerically.
+    Arms with mimic joints are always solved numerically.
 
     Args:
         chain: The arm.

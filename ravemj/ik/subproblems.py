@@ -14,12 +14,12 @@ import numpy as np
 from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
 ON_AXIS = 2e-11
-"""Distance from an axis below which unit vectors are taken as parallel to it: any turn is accurate enough."""
+"""Distance of a unit vector from an axis below which it counts as parallel to it, so that any turn is accurate."""
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
 
 def normalized(turn: Floats, least: float = TINY) -> Floats:
-    """Normalize turns to unit length; shorter ones than the minimum become the turn by 0."""
+    """Normalize turns to unit length; turns shorter than ``least`` become the turn by 0."""
     length = np.sqrt(turn[0] * turn[0] + turn[1] * turn[1])
     if length.min(initial=np.inf) < least:
         none = length < least
@@ -42,8 +42,8 @@ def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
     """Solve a cos(q) + b sin(q) = d (subproblems 3 and 4).
 
     Returns:
-        Both turns, shape (2, 2 B, N): the second of each pair is B branches later. Both are the nearest turn if there
-            is no solution.
+        Both turns, shape (2, 2 B, N), first those of one sign, then those of the other. Without solution, both are
+            the nearest turn.
     """
     length = np.sqrt(a * a + b * b)
     if length.min(initial=np.inf) < TINY:
@@ -72,9 +72,9 @@ def solve_quadratic(k: Floats, linear: Floats, square: Floats) -> Floats:
     the opposite side and no solution is infinite; two Newton steps refine the angle.
 
     Args:
-        k: Numbers, shape (B, N).
-        linear: l, shape (2, B, N).
-        square: The numbers S00, S01 = S10, S11, shape (3, B, N).
+        k: The constants, shape (B, N).
+        linear: The vectors l, shape (2, B, N).
+        square: The entries S00, S01 = S10, S11, shape (3, B, N).
 
     Returns:
         Four turns, shape (2, 4 B, N); a complex pair is replaced by its real part, twice.

@@ -69,9 +69,9 @@ class Task(Enum):
 
 
 ANGLES = {Task.PLACE_X_ANGLE: 0, Task.PLACE_Y_ANGLE: 1, Task.PLACE_Z_ANGLE: 2}
-"""Axis of each task that constrains the angle between the direction and an axis."""
+"""Axis, x, y or z, of each task that constrains the angle between the tool's direction and an axis."""
 HEADINGS = {Task.PLACE_XY_HEADING: 0, Task.PLACE_YZ_HEADING: 1, Task.PLACE_ZX_HEADING: 2}
-"""Origin axis of the angle of each task with a direction in a plane."""
+"""Axis from which each task with a direction in a plane counts its angle."""
 ALONG = frozenset({Task.PLACE_DIRECTION, *HEADINGS})
 """Tasks that constrain the position and the direction of the tool."""
 _DOF = {
@@ -193,7 +193,7 @@ def _units(vectors: Floats, what: str) -> Floats:
 
 
 def _pointing(chain: Chain, directions: Floats) -> Floats:
-    """Return tool rotations, shape (..., 3, 3), whose direction is one of these (..., 3)."""
+    """Return tool rotations, shape (..., 3, 3), in which the tool has given directions, shape (..., 3)."""
     return _frames(directions) @ _frames(chain.direction).T
 
 

@@ -18,7 +18,7 @@ Bools = NDArray[np.bool_]
 Ints = NDArray[np.int_]
 
 TINY = 1e-14
-"""Relative length below which the direction of a vector is noise."""
+"""Relative length below which the direction of a vector is only rounding errors."""
 
 
 def dot(a: Floats, b: Floats) -> Floats:
@@ -44,7 +44,7 @@ def skew(h: Floats) -> Floats:
 
 
 def perpendicular(h: Floats) -> Floats:
-    """Return a unit vector perpendicular to one of shape (3,)."""
+    """Return a unit vector perpendicular to a vector, shape (3,)."""
     other = np.cross(h, np.eye(3)[np.argmin(np.abs(h))])
     return np.array(other / np.linalg.norm(other), dtype=float)
 
@@ -57,7 +57,7 @@ def apply_matrix(matrix: Floats, vectors: Floats) -> Floats:
 
 
 def tile(values: Floats, branches: int) -> Floats:
-    """Repeat values (..., B, N) up to a number of branches; a single branch is broadcast."""
+    """Repeat values (..., B, N) to a number of branches; a single branch is left to broadcasting."""
     count = values.shape[-2]
     if count in (1, branches):
         return values
@@ -106,7 +106,7 @@ class Screw:
     Attributes:
         axis: Unit vector, (3, 1, 1), or (3, B, N) if it differs between poses.
         point: A point on the line, of the same shape.
-        prismatic: Whether it translates. Its values are then distances, shape (1, B, N), otherwise turns.
+        prismatic: Whether it translates. Joint values are then distances, shape (1, B, N), otherwise turns.
     """
 
     axis: Floats
@@ -120,7 +120,7 @@ class Screw:
 
     @cached_property
     def parts(self) -> Floats:
-        """Matrix (9, 3[, B, N]) to components along and across the axis, and across it after a quarter turn."""
+        """Matrix (9, 3[, B, N]) that computes the result of ``split``."""
         h = self.axis
         if self.shared:
             along = np.outer(h, h)
@@ -145,7 +145,7 @@ class Screw:
         return along + value[0] * across - value[1] * later
 
     def split(self, vectors: Floats) -> Floats:
-        """Return components of vectors along and across the axis, and across it after a quarter turn, (3, 3, B, N)."""
+        """Return components of vectors along the axis, across it, and the latter after a quarter turn, (3, 3, B, N)."""
         parts = apply_matrix(self.parts, vectors)
         return parts.reshape(3, 3, *parts.shape[1:])
 

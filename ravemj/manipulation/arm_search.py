@@ -95,11 +95,11 @@ class ArmSearch:
         return True
 
     def solution(self, row: Floats) -> Floats:
-        """Return the replacement of accepted joint values."""
+        """Return accepted joint values, or those by which user callbacks replace them."""
         return row
 
     def reject(self, reason: Reason, row: Floats, findings: Findings | None) -> None:
-        """Record a rejection; ``row`` is empty without joint values."""
+        """Record a rejection; ``row`` is empty if it concerns the goal instead of joint values."""
 
     @block
     def moving(self) -> Generator[None]:
@@ -112,7 +112,10 @@ class ArmSearch:
     # Candidates
 
     def nearest(self, seed: Floats | None = None) -> Floats | None:
-        """Return the first accepted joint values, those nearest to a configuration first, shape (n,), or None."""
+        """Return the first accepted joint values in the order of ``nearest_first``, shape (n,), or None.
+
+        ``seed`` defaults to the present joint values.
+        """
         start, limits = self.present() if seed is None else seed, self.checks.limits
         if not self._is_tested and limits and self._free is None:
             return self.solver.nearest(self._goal, start, weights=self.weights)
@@ -131,7 +134,7 @@ class ArmSearch:
             return next(self.good(rows), None)
 
     def near(self, seed: Floats, largest: float) -> Floats | None:
-        """Return the accepted joint values nearest to a configuration; None if a joint step exceeds ``largest``."""
+        """Return the accepted joint values nearest to ``seed`` with no joint step above ``largest``, or None."""
         rows = self.rows()
         away = np.abs(rows - seed).max(axis=1, initial=0.0)
         order = [number for number in np.argsort(away, kind="stable").tolist() if away[number] <= largest]
@@ -145,9 +148,9 @@ class ArmSearch:
         return [] if self.ended else solutions
 
     def all_good(self) -> Iterator[Floats]:
-        """Yield all accepted joint values, each of shape (n,); points between samples only if no sample is accepted.
+        """Yield all accepted joint values, each of shape (n,). Use it within ``moving``.
 
-        Use it within ``moving``.
+        Free joints are tried between their samples only if no sample is accepted.
         """
         from ravemj.ik.candidates import everything
 

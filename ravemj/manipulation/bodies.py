@@ -136,7 +136,7 @@ class Bodies:
         return Coordinates(circular, tuple(translation), tuple(rotation))
 
     def described(self, column: int) -> str:
-        """Return the name of one value of a configuration, for error messages."""
+        """Return the name of one value of a configuration."""
         part = next((part for part in self.parts if column in range(self.dof)[part.columns]), None)
         if part is None:  # a goal of inverse kinematics, or a pose of no body
             return f"value {column}"
@@ -275,7 +275,7 @@ class Bodies:
         return names
 
     def moved(self, body: BodyState) -> MovedBy | None:
-        """Return the links of a body moved by the values, or None if all are moved."""
+        """Return the links of a body that its joints in the configuration move; None if the whole body moves."""
         parts = [part for part in self.parts if part.body is body]
         return MovedBy(tuple(dof for part in parts for dof in part.dofs)) if all(part.dofs for part in parts) else None
 

@@ -128,7 +128,10 @@ class BodySpaces:
         self._clearances = Clearances(model, world.model.data, world.shapes, self.pairs, chains, ids)
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> Tested:
-        """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles."""
+        """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles.
+
+        ``asked`` selects the pairs to test around each of m middles, shape (m, pair_count).
+        """
         place = self._bodies.placement()
         for slot, values in enumerate(middles):
             place(values)

@@ -23,7 +23,7 @@ from ravemj.model.scene import Manipulator
 from ravemj.planning.space import Space
 
 _LINE_STEP = 0.01
-"""The distance of the tested poses on the line from the approach to the grasp [m]."""
+"""The distance of tested poses on the straight approach to a grasp [m]."""
 
 _IN_LIMITS = 1e-3
 """The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
@@ -134,7 +134,7 @@ class Grasp:
     Attributes:
         number: Its index in the table.
         preshape: Values of the gripper [rad or m].
-        rows: Arm values before the grasp, from which the tool reaches it along a straight line.
+        rows: Arm values at the start of the approach, from which the tool reaches the grasp along a straight line.
         T_world_goals: Poses of the tool at the destinations of the target.
     """
 
@@ -240,7 +240,7 @@ class GraspSearch:
         return _unit(direction)
 
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
-        """Return the arm values before a grasp, from which the tool reaches it along a straight line."""
+        """Return arm values from which the tool reaches a grasp along a straight line in the approach direction."""
         start = T_world_tool.copy()
         start[:3, 3] -= self._options.approachoffset * direction
         rows: list[Floats] = []

@@ -25,7 +25,7 @@ from ravemj.trajectories.motion import Motion
 from ravemj.trajectories.waypoints import Waypoints
 
 LARGEST_LEAP = 0.01
-"""Maximum distance of the first point from the measured state [rad or m]."""
+"""Maximum distance of a motion's first point from the measured state [rad or m]."""
 
 _ROUNDING = 1e-4
 """Relative rounding tolerance of velocity and acceleration limits."""
@@ -37,7 +37,7 @@ _SHORT = 1e-6
 """Duration [s] below which derivatives of a segment are meaningless."""
 
 _DEVIATION = 0.01
-"""Maximum deviation of a retimed motion from the straight lines between its rows [rad or m]."""
+"""Maximum deviation of a retimed motion from the straight lines between its waypoints [rad or m]."""
 
 _WITH_ACCELERATIONS = ("quartic", "quintic", "sextic")
 """Interpolations that also depend on accelerations at the waypoints."""
@@ -92,8 +92,8 @@ def checked_points(
     """Return the points of a motion, after all checks.
 
     Args:
-        active: The joints to write of a ``Motion``, which has all DOFs of the body; a trajectory names its own.
-        motion: The motion. Linear motions are retimed from rest to rest; if ``moving``, their rows are the points,
+        active: The joints to return of a ``Motion``, which has all DOFs of the body; a trajectory defines its own.
+        motion: The motion. Linear motions are retimed from rest to rest; if ``moving``, their waypoints are the points,
             without velocities.
         rate: Points per second; None means at the waypoints.
         state: Measured values of all DOFs at the start, shape (dof,), or None.
@@ -154,14 +154,14 @@ def joints_of(body: BodyState, waypoints: Waypoints) -> tuple[Joints, Group]:
 
 
 def retimed(joints: Joints, rows: Floats) -> JointTrajectory:
-    """Return a fast motion through rows of joint values within the limits, from rest to rest.
+    """Return a fast motion through waypoints within the limits, from rest to rest.
 
-    It passes rows without stops if it stays within 0.01 rad or m of the straight lines between them; otherwise it stops
-    at each row.
+    It stops at waypoints only if it would otherwise deviate more than 0.01 rad or m from the straight lines between
+    them.
 
     Args:
         joints: The joints.
-        rows: The joint values, shape (N, n) [rad or m].
+        rows: The waypoints, shape (N, n) [rad or m].
 
     Raises:
         ArgumentError: No joint moves, or one with a limit of 0.
@@ -179,7 +179,7 @@ def retimed(joints: Joints, rows: Floats) -> JointTrajectory:
 
 
 def _without_stops(rows: Floats, limits: segments.PathLimits) -> segments.Timed | None:
-    """Return a smooth motion through rows; None if it leaves the straight lines between them."""
+    """Return a smooth motion through waypoints; None if it deviates too far from the straight lines between them."""
     try:
         timed = Spline().timed(rows, limits)
     except RetimingError:  # two rows, or a corner beyond a limit
@@ -233,7 +233,7 @@ def sampled(
 def _continuous(
     joints: Joints, waypoints: Waypoints, group: Group, find_body: FindBody
 ) -> list[tuple[float, float, Floats]]:
-    """Return start, end and coefficients of each segment, without jumps by full turns between them."""
+    """Return start time, end time and coefficients of each segment, without jumps by full turns between them."""
     pieces = [piece for piece in waypoints.pieces([group], find_body) if piece[1] - piece[0] > _SHORT]
     if not pieces:
         raise ArgumentError("the trajectory has no two waypoints at different times")
@@ -271,14 +271,14 @@ def check(joints: Joints, points: JointTrajectory, *, moving: bool) -> None:
 
 
 class Excess(NamedTuple):
-    """Largest excess of a joint over its limits: the row, and a description."""
+    """Largest violation of joint limits: the row of values, and a description."""
 
     row: int
     text: str
 
 
 def largest_excess(joints: Joints, values: Floats) -> Excess | None:
-    """Return the largest excess of joint values, shape (N, n), over their limits; None if there is none."""
+    """Return the largest violation of limits by joint values, shape (N, n); None if there is none."""
     limits = joints.limits()
     excess = np.maximum(values - limits.upper, limits.lower - values)
     row, joint = divmod(int(excess.argmax()), excess.shape[1])
@@ -330,7 +330,7 @@ def from_state(joints: Joints, points: JointTrajectory, measured: Floats) -> Joi
 
 
 def assumed_accelerations(joints: Joints) -> str:
-    """Return a note on default acceleration limits of models without any; empty if there are none."""
+    """Return a note on joints whose acceleration limits are defaults, not the model's; empty if there are none."""
     assumed = Axis((1.0, 0.0, 0.0)).max_acceleration
     names = [
         f"{name} ({unit}/s^2)"

@@ -24,7 +24,7 @@ _JITTER_TRIES = 1000
 """Number of random configurations tested near a start or goal in collision."""
 
 _CLOSE = 1e-6
-"""Distance from a contact within which joints stop [rad or m]."""
+"""Distance before a contact at which joints stop [rad or m]."""
 
 
 def find_path(problem: Problem, search: Callable[[Problem], Search], spacing: float = 0.0) -> Search:
@@ -103,7 +103,7 @@ def free_configuration(
 def place_for_others(
     conditions: Conditions, space: Space, here: Floats, others: Bodies, target: Floats, divisions: int, seed: int
 ) -> Floats | None:
-    """Return a configuration at or near another one from which other joints can move to their target, or None.
+    """Return a configuration, ``here`` or a random one, from which other joints can move to their target; or None.
 
     Args:
         conditions: The conditions of the configuration.
@@ -111,7 +111,7 @@ def place_for_others(
         here: The initial configuration.
         others: The other joints, which are not moved.
         target: The values of the other joints.
-        divisions: The number of steps of the test of their motion.
+        divisions: The number of tested steps of the other joints' motion.
         seed: The seed of the random numbers.
     """
     test, before = conditions.allowed(), others.values()
@@ -139,7 +139,7 @@ def follow_goals(space: Space, first: Floats, count: int, search: Callable[[int]
 
     Args:
         space: The configuration space of the arm.
-        first: The first row, shape (n,).
+        first: The joint values at the start, shape (n,).
         count: The number of goals.
         search: Returns the search for a goal, by its number from 1 to ``count``.
     """

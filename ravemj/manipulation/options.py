@@ -14,7 +14,7 @@ from ravemj.errors import ArgumentError
 from ravemj.planning.edges import STEP
 
 STEP_LENGTH = float(np.float32(STEP))
-"""OpenRAVE's default step length, rounded to single precision as there."""
+"""OpenRAVE's default step length, which is a single-precision number."""
 
 
 Certify = bool | Literal["required"]
@@ -28,14 +28,15 @@ class JointMotion:
     maxiter: int = 4000
     """Maximum number of iterations of each call of the planner."""
     maxtries: int = 2
-    """Number of calls of the planner, with other random numbers each time."""
+    """Number of calls of the planner, each with other random numbers."""
     jitter: float = 0.04
     """Maximum change of each value of a start or goal in collision to make it free [rad or m].
 
-    The motion between the two is not tested. With a constraint, starts and goals are not changed.
+    The motion between the original and the changed configuration is not tested. With a constraint, starts and goals
+    are not changed.
     """
     steplength: float = STEP_LENGTH
-    """Step of the planner's trees, a weighted distance of configurations."""
+    """Length of a step of the planner's trees, a weighted distance of configurations."""
     certify: Certify = False
     """Whether to certify that the motion is free of collisions; ``required`` rejects uncertified motions."""
 
@@ -75,7 +76,7 @@ class UnsyncMotion:
     maxtries: int = 1
     """Number of attempts."""
     maxdivision: int = 10
-    """Number of steps of the test of the other joints' motion."""
+    """Number of tested steps of the other joints' motion."""
     planner: str = "BasicRRT"
     """Name of the planner."""
 
@@ -109,7 +110,7 @@ class GraspMotion:
     approachoffset: float = 0.0
     """Distance from the grasp at which the motion ends [m]."""
     steplength: float = STEP_LENGTH
-    """Step of the planner's trees, a weighted distance of configurations."""
+    """Length of a step of the planner's trees, a weighted distance of configurations."""
     grasptranslationstepmult: float = 0.1
     """Factor of the steps for sliders and the flight of a grasp that is simulated [m/rad]."""
     graspfinestep: float = 0.001

@@ -90,11 +90,11 @@ class Processor:
         name: The name, in lower case.
         groups: The layout of a configuration.
         limits: The limits of the motion.
-        options: Further parameters, as texts by their names.
+        options: Further parameters by name, as texts.
         time_step: Retimers round all times up to multiples of it [s]; 0 means no rounding.
         iterations: The number of attempted shortcuts; 0 for OpenRAVE's.
         random: The random numbers.
-        edges: Returns the tests of edges, for smoothers, given the path.
+        edges: For smoothers: returns the tests of edges, given the path.
         certifies: Whether smoothers certify motions, and remove shortcuts that prevent it.
         proceed: Callback before each attempt; returning False ends them.
     """

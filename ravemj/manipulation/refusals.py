@@ -1,4 +1,4 @@
-"""Reasons for the rejection of starts and goals: of single configurations, and counts over many samples."""
+"""Reasons for the rejection of starts and goals: single configurations, and statistics of samples."""
 
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
@@ -35,7 +35,9 @@ _ORDER = list(Cause)
 
 
 class Tally:
-    """Sample counts by region and cause. A sample with several solutions has the cause of the best one.
+    """Sample counts by region and cause.
+
+    The cause of a sample with several solutions is that of the solution that passed the most tests.
 
     Args:
         names: The names of the regions.
@@ -204,7 +206,7 @@ def troubles(bodies: Bodies, values: Floats) -> list[str]:
 def allowed_ends(
     conditions: Conditions, space: Space, allowed: Allowed, name: str, ends: Sequence[Floats], *, needed: bool
 ) -> list[Floats]:
-    """Return those of the starts or goals that are allowed; ``name`` says which. Use it within ``conditions.kept``.
+    """Return the allowed ones of starts or goals, called ``name`` in errors. Use it within ``conditions.kept``.
 
     Raises:
         RefusedError: none is allowed, there is none although it is needed, or a value has no limits.

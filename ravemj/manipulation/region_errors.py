@@ -68,7 +68,7 @@ class MovingFrame(NamedTuple):
         return self.body.link_transform(self.link) @ self.T_link_frame
 
     def velocities(self, point: Floats) -> Floats:
-        """Return the Jacobian of a world point (3,) fixed to the frame, and of its rotation, (6, n)."""
+        """Return the Jacobian of a world point (3,) fixed to the frame, then of the frame's rotation, shape (6, n)."""
         jacobian = np.zeros((6, self.bodies.dof))
         dynamics = self.body.dynamics
         moves, turns = dynamics.translation_jacobian(self.link, point), dynamics.rotation_jacobian(self.link)

@@ -49,7 +49,7 @@ class RootSource(Protocol):
 
     @property
     def tally(self) -> Tally | None:
-        """Counts of samples, or None."""
+        """Counts of samples by region and cause, or None."""
         ...
 
     def region_of(self, root: Floats) -> int:
@@ -62,7 +62,7 @@ class FunctionRoots:
     """Starts or goals from a user callback.
 
     Attributes:
-        sample: Returns one, shape (n,), or None.
+        sample: Returns a start or goal, shape (n,), or None.
     """
 
     sample: Callable[[], Floats | None]
@@ -89,7 +89,7 @@ class PoseSolutions(NamedTuple):
 
     Attributes:
         rows: The solutions within the limits, the nearest turns of each IK branch first, shape (K, n).
-        cause: The cause if there is none.
+        cause: The cause if there is no solution.
     """
 
     rows: Floats
@@ -125,7 +125,7 @@ class RegionRoots:
 
     @property
     def tally(self) -> Tally:
-        """Counts of samples."""
+        """Counts of samples by region and cause."""
         return self._tally
 
     def first(self, refuse: Refuse, random: np.random.Generator, *, enough: int) -> list[Floats]:

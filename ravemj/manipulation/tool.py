@@ -83,7 +83,7 @@ class ToolConstraint(NamedTuple):
     threshold: float
 
     def checked(self, T_world_tool: Floats) -> tuple[Floats, Floats, Floats, float]:
-        """Return the fields with the constrained frame filled in for a tool pose, and exact rotations.
+        """Return the checked fields with exact rotations; ``T_tool_point`` follows from the tool pose if it is None.
 
         Raises:
             ArgumentError: the numbers are invalid.
@@ -149,7 +149,8 @@ class MovedTool:
     def motion(self, values: Floats) -> tuple[Floats, Floats]:
         """Move the robot to a configuration (n,), and return ``T_world_tool`` and its Jacobian, shape (6, n).
 
-        Its first three rows are the velocity of the origin, the others the angular velocity, in world axes.
+        The first three rows of the Jacobian are the linear velocity of the tool's origin, the others its angular
+        velocity, in world axes.
         """
         self.bodies.move(values)
         jacobian = np.zeros((6, self.dof))

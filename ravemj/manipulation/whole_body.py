@@ -24,7 +24,7 @@ _APPROACH = 0.5
 
 
 class Keeper(NamedTuple):
-    """Pairs of geoms that keep a distance.
+    """Minimum-distance constraint of geom pairs.
 
     Attributes:
         pairs: Returns the world and the pairs.
@@ -156,7 +156,7 @@ class Moving:
     def limits(
         self, *, values: bool, velocities: bool, accelerations: bool, base_velocity: float | None
     ) -> MotionLimits:
-        """Return the limits of the variables: selected joint limits, and a velocity limit of each twist component."""
+        """Return the limits of the variables: selected ones of the joints, and ``base_velocity`` of the twist."""
         base, all_axes = self._base.shape[1], self.body.scene.dof_axes
         axes: list[Axis] = [all_axes[dof] for dof in self.dofs.tolist()]
         free = np.full(len(axes), np.inf)
@@ -175,7 +175,7 @@ class Moving:
         )
 
     def is_current(self) -> bool:
-        """Return whether the joints of the robot have not changed."""
+        """Return whether the robot still has the same joints."""
         return self.body.kinematics is self._kinematics
 
     def values(self) -> Floats:
@@ -241,7 +241,7 @@ class Moving:
         return near
 
     def _distances(self, keeper: Keeper) -> Inequality | None:
-        """Return constraints that keep near pairs at the minimum distance, and separate closer ones."""
+        """Return constraints that keep near pairs at the minimum distance, and separate closer ones; None for none."""
         near = self._near(keeper)
         if not near:
             return None

@@ -1,1 +1,1 @@
-"""The scene, OpenRAVE's in-memory content after loading, and computations on it alone."""
+"""The scene, OpenRAVE's in-memory content after loading, and computations that need only the scene."""

@@ -10,7 +10,7 @@ from ravemj.model.scene import Bounds, Extent, Geometry, Link, Mesh
 
 
 def geometry_bounds(geometry: Geometry, T_a_link: Floats) -> Bounds:
-    """Return the exact bounds of a geometry in frame a at a link pose ``T_a_link``; a point if it is empty."""
+    """Return the exact bounds of a geometry in frame a, given its link's pose; a point if it is empty."""
     return geometry.shape.bounds(T_a_link @ geometry.T_link_geometry.matrix())
 
 
@@ -70,7 +70,7 @@ def _enclosing(parts: Iterable[Bounds]) -> Bounds | None:
 
 
 def enclosing_box(bounds: Bounds | None, T_a_origin: Floats) -> AABB:
-    """Return bounds as OpenRAVE's box; None becomes a point at the origin of a frame."""
+    """Return bounds as OpenRAVE's box; None becomes a point at the origin of the frame ``T_a_origin``."""
     low, high = bounds or (T_a_origin[:3, 3], T_a_origin[:3, 3])
     return AABB((low + high) / 2, (high - low) / 2)
 

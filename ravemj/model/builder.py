@@ -28,7 +28,7 @@ DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), 
 
 @dataclass(slots=True)
 class LinkBuilder:
-    """Link under construction; ``pose`` is in the frame of the open element."""
+    """Link under construction; ``pose`` is in the frame of the enclosing element."""
 
     name: str
     source: Source
@@ -42,7 +42,7 @@ class LinkBuilder:
     self_collision_ignored: bool = False
 
     def add_to_group(self, name: str, geometries: Iterable[scene.Geometry]) -> None:
-        """Add shapes to a group of that name."""
+        """Add shapes to a geometry group."""
         groups = dict(self.groups)
         groups[name] = (*groups.get(name, ()), *geometries)
         self.groups = tuple(groups.items())
@@ -81,7 +81,7 @@ class JointBuilder:
 
 
 class SensorBuilder(NamedTuple):
-    """Attached sensor; its link name refers to the first such link of the finished body.
+    """Attached sensor with the name of its link, which is looked up in the finished body.
 
     In a robot that OpenRAVE rejects, the sensor stays on the link given here.
     """
@@ -139,7 +139,7 @@ class BodyBuilder:
         self.name, self.links, self.joints, self.adjacent, self.manipulators, self.sensors = parts
 
     def check_joint_names(self) -> None:
-        """Raise an error for two joints of the same name, unless both have no DOF."""
+        """Raise an error if two joints have the same name, unless both have no DOF."""
         seen: dict[str, bool] = {}
         for joint in self.joints:
             if joint.name in seen and (joint.active or seen[joint.name]):
@@ -167,7 +167,7 @@ class BodyBuilder:
         self._indexed = len(self.links)
 
     def forget_names(self, first: int = 0) -> None:
-        """Forget the names of the links from an index on, which will be renamed, moved or removed."""
+        """Forget the names of the links from index ``first`` on, which will be renamed, moved or removed."""
         for link in self.links[first : self._indexed]:
             for names, name in ((self._first, link.name), (self._first_any_case, link.name.lower())):
                 if names.get(name, -1) >= first:
@@ -212,7 +212,7 @@ class BodyBuilder:
         return replace(body, manipulators=manipulators) if manipulators else body
 
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
-        """Return the manipulators. An invalid one has no gripper, and later ones have no links."""
+        """Return the manipulators. An invalid one has no gripper, and those after it have no links."""
         frozen: list[scene.Manipulator] = []
         names: set[str] = set()
         for built in self.manipulators:
@@ -280,7 +280,7 @@ class BodyBuilder:
     def _settled(
         self, joints: Sequence[scene.Joint], poses: Sequence[Pose], diagnostics: Diagnostics
     ) -> list[scene.Joint]:
-        """Return the joints with their values: measured, or from the file, clamped to the limits."""
+        """Return the joints with their values, measured or from the file, clamped to the limits."""
         values = [list(measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])) for joint in joints]
         findings = diagnostics if self.joint_values is None else Diagnostics()
         values = _limited(joints, values, findings)

@@ -11,7 +11,7 @@ from ravemj.model.scene import KinBody, Manipulator
 
 
 class Connections:
-    """Tables of the connections of links by joints, cached because scripts look them up in loops.
+    """Tables of the links that joints connect, cached because scripts query them in loops.
 
     Attributes:
         joints: The joints.
@@ -46,7 +46,7 @@ class Connections:
 
     @cached_property
     def parts(self) -> list[int]:
-        """First link of the connected component of each link."""
+        """For each link, the first link of its connected component."""
         return connected_components(self._count, self.ends)
 
     @cached_property
@@ -87,7 +87,7 @@ class Connections:
 
 _MOST_BODIES = 16
 _known: dict[tuple[int, int, int], Connections] = {}
-"""Cache by the identity of the joints, limited to recent bodies, since it keeps them alive."""
+"""Cache by the identity of the joints, limited to few bodies, since it keeps them alive."""
 
 
 def connections(body: KinBody) -> Connections:
@@ -122,8 +122,8 @@ def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
     """Return the shortest path from one link to another.
 
     Returns:
-        The links on it, including both ends, and the joints between them; empty if there is no path, or the links are
-        equal.
+        The links on the path, including both ends, and the joints between them; empty if there is no path, or the links
+        are equal.
     """
     ends, joints = connections(body).ends, connections(body).paths.path(first, last)
     links = [first]
@@ -143,7 +143,7 @@ def dofs_moving(body: KinBody, link: int) -> frozenset[int]:
 
 
 def dependency_order(body: KinBody) -> list[int]:
-    """Return the active joints, each after those that move its links, otherwise from the root outwards."""
+    """Return the active joints, each after those that move its links; others are in the order from the root."""
 
     def depth(index: int) -> tuple[int, int, int]:
         joint = body.joints[index]
@@ -154,7 +154,7 @@ def dependency_order(body: KinBody) -> list[int]:
 
 
 def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
-    """Return the loop of each joint that closes one: links, each with the joint to the next."""
+    """Return the loop of each joint that closes one: its links, each with the joint to the next link."""
     joints, loops = body.all_joints, list[list[tuple[int, int]]]()
     for index, joint in enumerate(joints):
         if joint.places_child:
@@ -189,7 +189,7 @@ def links_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
 
 
 def joints_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
-    """Return the active joints between the links beyond a manipulator's arm."""
+    """Return the active joints between links beyond a manipulator's arm."""
     beyond = set(links_beyond(body, manipulator))
     return [
         index
@@ -220,7 +220,7 @@ def adjacent_pairs(body: KinBody) -> frozenset[Pair]:
     """Return the pairs of adjacent links, which OpenRAVE's self-collision check ignores.
 
     These are pairs connected by a joint, or by a shortest path with at most one moving joint, unconnected pairs, pairs
-    declared by ``<adjacent>``, and pairs with a link without shapes. A body can disable the first three.
+    declared by ``<adjacent>``, and pairs with a link without shapes. A body can disable the first three kinds.
 
     Returns:
         Pairs of link indices, the smaller one first.

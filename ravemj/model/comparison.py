@@ -29,7 +29,7 @@ from ravemj.model.scene import (
 )
 
 TOLERANCE = 1e-9
-"""Tolerance of numbers, relative to the largest above 1."""
+"""Tolerance of numbers, relative to the larger of 1 and the largest number."""
 MESH_TOLERANCE = 1e-6
 """Tolerance of mesh vertices, which files store in single precision."""
 CONFIGURATIONS = 5
@@ -37,7 +37,7 @@ CONFIGURATIONS = 5
 
 _FARTHEST = 10.0  # range of random values of joints without limits [rad or m]
 _AXIS_FIELDS = tuple(field.name for field in fields(Axis) if field.name not in {"direction", "reference"})
-"""Compared fields of axes: all but the direction, which not every joint has, and the derived reference."""
+"""Compared fields of axes: all except the direction, which some joints lack, and the reference, which is derived."""
 
 
 class Difference(NamedTuple):
@@ -48,7 +48,8 @@ class Difference(NamedTuple):
         quantity: The quantity that differs.
         first: Its value in the first model.
         second: Its value in the second model.
-        error: The largest difference of two numbers, relative to the largest above 1; None for other values.
+        error: The largest difference of two numbers, relative to the larger of 1 and the largest number; None for other
+            values.
     """
 
     part: str
@@ -59,7 +60,7 @@ class Difference(NamedTuple):
 
 
 def compare(first: Scene, second: Scene, tolerance: float = TOLERANCE) -> list[Difference]:
-    """Compare two scenes body by body, in order; the tolerance is relative to the largest number above 1."""
+    """Compare two scenes body by body, in order; ``tolerance`` is as for ``TOLERANCE``."""
     return list(_Comparison(tolerance).scenes(first, second))
 
 
@@ -68,7 +69,7 @@ class _Comparison:
     tolerance: float
 
     def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
-        """Compare the bodies and the sensors without robots; gravity, view and description if both scenes have them."""
+        """Compare bodies and sensors without robots; compare gravity, view and description if both scenes have them."""
         part = "the scene"
         yield from self._same(part, "bodies", _names(first.bodies), _names(second.bodies))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
@@ -278,7 +279,7 @@ def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
 
 
 def _random_value(axis: Axis, random: np.random.Generator) -> float:
-    """Return a random value within the limits, and near 0 if they allow it."""
+    """Return a random value within the limits, and within ``_FARTHEST`` of 0 if they allow it."""
     low, high = (min(max(end, axis.lower), axis.upper) for end in (-_FARTHEST, _FARTHEST))
     return float(random.uniform(low, high))
 
@@ -309,7 +310,7 @@ def _drawn(geometry: Geometry) -> Mesh:
 
 
 def _corners(mesh: Mesh) -> Floats:
-    """Return the vertices of triangles with a nonzero area in single precision, shape (n, 3, 3)."""
+    """Return the vertices of each triangle with nonzero area in single precision, shape (n, 3, 3)."""
     corners = mesh.vertices[mesh.triangles]
     a, b, c = (corners[:, i].astype(np.float32) for i in range(3))
     return corners[~((a == b).all(1) | (b == c).all(1) | (c == a).all(1))]

@@ -1,8 +1,8 @@
 """Drawings that scripts add to a scene: arrays of points, lines and triangles, independent of renderers.
 
 OpenRAVE's drawing calls (arrow, box, plane, mesh) become primitives of four kinds: points, spheres, lines and
-triangles. ``Drawings`` stores them. Adding, changing and removing one is a single operation on a dict, so any thread
-and the garbage collector may do it without a lock.
+triangles. ``Drawings`` stores them. Adding, changing and removing a drawing is a single operation on a dict, so any
+thread and the garbage collector may do it without a lock.
 """
 
 import itertools
@@ -20,7 +20,7 @@ _TIP_OF_ARROW = 0.1
 _SIDES_OF_ARROW = 12
 _SIDES_OF_CYLINDER = 32
 _SHADES = 16
-"""Number of pieces of a line per unit of colour difference."""
+"""Number of pieces of a line per unit of colour difference of its ends."""
 
 _TEXTURE_CELLS = 64
 """Maximum number of cells along a side of a plane; finer textures are averaged."""
@@ -33,9 +33,9 @@ class PrimitiveBatch(NamedTuple):
     """Primitives of one kind, as arrays.
 
     Attributes:
-        corners: Shape (N, k, 3) [m]; k is 1 for points and spheres, 2 for lines, 3 for triangles.
-        sizes: Shape (N,): width of points and lines [pixels], radius of spheres [m]; triangles have none.
-        rgba: Shape (N, 4) in 0..1.
+        corners: Positions [m], shape (N, k, 3); k is 1 for points and spheres, 2 for lines, 3 for triangles.
+        sizes: Width of points and lines [pixels], radius of spheres [m], unused for triangles, shape (N,).
+        rgba: Colours in 0..1, shape (N, 4).
     """
 
     corners: Floats
@@ -53,7 +53,7 @@ def _empty(corners: int) -> PrimitiveBatch:
 
 @dataclass(frozen=True, eq=False)
 class Primitives:
-    """Graphics primitives by kind, as input of renderers. They compare by identity.
+    """Graphics primitives by kind, as input of renderers. Objects are compared by identity.
 
     Attributes:
         points: OpenGL points: squares that face the camera, unlit.
@@ -119,7 +119,7 @@ def line_list(positions: Floats, width: float, rgba: Floats) -> Primitives:
 
 
 def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Primitives:
-    """Divide lines whose end colours differ into pieces of one colour."""
+    """Return lines; those whose end colours differ are divided into pieces of one colour."""
     pieces = max(1, int(np.ceil(_SHADES * np.abs(np.diff(rgba[ends], axis=1)).max(initial=0))))
     cuts = np.arange(pieces + 1) / pieces
     at = positions[ends[:, 0], None] + cuts[:, None] * np.diff(positions[ends], axis=1)
@@ -139,7 +139,7 @@ def _triangles(corners: Floats, rgba: Floats) -> Primitives:
 
 
 def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Primitives:
-    """Return an arrow: a shaft of a radius [m] and a tip twice as wide; nothing for zero length."""
+    """Return an arrow: a shaft of a radius [m] and a tip of twice its width; nothing if its length is zero."""
     along = end - start
     if not along.any():
         return NOTHING
@@ -152,7 +152,7 @@ def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Primitives
 
 
 def cylinder(radius: float, height: float, rgba: Floats) -> Primitives:
-    """Return a cylinder along z around the origin, with its full height [m]."""
+    """Return a cylinder along z around the origin; ``height`` is its full height [m]."""
     turn = np.linspace(0, 2 * np.pi, _SIDES_OF_CYLINDER, endpoint=False)
     ring = radius * np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
     up = np.array([0.0, 0.0, height / 2])
@@ -274,7 +274,7 @@ class Drawings:
         return merged
 
     def texts(self) -> list[tuple[Floats, str]]:
-        """Return the positions of the labels of visible drawings, shape (3,) each, and the labels."""
+        """Return for each visible drawing with a label its position, shape (3,), and the label."""
         labels = [(drawing.state, drawing.text) for drawing in self._drawn.copy().values() if drawing.text]
         return [(state.points.corners[0, 0], text) for state, text in labels if state is not None]
 

@@ -1,4 +1,4 @@
-"""Changes of joints to mimic joints and back."""
+"""Conversion of joints to mimic joints and back."""
 
 from dataclasses import replace
 
@@ -11,8 +11,8 @@ from ravemj.model.scene import KinBody, Manipulator
 def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[KinBody, list[int]]:
     """Return a body with new mimic equations of one joint, and the previous index of each of its joints.
 
-    As in OpenRAVE (gap-15), an active joint that becomes a mimic joint is the last passive one, and one that ceases to
-    be one (an empty position) is the last active one. So DOFs are renumbered.
+    As in OpenRAVE (gap-15), an active joint that becomes a mimic joint is the last passive joint, and a mimic joint
+    that becomes active (an empty position) is the last active joint. So DOFs are renumbered.
 
     Raises:
         ArgumentError: the equations are invalid.

@@ -1,4 +1,4 @@
-"""Hashes of body structures, independent of world poses, limits and names except those of joints of grippers."""
+"""Hashes of body structures, independent of world poses and limits, and of names except those of gripper joints."""
 
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
@@ -32,7 +32,7 @@ def _masses(body: KinBody) -> list[object]:
 
 
 def of_robot(body: KinBody) -> str:
-    """Return the hash of a robot with its manipulators and sensors; masses do not matter there, as in OpenRAVE."""
+    """Return the hash of a robot with its manipulators and sensors; as in OpenRAVE, it does not depend on masses."""
     tools = [(_tool(arm), _gripper(body, arm)) for arm in body.manipulators]
     return _digest(
         _structure(body), tools, [(sensor.link, sensor.T_link_sensor, sensor.type) for sensor in body.sensors]
@@ -47,7 +47,7 @@ def of_arm(body: KinBody, arm: Manipulator) -> str:
 def of_inverse_kinematics(body: KinBody, arm: Manipulator, kind: str, *, tool: bool, direction: bool) -> str:
     """Return the hash of all inputs of an IK solver for a goal type.
 
-    ``tool`` and ``direction`` select whether the tool pose in the effector and the tool direction are included.
+    ``tool`` and ``direction``: whether to include the tool pose in the effector, and the tool direction.
     """
     placed = (arm.T_effector_tool,) if tool else ()
     return _digest(kind, _way(body, arm), placed, (arm.direction,) if direction else ())
@@ -59,7 +59,7 @@ def of_manipulator(body: KinBody, arm: Manipulator) -> str:
 
 
 def _gripper(body: KinBody, arm: Manipulator) -> tuple[object, ...]:
-    """Return the joints of a gripper by their names, as OpenRAVE does for no other joint, and how they close."""
+    """Return the names of the gripper joints, and how they close; OpenRAVE hashes no other joint names."""
     return [body.joints[index].name for index in arm.gripper_joints], arm.chucking_direction
 
 
@@ -76,7 +76,7 @@ def _tool(arm: Manipulator) -> tuple[object, ...]:
 
 
 def _links(body: KinBody) -> list[object]:
-    """Return the shapes of all links, and the poses of links that no joint places."""
+    """Return the shapes of each link, and the pose of links that are not the child of a joint of the kinematic tree."""
     placed = {joint.child for joint in body.all_joints if joint.places_child}
     entries: list[object] = []
     for index, link in enumerate(body.links):

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ravemj.core.graphs import depth_first, topological_order
 
 _UNREACHED = -1
-"""Depth of a link that no path connects to link 0, as OpenRAVE compares it with others."""
+"""Depth of a link that no path connects to link 0, with which OpenRAVE compares it with others."""
 
 
 _HIGHEST = (sys.maxsize, sys.maxsize)
@@ -26,7 +26,7 @@ class Edge(NamedTuple):
     """Joint as an edge of the graph.
 
     Attributes:
-        links: Indices of its two links, in the order in which the file lists them.
+        links: Indices of its two links, in the order of the file.
         fixed: Whether it is a weld.
         active: Whether it has a DOF.
         follows: Indices of the passive joints that it mimics.
@@ -76,8 +76,8 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
     """Return the joints in the order in which OpenRAVE evaluates them.
 
     The level of a joint is the depths of its links, the smaller one first. A joint waits for all joints on lower
-    levels, except that one at a static link does not wait for others at static links. Ready joints are queued in the
-    order of the file.
+    levels, except that a joint at a static link does not wait for others at static links. Ready joints are queued in
+    the order of the file.
     """
     by_level = sorted(range(len(levels)), key=lambda index: levels[index])
     unfinished, free = deque(by_level), deque(index for index in by_level if not grounded[index])
@@ -139,10 +139,10 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
 
 
 def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Return for each link the neighbours that a path from link 0 reaches without passing that link.
+    """Return for each link the neighbours that a path from link 0 reaches without passing the link.
 
-    In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. Ancestors are reached
-    without it, and descendants if it is not an articulation point of their branch.
+    In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. A path always reaches
+    ancestors so, and descendants if the link is not an articulation point of their branch.
     """
     number, above, highest = depth_first(neighbours, 0)
     branches: list[list[int]] = [[] for _ in neighbours]
@@ -173,7 +173,7 @@ def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Se
 def _hangs_on(
     link: int, other: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]], carriers: set[int]
 ) -> bool:
-    """Return whether a link is another one or its descendant, given the links that have children."""
+    """Return whether a link is another link or its descendant; ``carriers`` are the links that have children."""
     while link != other and other in carriers and link in placed_by:
         link = ends[placed_by[link]][0]
     return link == other

@@ -16,7 +16,7 @@ class Inertias:
     Attributes:
         masses: Masses [kg], shape (links,).
         coms: Centres of mass in the links' frames [m], shape (links, 3).
-        tensors: Inertia about them, in axes parallel to the links' [kg m^2], shape (links, 3, 3).
+        tensors: Inertia about the centres of mass, in axes parallel to the links' [kg m^2], shape (links, 3, 3).
     """
 
     masses: Floats
@@ -36,7 +36,7 @@ class Inertias:
     def center_of_mass(self, T_a_links: Floats) -> Floats:
         """Return the total centre of mass of links [m] in frame a, shape (3,); NaN if the mass is 0.
 
-        ``T_a_links`` are their poses, shape (links, 4, 4).
+        ``T_a_links`` are the poses of the links, shape (links, 4, 4).
         """
         coms = np.einsum("nij,nj->ni", T_a_links[:, :3, :3], self.coms) + T_a_links[:, :3, 3]
         mass = self.masses.sum()
@@ -44,7 +44,7 @@ class Inertias:
 
 
 _ROUNDING = 1e-12
-"""Relative residue of zeros in a tensor after rotations of its axes by quarter turns."""
+"""Relative size below which entries of a tensor are 0, as after rotations of its axes by quarter turns."""
 
 
 def principal_frame(inertial: Inertial) -> Pose:

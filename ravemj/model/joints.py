@@ -29,13 +29,13 @@ _X = (1.0, 0.0, 0.0)
 _Z = (0.0, 0.0, 1.0)
 _NEAR = 1e-9  # tolerance of unit vectors
 ROUNDING = 1e-12
-"""Measured joint value [rad or m] below which it is a rounding error of the poses."""
+"""Absolute joint value [rad or m] up to which a measured value is a rounding error of the poses."""
 
 
 def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Sequence[float]]) -> None:
     """Place the child link of each joint in ``poses``, the world poses of all links: forward kinematics in place.
 
-    Parents come before children. ``values`` are those of each joint's axes [rad or m].
+    Parents come before children. ``values`` has the values of each joint's axes [rad or m].
     """
     for joint, joint_values in zip(joints, values, strict=True):
         poses[joint.child] = poses[joint.parent] @ relative_pose(joint, joint_values)
@@ -44,7 +44,7 @@ def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Seq
 def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
     """Return the poses of all links, with the root links unchanged.
 
-    ``values`` are those of each joint's axes [rad or m], active joints and then passive ones.
+    ``values`` has the values of each joint's axes [rad or m], active joints and then passive ones.
     """
     poses = [link.T_world_link for link in body.links]
     joints = body.all_joints
@@ -75,7 +75,7 @@ def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
 
 
 def displaced_pose(joint: Joint, values: Sequence[float]) -> Pose:
-    """Return the pose of a joint's child in its parent at values [rad or m], which may be nonzero for welds."""
+    """Return the pose of a joint's child in its parent at values [rad or m], which may be nonzero for welds, too."""
     if joint.kind == "spherical":
         return about(joint.anchor, wxyz_from_rotation_vector((values[0], values[1], values[2]))) @ joint.T_parent_child
     displaced = joint.T_parent_child
@@ -94,7 +94,7 @@ def _motion(joint: Joint, index: int, value: float) -> Pose:
 
 
 def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
-    """Return the axis directions of a joint in its parent at given values; the second one rotates with the first."""
+    """Return the axis directions of a joint in its parent at values; the second axis rotates with the first."""
     directions = [axis.direction for axis in joint.axes]
     if joint.kind in {"hinge2", "pr"}:
         first = joint.axes[0]
@@ -111,14 +111,14 @@ def moving_direction(joint: Joint, axis: int) -> Vec3:
 
 
 def reported_anchor(joint: Joint) -> Vec3:
-    """Return the anchor reported by OpenRAVE, in the joint's parent; for sliders that of value 0."""
+    """Return the anchor reported by OpenRAVE, in the joint's parent; for sliders it is the anchor at value 0."""
     if joint.kind != "slider":
         return joint.anchor
     return add(joint.anchor, scale(joint.axes[0].direction, -joint.axes[0].reference))
 
 
 def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
-    """Return the rotation about a point as a transform."""
+    """Return the transform of a rotation about a point."""
     return Pose(add(anchor, scale(rotate(wxyz, anchor), -1.0)), wxyz)
 
 

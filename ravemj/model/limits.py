@@ -43,7 +43,7 @@ class Limits:
         return True
 
     def clamp(self, values: Floats) -> Floats:
-        """Return values, shape (..., axes), moved into the limits; NaN stays.
+        """Return values, shape (..., axes), clamped to the limits; NaN stays.
 
         If a lower limit is above the upper one, values below the lower limit move to it, as in OpenRAVE.
         """
@@ -51,12 +51,12 @@ class Limits:
 
 
 def clamp(axis: Axis, value: float) -> float:
-    """Return a value [rad or m] moved into the limits of an axis, which a circular one does not have; NaN stays."""
+    """Return a value [rad or m] clamped to the limits of an axis, unless it is circular; NaN stays."""
     return value if axis.circular else axis.lower if value < axis.lower else min(value, axis.upper)
 
 
 def with_fields(axes: Sequence[Axis], indices: Sequence[int], fields: Mapping[str, Sequence[float]]) -> list[Axis]:
-    """Return axes with changed fields at some indices: by field name, a value for each index."""
+    """Return axes with changed fields; ``fields`` has by field name a value for each of ``indices``."""
     changed = list(axes)
     for place, index in enumerate(indices):
         changes: dict[str, Any] = {name: values[place] for name, values in fields.items()}

@@ -1,7 +1,7 @@
 """Appearance of pictures: lights, background and floor.
 
-All renderers and the MJCF use these values, so that their pictures look alike. Light is relative to a surface's colour:
-if the lights on a surface add up to 1, it is drawn in its own colour.
+All renderers and the MJCF use these values, so that their pictures look alike. Light intensities are relative to a
+surface's colour: if the lights on a surface add up to 1, it is drawn in its own colour.
 """
 
 from typing import NamedTuple
@@ -35,7 +35,7 @@ class Light(NamedTuple):
     def direction_in_world(self, R_world_camera: Floats) -> Floats:
         """Return the unit direction of the light in the world, for a camera's rotation.
 
-        A light that casts shadows comes from above, wherever the camera is: its shadows fall onto the floor.
+        A light that casts shadows always comes from above, so that shadows fall onto the floor.
         """
         direction = np.array(self.direction, dtype=np.float64)
         direction /= np.linalg.norm(direction)
@@ -74,7 +74,7 @@ STUDIO = (FILL, KEY, SKY)
 """Default lights of pictures: a surface that faces the camera's left shoulder is drawn in its own colour."""
 
 STUDIO_PREFIX = "studio_"
-"""Name prefix of these lights in MJCF files; other lights belong to a model."""
+"""Name prefix of the studio lights in MJCF files; other lights belong to a model."""
 
 SOFTNESS = 0.008
 """Angular radius of the key light [rad], which softens the edges of its shadows."""
@@ -86,14 +86,14 @@ SENSOR = (
 """Lights in images of simulated cameras, independent of the appearance of pictures."""
 
 LONE = Light((0.0, 0.0, 1.0), diffuse=0.6, ambient=0.4, specular=0.2, in_camera=True)
-"""Headlight of a model without lights that is drawn without studio lights."""
+"""Headlight for a model without lights that is drawn without studio lights."""
 
 WHITE: Rgb = (1.0, 1.0, 1.0)
 
 ZENITH: Rgb = (0.66, 0.75, 0.86)
 HORIZON: Rgb = (0.91, 0.93, 0.95)
 NADIR: Rgb = (0.74, 0.77, 0.80)
-"""Default background colours straight up, at the horizon and straight down."""
+"""Default background colours: straight up, at the horizon and straight down."""
 
 FLOOR: Rgb = (0.79, 0.81, 0.83)
 """Floor colour near the bodies; it fades to the horizon's colour with distance."""
@@ -108,7 +108,7 @@ FADE_START, FADE_END = 1.0, 10.0
 """Distances beyond the bodies at which the floor starts to fade and has faded [radii of the scene]."""
 
 FLOOR_REACH = 3.0
-"""Far end of the floor, as a multiple of the depth at which it has faded."""
+"""Far end of the floor, as a multiple of the depth at which the floor has faded."""
 
 CELLS = 2.0
 """Minimum number of grid cells along the radius of the scene."""

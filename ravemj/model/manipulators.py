@@ -54,9 +54,9 @@ def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnosti
 
 
 def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
-    """Return the joints from one link up the tree to another, in that order; None if there is no path.
+    """Return the joints from link ``base`` up the tree to link ``effector``, in this order; None if there is no path.
 
-    Joints are counted as the active ones followed by the passive ones.
+    Joint indices count active joints, then passive ones.
     """
     above = chains.joints_above(body, effector)
     links = [effector, *(body.all_joints[index].parent for index in above)]

@@ -25,7 +25,7 @@ class Equations(NamedTuple):
 
 
 class NamedJoint(NamedTuple):
-    """Joint as equations refer to it.
+    """Joint as mimic equations refer to it.
 
     Attributes:
         name: The name.
@@ -95,7 +95,7 @@ def leaders(expression: "Expression") -> tuple[int, ...]:
 
 
 def _followed(index: int, mimics: "dict[int, Expression]") -> set[int]:
-    """Return the joints that a mimic joint depends on, directly or indirectly."""
+    """Return the joints on which mimic joint ``index`` depends, directly or indirectly."""
     pending, followed = [index], set[int]()
     while pending:
         current = pending.pop()
@@ -145,10 +145,10 @@ class MimicJoint(NamedTuple):
     """Joint whose value is a function of other joint values.
 
     Attributes:
-        joint: Its index in the list of active, then passive joints.
-        expression: The function, of ``joint0``, ``joint1``, …
+        joint: Its index among active, then passive joints.
+        expression: The function of ``joint0``, ``joint1``, …
         multiple: The affine form of ``expression`` in one joint, or None.
-        evaluate: The evaluation of other equations, from the first values of all joints.
+        evaluate: Evaluation of ``expression`` if it has no such form, from the first values of all joints.
         lower: Its lower limit [rad or m].
         upper: Its upper limit; circular joints have none.
     """
@@ -176,7 +176,7 @@ class MimicJoints:
     def evaluate(self, values: list[float], *, clamp: bool = True) -> None:
         """Compute the values of the mimic joints from the others in place, within limits if ``clamp``.
 
-        ``values`` are the first ones of each joint [rad or m], active joints and then passive ones.
+        ``values`` has the first value of each joint [rad or m], active joints and then passive ones.
         """
         for index, _, multiple, evaluate, lower, upper in self.joints:
             if multiple is not None:
@@ -186,7 +186,7 @@ class MimicJoints:
                 values[index] = min(max(value, lower), upper) if clamp else value
 
     def evaluate_many(self, values: list[Floats]) -> None:
-        """Do the same for many configurations, with arrays of shape (N,) for each joint."""
+        """Compute the values of the mimic joints in place for N configurations; ``values`` are arrays (N,)."""
         for joint, expression, _, _, lower, upper in self.joints:
             named = {f"joint{leader}": values[leader] for leader in leaders(expression)}
             followed = np.broadcast_to(expression.evaluate_many(named), np.shape(values[joint]))

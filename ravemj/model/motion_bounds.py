@@ -23,7 +23,7 @@ def motion_bounds(body: KinBody) -> Floats:
     The bounds are conservative: chains of links are assumed to be stretched.
 
     Returns:
-        Metres per radian, for sliders per metre, shape (dof,); 0 for a DOF that moves no shape.
+        Metres per radian, for sliders metres per metre, shape (dof,); 0 for a DOF that moves no shape.
     """
     reaches = [_joint_reach(body, joint) for joint in body.all_joints]
     rates = _rates(body)
@@ -41,7 +41,7 @@ def reach(body: KinBody) -> float:
 
 
 def _joint_reach(body: KinBody, joint: Joint) -> Floats:
-    """Return for each axis of a joint the maximum distance of moved shapes from it; 1 for prismatic axes."""
+    """Return for each axis of a joint the maximum distance of moved shapes from the axis; 1 for prismatic axes."""
     if joint.kind == "slider":
         return np.ones(1)
     if joint.static or not joint.places_child:
@@ -55,7 +55,7 @@ def _joint_reach(body: KinBody, joint: Joint) -> Floats:
 def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
     """Return the maximum distance of the shapes of a link and its descendants from a point, perpendicular to an axis.
 
-    Point and axis, a unit vector or zero for none, are fixed to the link and in its frame.
+    Point and axis are fixed to the link and in its frame. The axis is a unit vector; zero means no axis.
     """
     across = np.eye(3) - np.outer(axis, axis)
     distances = [-math.inf]
@@ -87,13 +87,13 @@ def _stroke(joint: Joint) -> float:
 
 
 def _point_in_child(joint: Joint, point: Floats) -> Floats:
-    """Return a point in a joint's parent frame in the frame of the child, at the joint's reference."""
+    """Return a point of a joint's parent frame in the child's frame, at the joint's reference."""
     T_child_parent = joint.T_parent_child.inverse().matrix()
     return T_child_parent[:3, :3] @ point + T_child_parent[:3, 3]
 
 
 def _direction_in_child(joint: Joint, direction: Floats) -> Floats:
-    """Return a direction in a joint's parent frame in the frame of the child, at the joint's reference."""
+    """Return a direction of a joint's parent frame in the child's frame, at the joint's reference."""
     return joint.T_parent_child.inverse().matrix()[:3, :3] @ direction
 
 

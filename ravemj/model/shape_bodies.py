@@ -60,12 +60,12 @@ def named_body(name: str, geometries: Iterable[Geometry]) -> KinBody:
 
 
 def empty_body(body: KinBody) -> KinBody:
-    """Return a body of the same name and type without links."""
+    """Return a body of the same name and class without links."""
     return KinBody(name=body.name, is_robot=body.is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
 
 
 def body_of_geometries(body: KinBody, geometries: Iterable[Geometry]) -> KinBody:
-    """Return a body of the same name and type with one static link of these shapes."""
+    """Return a body of the same name and class with one static link of these shapes."""
     base = Link(
         name="base",
         T_world_link=Pose(),

@@ -14,7 +14,7 @@ HOME_STATES = ("home", "standing", "half_sitting")
 def start_values(body: KinBody, state: str | None = None) -> Floats:
     """Return the joint values of the start configuration [rad or m], shape (dof,).
 
-    This is the configuration ``state`` if given, else the joint values of the body. If these are zero (clamped to the
+    It is the configuration ``state`` if given, else the joint values of the body. If these are all zero (clamped to the
     limits), it is the configuration ``home``, ``standing`` or ``half_sitting``, if one exists.
     """
     values = np.array([axis.value for axis in body.dof_axes])

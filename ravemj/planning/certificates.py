@@ -10,7 +10,7 @@ from ravemj.core.transforms import Vec3
 
 @dataclass(frozen=True)
 class CertifiedSpan:
-    """Time span of a motion, and the pair of shapes concerned.
+    """Time span of a motion, with a pair of shapes.
 
     Attributes:
         start: Start time [s].
@@ -28,17 +28,17 @@ class CertifiedSpan:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Proven freedom from collisions at all times of a motion, not only at tested ones.
+    """Proof that a motion is free of collisions at all times, not only at tested ones.
 
-    It holds for the scene at that time, with MuJoCo's shapes; non-convex meshes are their triangles. Constraints and
-    user collision checkers are not covered.
+    It holds for the scene at the time of the proof, with MuJoCo's shapes; non-convex meshes are their triangles.
+    Constraints and user collision checkers are not covered.
 
     Attributes:
         certified: Whether the motion is proven free of collisions, apart from ``exempt``.
         undecided: Spans without proof: shapes touch, or come closer than 0.1 mm.
         exempt: Spans in which shapes that touch at the start or goal are ignored: until they are 2 mm apart.
-        smallest_gap: The smallest distance from other bodies during the motion [m]; a lower bound. Infinite if there
-            are none. Link pairs of one body are ignored, since they are close by design.
+        smallest_gap: Lower bound of the distances between bodies during the motion [m]; infinite if there are none.
+            Link pairs of one body are ignored, since they are close by design.
         nearest: The time and pair of the smallest distance, as a span of zero length; None if nothing was near.
         reason: Reason why no proof was possible; empty otherwise.
         nearest_points: The nearest points of both shapes at the smallest distance, in the world [m]; None if nothing
@@ -69,5 +69,5 @@ class Certificate:
 
 
 def _rounded(number: float) -> str:
-    """Return a number with two significant digits and without exponent."""
+    """Return a number as text with two significant digits and without exponent."""
     return np.format_float_positional(number, precision=2, fractional=False, trim="-")

@@ -18,16 +18,16 @@ from ravemj.planning.proofs import path_curves
 from ravemj.planning.space import Space
 
 _PROJECTED = 0.1
-"""Projections stop at this fraction of the threshold."""
+"""Error norm at which projections stop, as a fraction of the threshold."""
 
 _INSIDE = 0.5
-"""Fraction of the threshold above which configurations are projected, so that edges between them stay within it."""
+"""Error norm above which configurations are projected, as a fraction of the threshold, so that edges stay within it."""
 
 _DETOUR = 0.8
-"""Maximum length of each half of an edge, relative to the edge; a longer half is a jump on the constraint."""
+"""Maximum length of each half of a projected edge, relative to the edge; a longer half is a jump on the constraint."""
 
 _SHORTEST = 1e-3
-"""Minimum length of a part that is halved, relative to the edge."""
+"""Minimum length of a part of an edge that is halved, relative to the edge."""
 
 
 class Manifold(NamedTuple):
@@ -53,7 +53,7 @@ class Manifold(NamedTuple):
 
 
 class ConstrainedEdges(Edges):
-    """Tests edges on a constraint manifold in steps of the resolution; ``allowed`` need not test it."""
+    """Tests of edges on a constraint manifold; ``allowed`` need not test the constraint."""
 
     def __init__(
         self, space: Space, allowed: Allowed, manifold: Manifold, step: float = STEP, proof: Proof | None = None
@@ -62,7 +62,7 @@ class ConstrainedEdges(Edges):
         self._manifold = manifold
 
     def grow(self, start: Floats, target: Floats, *, longest: float = LINE, whole: bool = False) -> Growth:
-        """Return steps on the constraint towards another configuration, up to the first blocked or too long one."""
+        """Grow along the constraint towards a target, like ``Edges.grow``, while steps are allowed and come closer."""
         points, here, arrives = [start], start, False
         for _ in range(ceil(longest / self.step - ROUNDING)):
             end, arrives = self._towards(here, target)
@@ -82,7 +82,7 @@ class ConstrainedEdges(Edges):
         return self.onto(start + way), False
 
     def onto(self, configuration: Floats) -> Floats:
-        """Project a configuration well inside of the threshold; if that fails, return it unchanged."""
+        """Project a configuration to an error well below the threshold; if that fails, return it unchanged."""
         if self._manifold.off(configuration) <= _INSIDE * self._manifold.threshold:
             return configuration
         smallest = _PROJECTED * self._manifold.threshold
@@ -90,7 +90,7 @@ class ConstrainedEdges(Edges):
         return configuration if steps < 0 else projected
 
     def line(self, start: Floats, step: Floats) -> bool:
-        """Return whether the projected edge from an allowed configuration is allowed everywhere, including its end."""
+        """Return whether the projected edge from an allowed start to ``start + step`` is allowed everywhere."""
         return self._bent_line(start, step, proved=self.is_strict)
 
     def shortcut(self, start: Floats, step: Floats) -> bool:
@@ -106,7 +106,7 @@ class ConstrainedEdges(Edges):
     def bent(self, start: Floats, end: Floats) -> Floats | None:
         """Return the configurations along a projected edge, shape (m, n); None if one of them is not allowed.
 
-        They are so close that straight lines between them keep the constraint. The start must be allowed.
+        They are so close that straight lines between them keep the constraint. ``start`` must be allowed.
         """
         if not (self._manifold.has(end) and self.allowed(end)):
             return None
@@ -124,13 +124,13 @@ class ConstrainedEdges(Edges):
         return np.array([points[part] for part in sorted(points)])
 
     def _is_straight(self, start: Floats, end: Floats) -> bool:
-        """Return whether a straight line keeps the constraint and is not longer than the resolution."""
+        """Return whether a straight line keeps the constraint and is not longer than the resolution of edge tests."""
         step = self.space.difference(end, start)
         most = max(_INSIDE * self._manifold.threshold, self._manifold.off(start), self._manifold.off(end))
         return self.space.steps(step) == 1 and self._manifold.off(start + step / 2) <= most
 
     def _middle(self, start: Floats, end: Floats) -> Floats | None:
-        """Return the middle of a projected edge, or None if there is none nearby on the constraint."""
+        """Return the projected middle of an edge, or None if it is not near both ends."""
         step = self.space.difference(end, start)
         middle = self.onto(start + step / 2)
         farther = max(self._far(start, middle), self._far(middle, end))

@@ -13,13 +13,13 @@ from ravemj.planning.proofs import Curve, line_curve
 from ravemj.planning.space import Space
 
 STEP = 0.04
-"""Default step of trees as a weighted distance: OpenRAVE's default step length."""
+"""Default length of a step of a tree, a weighted distance, as in OpenRAVE."""
 
 LINE = 1.0
 """Maximum length of an edge of a tree, a weighted distance."""
 
 ROUNDING = 1e-9
-"""Rounding tolerance of the number of steps of a line, as a fraction of a step."""
+"""Rounding tolerance of the length of a line, as a fraction of a step."""
 
 Allowed = Callable[[Floats], bool]
 """Test of a configuration for collisions and user constraints."""
@@ -52,7 +52,7 @@ class Edges:
     Args:
         space: The configuration space.
         allowed: The test of one configuration.
-        step: Distance of neighbouring nodes of a tree, a weighted distance; 0 selects ``STEP``.
+        step: Length of a step of a tree, a weighted distance; 0 selects ``STEP``.
         proof: Additional test of shortcuts, or None.
         certify: Certifies motions of shortcuts, or None.
 
@@ -94,7 +94,7 @@ class Edges:
         return Growth(points, free < count, arrives and free == count)
 
     def _shortened(self, start: Floats, target: Floats, longest: float) -> tuple[Floats, bool]:
-        """Return the difference from a start to a target, clipped to a length, and whether it is not clipped."""
+        """Return the difference from start to target, at most ``longest``, and whether it is not shortened."""
         way = self.space.difference(target, start)
         far = self._length(way)
         return (way * (longest / far), False) if far > longest * (1 + ROUNDING) else (way, True)
@@ -104,11 +104,11 @@ class Edges:
         return sqrt(weighted.dot(weighted))
 
     def onto(self, configuration: Floats) -> Floats:
-        """Project a configuration onto the constraint: without constraint, return it unchanged."""
+        """Return the configuration unchanged; subclasses project it onto a constraint."""
         return configuration
 
     def line(self, start: Floats, step: Floats) -> bool:
-        """Return whether the line from an allowed configuration is allowed everywhere, including its end.
+        """Return whether the line from an allowed start to ``start + step`` is allowed everywhere.
 
         Halves are tested before quarters, since colliding lines mostly collide in the middle.
         """
@@ -159,7 +159,7 @@ def nearby(
     random: np.random.Generator,
     projected: Callable[[Floats], Floats] | None = None,
 ) -> Floats | None:
-    """Return a configuration if it is allowed, else an allowed one nearby, or None.
+    """Return a configuration if it is allowed, else an allowed one nearby; None after ``tries`` random ones.
 
     Each value changes by at most ``farthest`` [rad or m]; the first tries stay closer. Candidates are then moved by
     ``projected``, if given.

@@ -15,7 +15,7 @@ from ravemj.planning.rrt import Budget, End, Search, without_repetitions
 from ravemj.planning.space import Space
 
 Ompl = Any
-"""OMPL has no types."""
+"""Object of OMPL, which has no type annotations."""
 
 _PATIENCE = 0.02
 """Interval [s] between checks of the budget for planners that do not call it themselves."""
@@ -51,8 +51,7 @@ def search_with_ompl(
     """Find a path with a planner class of OMPL; optimizing planners use up the budget.
 
     Starts and goals must be allowed. An iteration is a termination check of the planner, or a node of a roadmap.
-    ``settings`` are texts by the names of the planner's parameters, such as ``range`` or ``goal_bias``; other names are
-    ignored.
+    ``settings`` maps parameters of the planner, such as ``range`` or ``goal_bias``, to texts; others are ignored.
 
     Raises:
         OmplError: the planner does not support the space, or a setting is wrong.
@@ -129,7 +128,7 @@ def _nearest(space: Space, configurations: Sequence[Floats], configuration: Floa
 
 
 def _apply(solver: Ompl, settings: Mapping[str, str]) -> None:
-    """Set the parameters of a planner: ``goal_bias`` by ``setGoalBias``, with a number or a boolean."""
+    """Set the parameters of a planner by their setters, as ``goal_bias`` by ``setGoalBias``, to numbers or booleans."""
     for name, text in settings.items():
         setter = getattr(solver, "set" + "".join(map(str.capitalize, name.split("_"))), None)
         if name in _NO_SETTINGS or setter is None:
@@ -164,7 +163,7 @@ class _Questions:
             return False
 
     def check(self) -> None:
-        """Raise a stored exception and drop the reference, since its traceback refers to OMPL's objects."""
+        """Raise a stored exception, and drop the reference to it, since its traceback refers to OMPL's objects."""
         if self._errors:
             raise self._errors.pop()
 
@@ -188,7 +187,7 @@ class _Questions:
 
 
 class _OmplSpace:
-    """OMPL space of one of ravemj's: a box of weighted values, and a circle for each circular value."""
+    """Configuration space for OMPL: a box of weighted values, and a circle for each circular value."""
 
     def __init__(self, base: Ompl, space: Space) -> None:
         circular = space.coordinates.circular

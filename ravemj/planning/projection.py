@@ -10,7 +10,7 @@ from ravemj.planning.rrt import Budget, End, Search
 from ravemj.planning.space import Space
 
 Error = Callable[[Floats], tuple[Floats, Floats]]
-"""Returns the error of a configuration, shape (k,), and the Jacobian that reduces it, shape (k, n)."""
+"""Function of a configuration that returns its error, shape (k,), and the negative derivative, shape (k, n)."""
 
 PROJECTION_STEPS = 40
 """Maximum number of steps of a projection: OpenRAVE's number."""
@@ -22,7 +22,7 @@ _STEP = 0.1
 """Maximum length of a step of a descent [rad or m]."""
 
 _PATIENCE = 30
-"""Maximum number of consecutive steps without progress in a descent."""
+"""Maximum number of consecutive steps of a descent that do not reduce the error."""
 
 
 def damped_step(error: Floats, jacobian: Floats) -> Floats:
@@ -32,7 +32,7 @@ def damped_step(error: Floats, jacobian: Floats) -> Floats:
 
 
 def project(values: Floats, error: Error, space: Space, threshold: float, most: int) -> tuple[int, Floats]:
-    """Project a configuration; return the number of steps and the result, -1 steps if it fails within ``most``.
+    """Project a configuration in at most ``most`` steps; return the number of steps (-1: failed) and the result.
 
     The projection succeeds if the error norm is at most ``threshold``. The limits of the space are kept.
     """
@@ -53,9 +53,9 @@ def descend(
     random: np.random.Generator,
     tries: int,
 ) -> Search:
-    """Descend along the gradient of one error after the other, each from the start, until an error norm is small.
+    """Reduce errors one after the other by descent from the start, until an error norm is at most ``tolerance``.
 
-    If the descent step is not allowed, the best of some random steps is taken.
+    If a damped step is not allowed or increases the error, the best of ``tries`` random steps is taken.
     """
     iteration, stopped = 0, budget.end(0)
     for goal, error in enumerate(errors):
@@ -87,6 +87,6 @@ def _random_steps(edges: Edges, here: Floats, random: np.random.Generator, tries
 
 
 def _bounded(space: Space, here: Floats, step: Floats) -> Floats:
-    """Return the end of a step, clipped to the maximum length and the limits."""
+    """Return the end of a step from ``here``, clipped to the maximum length and the limits."""
     far = float(np.linalg.norm(step))
     return space.clamp(here + (step * (_STEP / far) if far > _STEP else step))

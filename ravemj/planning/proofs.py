@@ -23,7 +23,7 @@ TOUCHING = 1e-4
 """Maximum distance and depth [m] of shapes at the start or goal that touch by intention, as a box on a table."""
 
 APART = 2e-3
-"""Distance [m] from which such shapes are tested like all others."""
+"""Distance [m] from which shapes that touch by intention are tested like all others."""
 
 _SHORTEST = 1e-4  # m, of the travel on an interval that is not cut
 _SHORTEST_IN_CONTACT = 5e-3  # m, of the travel on an interval in whose middle shapes touch
@@ -51,7 +51,7 @@ class Curve(NamedTuple):
 
     @classmethod
     def of_powers(cls, start: float, end: float, coefficients: Floats) -> Self:
-        """Return the segment with given coefficients of the powers of (time - start) / (end - start), lowest first."""
+        """Return the segment that is a polynomial in (time - start) / (end - start); the lowest power comes first."""
         return cls(start, end, _from_powers(len(coefficients)) @ coefficients)
 
     def split(self, part: float) -> tuple[Self, Self]:
@@ -86,7 +86,7 @@ def _from_powers(number: int) -> Floats:
 
 
 def _weights(number: int, start: float, end: float) -> Floats:
-    """Return the matrix that maps control points of a curve to those of a part of it (its blossom)."""
+    """Return the matrix from the control points of a curve to those of its part from ``start`` to ``end`` (blossom)."""
     matrix = np.zeros((number, number))
     for row in range(number):
         polynomial = np.ones(1)
@@ -108,16 +108,16 @@ def _middle(number: int) -> Floats:
 
 
 class PairTests(Protocol):
-    """Test result of pairs of shapes; see ``engine.collision.clearances``."""
+    """Test results of k pairs of shapes in m configurations, shape (m, k); see ``engine.collision.clearances``."""
 
     @property
     def pairs(self) -> Ints:
-        """The numbers of the pairs that were asked for in any of the configurations, shape (k,)."""
+        """Indices of the pairs that were tested in at least one configuration, shape (k,)."""
         ...
 
     @property
     def is_open(self) -> Bools:
-        """Whether contact is not excluded."""
+        """Whether contact is possible."""
         ...
 
     @property
@@ -127,12 +127,12 @@ class PairTests(Protocol):
 
     @property
     def gaps(self) -> Floats:
-        """Lower bounds of their distances [m]."""
+        """Lower bounds of the distances [m]."""
         ...
 
     @property
     def measured(self) -> Floats:
-        """Their distances [m], infinite where they were not measured."""
+        """Distances [m]; infinite if not measured."""
         ...
 
 
@@ -155,7 +155,10 @@ class Spaces(Protocol):
         ...
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> PairTests:
-        """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles."""
+        """Test whether pairs may come closer than ``apart`` [m] in configurations within spreads around middles.
+
+        ``asked`` selects the pairs to test around each of m middles, shape (m, pair_count).
+        """
         ...
 
 
@@ -174,7 +177,7 @@ class Span(NamedTuple):
 
 
 class _Proved(NamedTuple):
-    """An interval, some pairs, lower bounds of their distances on it [m], and the least of these."""
+    """Proven interval of a motion: its least lower bound of a distance [m], its pairs, and their lower bounds [m]."""
 
     least: float
     curve: Curve
@@ -189,7 +192,7 @@ class Proof:
     Attributes:
         undecided: Spans of pairs without proof.
         smallest_gap: Lower bound of the distances of counted pairs in proven intervals [m]; infinite without any.
-        nearest: The smallest measured distance of these pairs [m], its time [s] and its pair.
+        nearest: The smallest measured distance of counted pairs [m], its time [s] and its pair.
     """
 
     undecided: list[Span] = field(default_factory=lambda: [])
@@ -275,7 +278,7 @@ def configuration_at(curves: Sequence[Curve], time: float) -> Floats:
 
 
 def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> list[tuple[Curve, Bools]]:
-    """Return the segments of a motion, split where exemptions end, with the pairs to test on each."""
+    """Return the segments of a motion, divided where exempt spans start or end, each with the mask of pairs to test."""
     cuts = sorted({time for span in exempt for time in (span.start, span.end)})
     asked: list[tuple[Curve, Bools]] = []
     for curve in curves:
@@ -298,7 +301,7 @@ def _without(spaces: Spaces, curve: Curve, exempt: Sequence[Span]) -> Bools:
 def _examined(
     spaces: Spaces, pending: list[tuple[Curve, Bools]], proof: Proof | None = None
 ) -> Iterator[Span | _Proved]:
-    """Test intervals; yield undecided spans and proven intervals."""
+    """Test intervals, and subdivide those without proof; yield proven intervals and undecided spans."""
     while pending:
         batch, pending = pending[: spaces.most], pending[spaces.most :]
         curves, asked = [curve for curve, _ in batch], np.array([asked for _, asked in batch])
@@ -348,7 +351,7 @@ def _note_nearest(proof: Proof, tested: PairTests, curves: Sequence[Curve], coun
 
 
 def _find_smallest_gap(spaces: Spaces, proved: list[_Proved], proof: Proof) -> None:
-    """Cut the intervals with the smallest bounds, until bound and measured distance agree, or nearly so."""
+    """Subdivide the intervals with the smallest bounds until the lower bound is close to the measured distance."""
     proved = [interval for interval in proved if interval.least < np.inf]
     for _ in range(_REFINEMENTS):
         wanted = proof.nearest[0] - max(_TOLERANCE, _PART * proof.nearest[0])
@@ -364,7 +367,7 @@ def _find_smallest_gap(spaces: Spaces, proved: list[_Proved], proof: Proof) -> N
 
 
 def _raised(spaces: Spaces, intervals: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
-    """Return intervals with better lower bounds of the distances that are not known to be above what is wanted [m]."""
+    """Return the intervals with better lower bounds for pairs whose bounds are below ``wanted`` [m]."""
     curves, known = [interval.curve for interval in intervals], np.full((len(intervals), spaces.pair_count), np.inf)
     for row, interval in zip(known, intervals, strict=True):
         row[interval.pairs] = interval.bounds

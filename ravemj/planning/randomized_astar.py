@@ -13,13 +13,13 @@ from ravemj.planning.edges import Edges
 from ravemj.planning.rrt import Budget, End, Search, SearchTree, without_repetitions
 
 _STEP = 0.3
-"""Distance of neighbours [rad or m]."""
+"""Distance of sampled neighbours [rad or m]."""
 
 _REACH = 1.0
 """Maximum length of a line to a goal [rad or m]."""
 
 _APART = 0.5
-"""Minimum distance of two configurations, as a fraction of a step."""
+"""Minimum distance of two configurations, as a fraction of ``_STEP``."""
 
 _NEIGHBOURS = 8
 """Number of neighbours tested per expansion."""

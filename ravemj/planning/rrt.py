@@ -77,12 +77,12 @@ class SearchTree:
 
 
 _PATIENCE = 20
-"""Number of blocked edges of the smaller tree after which the other tree grows, which may find the way in."""
+"""Number of consecutive failures to grow the smaller tree after which the other tree grows."""
 
 _WHOLE_LINES = 50
 """Number of blocked edges that are discarded before trees keep the steps before an obstacle.
 
-In open problems, trees of long complete edges connect sooner, since a blocked edge takes few tests. Narrow problems
+In open space, trees of long complete edges connect sooner, since a blocked edge takes few tests. Narrow passages
 need steps.
 """
 
@@ -93,7 +93,7 @@ _LONGEST = 4.0
 """Maximum length of a complete edge, a weighted distance: OpenRAVE's 100 steps of 0.04."""
 
 _TURN = 1e-6
-"""Maximum difference of the unit directions of two collinear steps."""
+"""Maximum difference of the unit directions of two collinear edges."""
 
 _SAME = 1e-9
 """Tolerance of equal nodes of a path [rad or m]."""
@@ -177,7 +177,7 @@ class Problem:
     """A path planning problem.
 
     Attributes:
-        edges: The tests of configurations and edges, in a space.
+        edges: The tests of configurations and edges, with their space.
         starts: The possible starts, each of shape (n,), all allowed.
         goals: The possible goals, each of shape (n,), all allowed.
         budget: The limits of the search.
@@ -241,7 +241,7 @@ class _TreeGrowth:
             self._roots[side].append(self.trees[side].add(root))
 
     def straight(self, starts: Sequence[Floats], goals: Sequence[Floats]) -> Search | None:
-        """Return a path of a single edge, the nearest ends first, or None."""
+        """Return a path of a single edge, or None; the nearest pairs of start and goal are tried first."""
         space = self._edges.space
         pairs = [(space.distance(goal, start), s, g) for s, start in enumerate(starts) for g, goal in enumerate(goals)]
         for _, start, goal in sorted(pairs)[:_MOST_LINES]:
@@ -250,7 +250,7 @@ class _TreeGrowth:
         return None
 
     def grow(self, target: Floats, iteration: int) -> Search | None:
-        """Grow the smaller tree towards a configuration, and the other to its new node; return the path, or None."""
+        """Grow the smaller tree towards a configuration, and the other tree to the new node; return a path, or None."""
         near, far = self.trees[self._grown], self.trees[1 - self._grown]
         whole = self._lines_blocked < _WHOLE_LINES
         longest = self._longest if whole else LINE

@@ -17,7 +17,7 @@ _WORTH = 3e-3
 """Minimum saving of a shortcut, as a fraction of the path length, because collision checks dominate the time."""
 
 _MOST_ENDS = 32
-"""Maximum number of end points tried for a line from one point."""
+"""Maximum number of waypoints to which a straight line from one waypoint is tried."""
 
 
 def shorten(
@@ -30,8 +30,8 @@ def shorten(
     """Return a shortened path with the same start and goal, shape (k, n).
 
     Straight lines between waypoints replace detours; then pairs of random points on the path are connected if the line
-    is allowed and shorter. There are at most ``tries`` attempts; ``proceed``, called with the number of the attempt,
-    stops them by False.
+    is allowed and shorter, in at most ``tries`` attempts. ``proceed`` is called before each attempt with its number;
+    returning False stops them.
     """
     space = edges.space
     path = list(_without_detours(edges, points))
@@ -63,9 +63,9 @@ def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
 
 
 def _without_detours(edges: Edges, path: Floats) -> Floats:
-    """Connect each waypoint directly to the last one that a straight line reaches; return the path.
+    """Return the path in which each waypoint is connected to the last one that a straight line reaches.
 
-    Of many waypoints, ``_MOST_ENDS`` are tried.
+    If there are many waypoints, ``_MOST_ENDS`` of them are tried.
     """
     kept, last = [0], len(path) - 1
     while kept[-1] < last:

@@ -17,9 +17,9 @@ class Coordinates:
     """Types of the coordinates of a configuration.
 
     Attributes:
-        circular: Whether each is a circular angle, shape (n,).
+        circular: Whether each coordinate is a circular angle, shape (n,).
         translation: Columns of x, y, z of a base.
-        rotation: Columns of its angle (one), rotation vector (three) or quaternion (four).
+        rotation: Columns of a base's angle (one), rotation vector (three) or quaternion (four).
     """
 
     circular: NDArray[np.bool_]
@@ -41,9 +41,9 @@ class Coordinates:
         return step
 
     def outside(self, values: Floats, lower: Floats, upper: Floats, tolerance: float = ON_LIMIT) -> NDArray[np.bool_]:
-        """Return the mask of values, shape (…, n), that are not finite or outside limits; circular ones have none.
+        """Return whether each value, shape (…, n), is not finite or is outside its limits; circular values have none.
 
-        ``tolerance`` is absolute for limits below 1, and relative above.
+        ``tolerance`` is absolute for values below 1, and relative above.
         """
         slack = tolerance * np.maximum(1.0, np.abs(values))
         beyond = (values < lower - slack) | (values > upper + slack)
@@ -51,7 +51,7 @@ class Coordinates:
 
 
 _MOST_STEPS = 1_000_000
-"""Most tests of a line; each takes about 10 µs."""
+"""Maximum number of tests of a line; each takes about 10 µs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,10 +96,10 @@ class Space:
         return int(wrong.argmax()) if wrong.any() else None
 
     def steps(self, difference: Floats) -> int:
-        """Return the number of steps of a line that do not exceed the resolution; at least 1.
+        """Return the minimum number of equal steps of a line that keep the resolution; at least 1.
 
         Raises:
-            ArgumentError: there are more than anybody waits for.
+            ArgumentError: there are more than ``_MOST_STEPS``.
         """
         steps = np.abs(difference / self.resolution).max(initial=0.0)
         if not steps <= _MOST_STEPS:

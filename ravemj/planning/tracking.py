@@ -16,10 +16,10 @@ _FIRST_STEP = 1000.0
 """Cost of the motion from the start to the first goal, so large that paths from the present configuration win."""
 
 Solve = Callable[[int, Floats], Sequence[Floats]]
-"""Returns configurations that reach a goal, given its index; it may search near the second argument."""
+"""Function that returns configurations that reach a goal, given its index and a configuration to search near."""
 
 Connects = Callable[[int, Floats, Floats], bool]
-"""Tests the connection from a configuration of the previous goal to one of a goal, given its index."""
+"""Test of the connection from a solution of the previous goal to one of a goal, given the goal's index."""
 
 
 class _Layer(NamedTuple):
@@ -34,7 +34,7 @@ def track(space: Space, count: int, start: Floats, solve: Solve, connects: Conne
     """Return the shortest path through solutions of all goals, up to the first unreachable goal, shape (m, n).
 
     It starts at ``start`` if possible. The shortest paths to all solutions of a goal are kept, so that dead ends of one
-    branch do not affect the others.
+    IK branch do not affect the others.
     """
     layers: list[_Layer] = []
     last = _Layer(start[None], np.zeros(1), np.zeros(1, dtype=np.intp))

@@ -12,7 +12,7 @@ EXACT = 1e-9
 """Relative rounding tolerance of values, speeds and accelerations at their limits."""
 
 _ROUNDING = 1e-12
-"""Relative rounding error of values, which matters for differences over short times."""
+"""Relative rounding error of values, which matters for their differences over short times."""
 
 
 class Samples(NamedTuple):
@@ -20,10 +20,10 @@ class Samples(NamedTuple):
 
     Attributes:
         times: The times [s], ascending, shape (m,).
-        values: Shape (m, n).
+        values: The values, shape (m, n).
         velocities: Velocities in the trajectory, shape (m, n), or None.
         accelerations: Accelerations in the trajectory, shape (m, n), or None.
-        has_jumps: Whether velocities may jump between samples, as those of straight lines do.
+        has_jumps: Whether velocities may jump between samples, as on straight lines.
     """
 
     times: Floats

@@ -129,7 +129,7 @@ class FilteredSearch(ArmSearch):
 
     @cached_property
     def _goal_of_users(self) -> IkParameterization:
-        """The goal as an ``IkParameterization``; computed on first use, since the constructor checks the pose again."""
+        """The goal as an ``IkParameterization``, for filters; cached, because its constructor checks the pose."""
         return self._given if isinstance(self._given, IkParameterization) else IkParameterization(self._given, _POSE)
 
     @block
@@ -166,7 +166,7 @@ class FilteredSearch(ArmSearch):
         return True
 
     def _asked(self, filter_: Filter, row: Floats) -> IkReturn | None:
-        """Return the answer of a filter.
+        """Call a filter with the joint values ``row``, and return its answer.
 
         Raises:
             RavemjError: with the code ``Assert``, the filter raised an exception or returned an invalid answer.

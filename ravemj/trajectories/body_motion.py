@@ -97,7 +97,7 @@ class BodyMotion:
 
 
 def _rows(body: BodyState, dofs: list[int], groups: list[Group], waypoints: Waypoints) -> Floats:
-    """Return the joint values of a body at the waypoints; missing joints have their present values."""
+    """Return the joint values of a body at the waypoints; joints without values have their present ones."""
     rows = np.tile(body.kinematics.values(), (len(waypoints), 1))
     for row, numbers in zip(rows, waypoints.data, strict=True):
         values = extraction.joint_values(groups, numbers, body.scene.name, dofs, 0)
@@ -143,8 +143,8 @@ class GrabChange(NamedTuple):
 def grab_changes(waypoints: Waypoints, robot_name: str) -> list[GrabChange]:
     """Return the grabs and releases in a trajectory, in the order of time.
 
-    A group ``grab ROBOT LINK …`` has a value for each link of these indices: the index of a body to grab with it, the
-    negative index of one to release, or 0 for no change.
+    A group ``grab ROBOT LINK …`` has a value for each link index: the index of a body to grab with this link, the
+    negative index of a body to release, or 0 for no change.
     """
     times = waypoints.times()
     changes: list[GrabChange] = []

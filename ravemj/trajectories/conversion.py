@@ -23,7 +23,7 @@ FindBody = Callable[[str], BodyState | None]
 
 
 def nobody(name: str) -> None:
-    """Return None: a ``FindBody`` without bodies."""
+    """Return None, as a ``FindBody`` that finds no bodies."""
     del name
 
 
@@ -43,7 +43,7 @@ def converted(
         target_groups: The layout of the result.
         target: The initial result, which is copied, with the same number of rows.
         find_body: Finds the bodies whose present state supplies missing values; None keeps those of ``target``.
-        find_missing: The same for entirely missing groups; by default ``find_body``.
+        find_missing: Finds the bodies that supply entirely missing groups; by default ``find_body``.
     """
     result = target.copy()
     for group in target_groups:
@@ -81,7 +81,7 @@ def convert_group(
 
 
 def _labels(group: Group) -> Sequence[int | str]:
-    """Return labels that identify the values of a group."""
+    """Return labels that identify the values of a group, such as DOF indices."""
     if group.kind in JOINTS or group.kind in {"joint_torques", "grab"}:
         return joint_indices(group)
     if group.kind == "outputSignals":

@@ -1,4 +1,4 @@
-"""Extension of timed waypoints by one before the first or after the last."""
+"""Extension of timed waypoints by one waypoint at either end."""
 
 from collections.abc import Sequence
 

@@ -25,7 +25,7 @@ def joint_values(
     """Return joint values or their derivatives; missing ones are 0.
 
     Returns:
-        One value for each index, or None if there is no group of the body, or no index.
+        One value for each index, or None if there is no group of the body or no index is given.
     """
     matching = _of_body(groups, JOINTS[order], body)
     if not matching or not indices:
@@ -44,7 +44,7 @@ def joint_values(
 def insert_joint_values(
     groups: Sequence[Group], data: Floats, values: Floats, body: str | None, indices: Sequence[int], order: int
 ) -> bool:
-    """Write joint values into data; return whether there is a group of the body, and an index."""
+    """Write joint values into data; return False if there is no group of the body or no index is given."""
     matching = _of_body(groups, JOINTS[order], body)
     for group in matching if indices else ():
         for place, index in enumerate(joint_indices(group)):
@@ -100,7 +100,7 @@ def used_bodies(groups: Sequence[Group]) -> list[str]:
 
 
 def used_indices(groups: Sequence[Group], body: str) -> tuple[list[int], list[int]]:
-    """Return the DOF indices of a body in the data, and the column of the first value of each."""
+    """Return the DOF indices of a body in the data, and the column of each."""
     places: dict[int, int] = {}
     for group in groups:
         if group.kind.startswith("joint_") and group.body == body and len(group.name.split()) > 2:

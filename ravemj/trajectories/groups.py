@@ -20,7 +20,7 @@ FAMILIES = (JOINTS, AFFINE, IK)
 
 DELTATIME = "deltatime"
 INTERPOLATIONS = ("next", "linear", "quadratic", "cubic", "quartic", "quintic", "sextic")
-"""Interpolations in increasing order; each is the derivative of the next."""
+"""Interpolations by increasing degree; each is the derivative of the next."""
 
 
 @dataclass(repr=False)
@@ -62,7 +62,7 @@ class Group:
 
 
 def shifted_name(name: str, steps: int) -> str | None:
-    """Return the name of the group's time derivative, or integral for negative steps; None if there is none."""
+    """Return the name of the group's derivative of order ``steps``, or integral if negative; None if there is none."""
     kind, *rest = name.split() or [""]
     for family in FAMILIES:
         if kind in family and 0 <= family.index(kind) + steps < len(family):
@@ -76,7 +76,7 @@ def is_position(group: Group) -> bool:
 
 
 def derived_interpolation(interpolation: str, order: int) -> str:
-    """Return the interpolation of the derivative of values with this interpolation; empty if it is unknown."""
+    """Return the interpolation of derivatives of an order, given that of the values; empty if it is unknown."""
     if interpolation not in INTERPOLATIONS:
         return ""
     return INTERPOLATIONS[max(0, INTERPOLATIONS.index(interpolation) - order)]

@@ -15,13 +15,13 @@ import numpy as np
 from ravemj.core.transforms import Floats
 
 Ends = tuple[Floats, Floats]
-"""Values at the two waypoints."""
+"""Values at the two waypoints of a segment."""
 
 ROUNDING = 2.3e-16
-"""Tolerance within which a time is at a waypoint [s, or fraction of the segment]."""
+"""Tolerance within which a time counts as that of a waypoint [s, or fraction of the segment]."""
 
 HELD = ("", "previous", "next", "max")
-"""Piecewise-constant interpolations, which use one of the two values."""
+"""Piecewise-constant interpolations, which use the value of one waypoint."""
 
 DERIVATIVES = {"linear": 0, "quadratic": 1, "cubic": 1, "quartic": 2, "quintic": 2, "sextic": 3}
 """Number of derivatives that each interpolation needs."""
@@ -49,8 +49,8 @@ def curve(interpolation: str, ends: Ends, derivatives: Sequence[Ends], duration:
     Args:
         interpolation: One of ``DERIVATIVES``.
         ends: The values at both waypoints.
-        derivatives: The necessary derivatives at both, velocities first. If a linear curve has one, it uses that of the
-            second waypoint.
+        derivatives: The necessary derivatives at both waypoints, velocities first. If a linear curve has velocities, it
+            uses that of the second waypoint.
         duration: Duration of the segment [s].
     """
     if interpolation == "linear":
@@ -76,7 +76,7 @@ def value(coefficients: Floats, part: float) -> Floats:
 
 
 def _through(known: Sequence[Ends], duration: float) -> Floats:
-    """Return the curve through values and derivatives at both ends."""
+    """Return the curve through values and derivatives ``known`` at both ends."""
     ends = [values[end] * duration**order for end in (0, 1) for order, values in enumerate(known)]
     return _hermite(len(known)) @ np.array(ends)
 

@@ -23,10 +23,10 @@ from ravemj.trajectories.motion_reading import problems_in, read_csv
 from ravemj.trajectories.motion_writing import comments, csv_table
 
 JOINT_TRAJECTORY_SUFFIXES = (".yaml", ".yml", ".json", ".ros2.csv")
-"""Suffixes of these files."""
+"""Suffixes of files of a ``JointTrajectory``."""
 
 _ORDERS = {"positions": ("position", ""), "velocities": ("velocity", "/s"), "accelerations": ("acceleration", "/s^2")}
-"""Column word and unit in a table for each field of a point."""
+"""Column word and unit of each field of a point in a table."""
 
 _NANOSECONDS = 10**9
 LARGEST_NUMBER = 1e300
@@ -196,7 +196,7 @@ def _from_message(content: object, source: Source) -> JointTrajectory:
 
 
 class _MessagePoint:
-    """Point of a message, with errors that name it."""
+    """Point of a message. Its errors name the point."""
 
     def __init__(self, number: int, content: object, count: int, source: Source) -> None:
         self._place, self._count, self._source = f"points[{number}]", count, source

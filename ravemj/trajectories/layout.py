@@ -71,7 +71,7 @@ def find_prefix(groups: Sequence[Group], name: str) -> Group | None:
 
 
 def find_compatible(groups: Sequence[Group], name: str, exact: bool = False) -> Group | None:
-    """Return the group of the same kind and body: the one of this name, else the most similar."""
+    """Return the group of this name, else the most similar group of the same kind and body, or None."""
     for group in groups:
         if group.name == name:
             return group
@@ -96,7 +96,7 @@ def _likeness(words: list[str], wanted: list[str]) -> int:
 
 
 def find_shifted(groups: Sequence[Group], name: str, steps: int, exact: bool = False) -> Group | None:
-    """Return the group with the time derivative of another, or its integral for negative steps."""
+    """Return the group with the derivative of order ``steps`` of another group, or its integral if negative."""
     wanted = shifted_name(name, steps)
     return None if wanted is None else find_compatible(groups, wanted, exact)
 
@@ -160,7 +160,7 @@ def derived(groups: Sequence[Group], order: int) -> list[Group]:
 
 
 def of_order(groups: Sequence[Group], order: int) -> list[Group]:
-    """Return only the groups of one time derivative, without gaps."""
+    """Return the groups of one derivative order, without gaps; 0 selects positions."""
     kinds = {family[order] for family in FAMILIES}
     return packed([group for group in groups if group.kind in kinds])
 
@@ -196,7 +196,7 @@ def merged(groups: Sequence[Group], others: Sequence[Group]) -> list[Group]:
 
 
 def _widened(group: Group, other: Group) -> bool:
-    """Extend a group in place by the values of another; return whether both describe the same quantity."""
+    """Extend a group in place by the values of another; return False if they describe different quantities."""
     of_joints = group.kind in JOINTS or group.kind in {"joint_torques", "grab"}
     if group.kind == "outputSignals":
         present = group.name.split()[1:]

@@ -23,7 +23,7 @@ _EXPECTED = (
 
 
 class _SampledTrajectory(Protocol):
-    """Protocol of the API's trajectories, which are in a higher layer."""
+    """Protocol of the API's trajectories, which this module must not import."""
 
     @property
     def waypoints(self) -> Waypoints: ...
@@ -170,7 +170,7 @@ def followed_file(simulation: Simulation, read: MotionFile) -> BodyMotion:
 
 
 def _named_robot(simulation: Simulation, names: Sequence[str]) -> BodyState:
-    """Return the robot to which the most of some joint names belong; of several, the first."""
+    """Return the robot that has most joints of these names; the first one if there are several."""
     return max(_robots(simulation), key=lambda robot: len(set(names).intersection(robot.scene.dof_names)))
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.tree import Element
 
 AS_TEXT = 0x8000
-"""Option that selects text."""
+"""Option of serialization that selects text."""
 
 _MAGIC = b"\xff\x62"
 _VERSION = 2
@@ -75,7 +75,7 @@ def _packed(text: str) -> bytes:
 
 
 def read(data: bytes | str) -> Stored:
-    """Parse a trajectory from bytes or text of either form; text may also contain the bytes as characters.
+    """Parse a trajectory in either format; a ``str`` may also contain the bytes of the binary format as characters.
 
     Raises:
         ArgumentError: the data is not a trajectory.

@@ -67,8 +67,8 @@ class Waypoints:
         Args:
             index: The waypoint before which they are inserted.
             numbers: The configurations, concatenated.
-            groups: Their layout. Existing waypoints keep values that it lacks; in new ones these are the present values
-                for joints of the same group, else zeros.
+            groups: Their layout. Existing waypoints keep the values that it lacks; in new ones these are the present
+                values for joints of the same group, else zeros.
             overwrite: Whether to overwrite waypoints; data beyond the last one is appended.
             find_body: Finds the bodies of the groups.
 
@@ -138,7 +138,7 @@ class Waypoints:
         return float(times[-1]) if len(times) else 0.0
 
     def first_after(self, time: float) -> int:
-        """Return the index of the first waypoint at a time or later; after the end, the number of waypoints."""
+        """Return the index of the first waypoint at a time or later; if there is none, the number of waypoints."""
         self._timed()
         if math.isnan(time):
             raise ArgumentError("time: is nan, and should be a number", ErrorCode.Assert)
@@ -149,7 +149,7 @@ class Waypoints:
 
         Args:
             time: Time [s] since the start.
-            restamped: Whether ``deltatime`` is the time since the last waypoint; else that of the next waypoint.
+            restamped: Whether ``deltatime`` is the time since the last waypoint; else it is that of the next waypoint.
             find_body: Finds the bodies of the groups, whose circular joints take the shorter arc.
 
         Raises:
@@ -198,8 +198,8 @@ class Waypoints:
         """Yield the polynomials of some groups between consecutive waypoints.
 
         Yields:
-            Start and end [s], and the coefficients of powers of the fraction of the segment, lowest first, shape (k,
-            n).
+            Start and end [s], and the coefficients of powers of the fraction of the segment, lowest first, shape
+            (k, n).
 
         Raises:
             ArgumentError: the layout has no time, a group jumps, or derivatives for the interpolation are missing.
@@ -224,7 +224,7 @@ class Waypoints:
         return self.data[index - 1, group.columns], self.data[index, group.columns]
 
     def _unwound(self, group: Group, ends: Ends, find_body: FindBody) -> Ends:
-        """Return the values at both ends; circular joints at the second end are shifted by turns to the first."""
+        """Return the values at both ends; circular joints at the second end are shifted by turns towards the first."""
         first, second = ends
         body = find_body(group.body or "") if group.kind == JOINTS[0] else None
         if body is None:
@@ -235,7 +235,7 @@ class Waypoints:
         return first, np.where(circular, second - 2 * np.pi * turns, second)
 
     def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
-        """Return the curve of a group to a waypoint, from its derivatives, or as the derivative of another group."""
+        """Return the curve of a group up to waypoint ``index``, or differentiate that of the group's integral."""
         if group.kind == IK[0]:
             what = f"'{interpolation}' interpolation of goals of inverse kinematics"
             raise UnsupportedError(f"sampling of '{group.name}'", what)

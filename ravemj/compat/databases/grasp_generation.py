@@ -292,14 +292,14 @@ def generate(
 
 
 class _GraspFilter:
-    """Grasps that a function keeps; it sees the grasps of each shard once."""
+    """User's function that refuses grasps; it is called once for each grasp of a result file (shard) of the sweep."""
 
     def __init__(self, check: Check | None, parts: Path) -> None:
         self._check, self._parts = check, parts
         self.reasons: dict[Path, NDArray[Any]] = {}
 
     def update(self) -> None:
-        """Show the function the grasps of new shards."""
+        """Call the user's function with the valid grasps in result files written since the last call."""
         if self._check is None or not (self._parts / MANIFEST).exists():
             return
         for path in Sweep.open(self._parts).files:

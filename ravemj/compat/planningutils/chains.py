@@ -65,7 +65,10 @@ def GetDHParameters(body: KinBody) -> list[DHParameter]:
 
 
 def _before(body: KinBody, link: int, index_of_link: dict[int, int]) -> int:
-    """Return the record index of the nearest joint with a record that moves a link; -1 for none."""
+    """Return the index of the nearest preceding joint's ``DHParameter``; -1 if no such joint moves the link.
+
+    ``index_of_link`` gives the index for each link that is the child of a joint.
+    """
     chain = body.GetChain(0, link, returnjoints=False)
     moved = [index_of_link[joint_.GetIndex()] for joint_ in chain if joint_.GetIndex() in index_of_link]
     return moved[-1] if moved else -1

@@ -1,6 +1,6 @@
 """Batches of configurations of one body: link poses, Jacobians and torques for arrays of joint values.
 
-The configurations are along the last, contiguous axis, so that each step of the chain takes a few numpy calls for
+Configurations are along the last, contiguous axis of arrays, so that each step of the chain takes a few numpy calls for
 hundreds of them. Chunks fit into the processor's cache, and memory apart from the result is constant.
 """
 
@@ -191,13 +191,13 @@ class Batch:
 
 
 def _combined(vectors: Floats, factors: Floats) -> Floats:
-    """Return the weighted sum of three arrays; BLAS rounding would depend on the number of columns."""
+    """Return the weighted sum of three arrays; with BLAS, rounding would depend on the number of columns."""
     x, y, z = factors.tolist()
     return x * vectors[0] + y * vectors[1] + z * vectors[2]
 
 
 def _fill_twice(fill: Callable[[Floats, Sequence[Floats]], None], out: Floats, *rows: Floats) -> None:
-    """Compute a single configuration as one of two, since BLAS rounds single columns differently.
+    """Compute a single configuration as one of two equal ones, since BLAS rounds single columns differently.
 
     Args:
         fill: Called with an array for the results, and with the configurations.

@@ -20,7 +20,7 @@ ROOT = -1
 
 @dataclass(slots=True)
 class Step:
-    """Step of a chain: a root link, an axis with a frame whose z it is, or a spherical joint in its parent's axes."""
+    """Step of a chain: a root link, a joint axis (z of the step's frame), or a spherical joint in its parent's axes."""
 
     kind: str  # ``root``, ``hinge``, ``slider`` or ``spherical``
     parent: int  # the parent step
@@ -37,7 +37,7 @@ class LinkChain:
     """Links of a body in topological order.
 
     Attributes:
-        steps: The steps that move them.
+        steps: The steps that move the links.
         T_step_links: Pose of each link in the frame of the step that it is fixed to, shape (links, 4, 4).
     """
 
@@ -127,7 +127,7 @@ class LinkChain:
         return np.repeat(frame[:, :, None], count, axis=2)
 
     def _ways(self, values: Floats, chosen: Sequence[int]) -> Floats:
-        """Return the displacements of some joints from their reference frames, shape (len(chosen), N)."""
+        """Return the displacements of the chosen steps from their reference frames, shape (len(chosen), N)."""
         ways = np.zeros((len(chosen), values.shape[1]))
         first_values = self._first_values(values)
         for index, step in enumerate(self.steps[number] for number in chosen):
@@ -171,7 +171,7 @@ def _cosines_and_sines(angles: Floats) -> tuple[Floats, Floats]:
 
 
 def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floats) -> Floats:
-    """Return frames after a hinge: parents of shape (4, 3 N) to (4, 3, N)."""
+    """Return the frames behind a hinge, (4, 3, N), for parent frames of shape (4, 3 N)."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     x_part, y_part = frames[:2] * sines
     frames[:2] *= cosines
@@ -181,14 +181,14 @@ def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floa
 
 
 def _slid(parent: Floats, T_parent_frame: Floats, ways: Floats) -> Floats:
-    """Return frames after a slider."""
+    """Return the frames behind a slider."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     frames[3] += ways * frames[2]
     return frames
 
 
 def _turned(parent: Floats, T_parent_frame: Floats, vectors: Floats) -> Floats:
-    """Return frames after a spherical joint, rotated by vectors of shape (3, N)."""
+    """Return the frames behind a spherical joint for N rotation vectors (axis times angle [rad]), shape (3, N)."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     angle = np.sqrt((vectors * vectors).sum(axis=0))
     x, y, z = vectors / np.where(angle > 0, angle, 1.0)

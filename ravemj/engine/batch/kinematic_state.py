@@ -2,7 +2,7 @@
 
 Arrays have a first axis for the links or velocity coordinates, then one for components, then one for configurations.
 Motions are six numbers in world axes: the angular velocity, and the velocity of the body's point that passes through a
-fixed reference point. Accelerations are their time derivatives, and forces their duals: moment about the reference
+fixed reference point. Accelerations are their time derivatives. Forces are their duals: moment about the reference
 point, and force. The roots rest.
 """
 
@@ -21,7 +21,7 @@ class KinematicState:
         coupling: The relation of coordinates to DOFs.
         screws: The motion of a link for one unit of each coordinate's velocity, shape (coordinates, 6, N).
         positions: Origins of the links, from the reference point [m], shape (links, 3, N).
-        rotations: For each link the directions of its axes, one after the other, shape (links, 3, 3, N).
+        rotations: The x, y and z axis of each link, shape (links, 3, 3, N).
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class KinematicState:
         Args:
             twists: Result of ``twists``.
             velocities: Velocities of the coordinates, shape (coordinates, N).
-            accelerations: Their derivatives, shape (coordinates, N).
+            accelerations: Accelerations of the coordinates, shape (coordinates, N).
         """
         turned = _carried(twists[self.tree.carriers], self.screws)
         return self._outward(self.screws * accelerations[:, None] + turned * velocities[:, None])
@@ -75,7 +75,7 @@ class KinematicState:
         return by_link
 
     def forces(self, link_forces: Floats) -> Floats:
-        """Return the generalised forces of forces on the links, shape (links, 6, N) to (coordinates, N)."""
+        """Return the generalised forces, shape (coordinates, N), of forces on the links, shape (links, 6, N)."""
         tree = self.tree
         borne = np.zeros((tree.count, *link_forces.shape[1:]))
         for link, last in enumerate(tree.last):
@@ -92,7 +92,7 @@ class KinematicState:
         Args:
             inertias: Mass properties.
             twists: Motions of the links, shape (links, 6, N).
-            accelerations: Their derivatives, shape (links, 6, N).
+            accelerations: Time derivatives of the motions, shape (links, 6, N).
             gravity: Gravitational acceleration [m/s^2], shape (3,).
         """
         coms = self.positions + self._to_world(inertias.coms[:, :, None])

@@ -1,4 +1,4 @@
-"""Collision pairs of an arm's end and of links not moved by the arm, also for other tool poses."""
+"""Collision pairs of an arm's end and of links that the arm does not move, also for other tool poses."""
 
 from ravemj.core.graphs import ordered_pair
 from ravemj.core.transforms import Floats
@@ -11,17 +11,17 @@ from ravemj.model.scene import Manipulator
 
 
 def end_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> Pairs:
-    """Return the pairs of the links beyond an arm with their grabbed bodies, and all other bodies."""
+    """Return the pairs of (links beyond an arm, and bodies they hold) and (all other bodies)."""
     return body_and_others(world, body, frozenset(links_beyond(body.scene, arm)))
 
 
 def independent_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> Pairs:
-    """Return the pairs of the links moved by neither arm nor gripper, with grabbed bodies, and other bodies."""
+    """Return the pairs of (links that neither arm nor gripper moves, and bodies they hold) and (other bodies)."""
     return body_and_others(world, body, frozenset(independent_links(body.scene, arm)))
 
 
 def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_arm: bool) -> Pairs:
-    """Return the pairs of the links beyond an arm with their grabbed bodies, and the other links of its robot.
+    """Return the pairs of (links beyond an arm, and bodies they hold) and (other links of the robot).
 
     ``without_arm`` ignores the links of the arm itself.
     """
@@ -31,9 +31,9 @@ def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 
 
 def arm_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
-    """Return the pairs of the links moved by an arm with their grabbed bodies, and all other bodies.
+    """Return the pairs of (links that an arm moves, and bodies they hold) and (all other bodies).
 
-    ``without_end`` ignores the links beyond the arm and their grabbed bodies.
+    ``without_end`` ignores the links beyond the arm and bodies they hold.
     """
 
     def make() -> Pairs:
@@ -44,9 +44,9 @@ def arm_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator, *, 
 
 
 def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
-    """Return the pairs of a robot's links and their grabbed bodies that an arm moves relative to each other.
+    """Return the pairs of a robot's links, with bodies they hold, that an arm moves relative to each other.
 
-    ``without_end`` ignores pairs of a link beyond the arm and a link not moved by it.
+    ``without_end`` ignores pairs of a link beyond the arm and a link that the arm does not move.
     """
 
     def make() -> Pairs:
@@ -60,7 +60,7 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
-    """Return one motion, shape (4, 4), for the links beyond an arm and their grabbed bodies, for ``world.moved``."""
+    """Return ``motion``, (4, 4), for each link beyond an arm and of bodies that these hold, as input of ``moved``."""
     end = set(links_beyond(body.scene, arm))
     held = [held_body for grab in body.grabs if grab.link in end for held_body in held_with(grab.body)]
     links = [(held_body, link) for held_body in held for link in range(len(held_body.scene.links))]

@@ -1,14 +1,14 @@
 """Proven lower bounds of distances between moving shapes, and safe joint travel.
 
-A direction d separates two convex shapes A and B by s(d) = min over B of d x - max over A of d x, which is never more
-than their distance. MuJoCo's search for the nearest points gives good directions; what is proved does not depend on
-it: s(d) is computed here from support functions. Shapes that are not convex are inside of their hulls; where hulls are
-too near, their triangles are measured.
+A direction d separates two convex shapes A and B by s(d) = min over B of d x - max over A of d x, which is a lower
+bound of their distance. MuJoCo's search for the nearest points gives good directions; the proof does not depend on it,
+since s(d) is computed here from support functions. Non-convex shapes are inside of their hulls; if hulls are too close,
+the triangles are measured.
 
 Joint values that change by at most e_j move a point of a shape by at most t_n: from the joint next to the shape to the
 one next to the world, t_j = t_{j-1} + e_j (r_j + t_{j-1}), where r_j is the largest distance of the shape from the axis
-of the joint in the configuration before; a joint that slides adds e_j. (The joints can be changed one after the other
-in this order: the axes of those that are still to be changed have not moved.)
+of the joint in the initial configuration; a prismatic joint adds e_j. (The joints can be changed one after the other in
+this order, since the axes of joints not yet changed have not moved.)
 """
 
 from collections.abc import Sequence
@@ -37,12 +37,12 @@ _ONES = np.ones(3)  # a product with it is the fastest way to sum rows
 
 
 class Chain(NamedTuple):
-    """Joints that move a shape, from the nearest to the one at the world, by index."""
+    """Joints that move a shape, by index, from the nearest one to the one at the world."""
 
     joints: tuple[int, ...]
 
     def without(self, other: Self) -> int:
-        """Return the number of joints that do not move another shape; these come first."""
+        """Return the number of leading joints that do not move the other shape."""
         shared = 0
         while shared < min(len(self.joints), len(other.joints)) and (
             self.joints[-1 - shared] == other.joints[-1 - shared]
@@ -52,13 +52,13 @@ class Chain(NamedTuple):
 
 
 class Tested(NamedTuple):
-    """What was found out about k pairs of shapes; the other arrays have the shape (configurations, k).
+    """Test results of k pairs of shapes; arrays have the shape (configurations, k) unless stated.
 
     Attributes:
-        pairs: The numbers of the pairs that were asked for in any of the configurations, shape (k,).
-        is_open: Whether they may touch while the joints change as they may.
-        travel: How far they may move against each other [m].
-        gaps: Proved lower bounds of their distances in the configuration [m].
+        pairs: Indices of the pairs that were tested in at least one configuration, shape (k,).
+        is_open: Whether contact is possible within the changes of the joints.
+        travel: Maximum relative travel of the shapes [m].
+        gaps: Proven lower bounds of the distances in the configuration [m].
         measured: Measured distances [m]; infinite if not measured.
     """
 
@@ -70,7 +70,7 @@ class Tested(NamedTuple):
 
 
 class _GapBounds(NamedTuple):
-    """What is known so far of the pairs of a question: their numbers, and gaps [m] as in `Tested`."""
+    """Current bounds of the tested pairs; gaps [m] are those of ``Tested``."""
 
     pairs: Ints
     needed: Floats  # gaps with which they cannot come too near [m], shape (m, k)
@@ -135,7 +135,7 @@ class Clearances:
         self._depths = np.stack([depths[first, second], depths[second, first]])
 
     def take(self, slot: int) -> None:
-        """Store the present state as one of the configurations of the next ``test``."""
+        """Store the present state as configuration ``slot`` of the next ``test``."""
         model, data = self._model, self._data
         self._positions[slot], self._rotations[slot] = data.geom_xpos, data.geom_xmat.reshape(-1, 3, 3)
         self._anchors[slot, : model.njnt], self._axes[slot, : model.njnt] = data.xanchor, data.xaxis
@@ -201,10 +201,10 @@ class Clearances:
     def _separate(
         self, known: _GapBounds, rows: Ints, columns: Ints, directions: Floats | None = None, *, exactly: bool = False
     ) -> None:
-        """Raise bounds to what separates pairs in given directions, unit vectors or NaN, shape (k, 3).
+        """Raise the bounds of gaps by separation along directions, unit vectors or NaN, shape (k, 3).
 
-        Without directions, they are those in which the pairs were last measured. Meshes count as the boxes around
-        them, unless that is asked for exactly.
+        The default directions are those of the last measurements. Unless ``exactly``, meshes are replaced by their
+        bounding boxes.
         """
         if not len(rows):
             return
@@ -220,7 +220,7 @@ class Clearances:
         known.gaps[rows, columns] = np.fmax(known.gaps[rows, columns], -ends[:count] - ends[count:])
 
     def _measure(self, known: _GapBounds, rows: Ints, columns: Ints) -> None:
-        """Measure the distances of some pairs in some configurations, and raise the bounds of their gaps."""
+        """Measure the distances of pairs ``columns`` in configurations ``rows``, and raise the bounds of their gaps."""
         model, data = self._model, self._data
         pairs = known.pairs[columns]
         first, second = self._first[pairs].tolist(), self._second[pairs].tolist()
@@ -249,7 +249,7 @@ class Clearances:
         self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
 
     def _measure_triangles(self, known: _GapBounds, rows: Ints, columns: Ints) -> None:
-        """Do the same for meshes that are not convex, whose hulls are too near."""
+        """Measure non-convex meshes whose hulls are too close by their triangles, and raise the bounds."""
         pairs = known.pairs[columns]
         for row, column, pair in zip(rows.tolist(), columns.tolist(), pairs.tolist(), strict=True):
             self._place(row)
@@ -259,7 +259,7 @@ class Clearances:
 
 
 def _middles(is_open: Bools) -> tuple[Ints, Ints]:
-    """Return for each pair the middle one of its undecided configurations, and the pair."""
+    """Return for each pair with undecided configurations the middle one of these, and the pair."""
     counts = np.cumsum(is_open, axis=0)
     pairs = np.flatnonzero(counts[-1])
     rows = (counts[:, pairs] > counts[-1, pairs] // 2).argmax(axis=0)

@@ -28,7 +28,7 @@ class GeometryOf(NamedTuple):
 
 
 class Collision(NamedTuple):
-    """Colliding pair of geometries, or the first of two links.
+    """Colliding pair of geometries, or the first one of two links.
 
     ``contacts`` are the contact points of all geometry pairs, if requested.
     """
@@ -39,7 +39,7 @@ class Collision(NamedTuple):
 
 
 Counts = Callable[[Collision], bool]
-"""Decides whether a collision counts."""
+"""Function that decides whether a collision counts."""
 
 
 class Wanted(NamedTuple):
@@ -68,7 +68,7 @@ class Checker(Protocol):
 
     @property
     def is_plain(self) -> bool:
-        """Whether the engine's default tests give the same answers: no user callbacks, no geometry groups."""
+        """Whether the engine's default tests give the same results: no user callbacks, no geometry groups."""
         ...
 
     def world(self) -> CollisionWorld:

@@ -15,8 +15,8 @@ class GeometryGroups:
     """Selected geometry groups of bodies. A link without the group keeps its own geometries.
 
     Attributes:
-        default: The group of bodies without another one; empty for the links' own geometries.
-        is_used: Whether any body has a group.
+        default: The group of bodies without a selected one; empty for the links' own geometries.
+        is_used: Whether any body has a selected group.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -32,7 +32,7 @@ class GeometryGroups:
         return self._of_bodies.get(body, self.default)
 
     def choose(self, name: str, body: BodyState | None = None) -> None:
-        """Set the group of a body, or of all bodies."""
+        """Select the group of a body, or of all bodies."""
         if body is not None:
             self._of_bodies[body] = name
         else:

@@ -1,7 +1,7 @@
 """Collision tests of a robot whose base and joints move: a hand that flies to a target and closes.
 
-The model of the world is moved, as in ``moving``; the robot's root links are no longer fixed to the world meanwhile, so
-that MuJoCo's collision detection also looks at bodies without joints.
+The model of the world is moved, as in ``moving``. Meanwhile the robot's root links are not fixed to the world, so that
+MuJoCo's collision detection also tests them against bodies without joints.
 """
 
 from collections.abc import Generator
@@ -32,11 +32,11 @@ class _Meant:
     """Geom pairs that are tested for a robot and a target.
 
     Attributes:
-        link: Link of the robot that each geom belongs to or is held by; -1 for other bodies, one for each geom.
-        side: 1 for geoms of the target, 2 for those of other bodies, 0 for the rest, one for each geom.
+        link: For each geom, the robot link that it belongs to or that holds it; -1 for geoms of other bodies.
+        side: For each geom, 1 if it is of the target, 2 if it is of another body, else 0.
         within: Pairs of geoms of the robot, both orders.
-        masks: For MuJoCo to look at all of these.
-        left_out: Pairs within the robot that MuJoCo does not look at.
+        masks: Masks with which MuJoCo tests all pairs except ``left_out``.
+        left_out: Pairs that MuJoCo cannot test, or None.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState, target: BodyState | None) -> None:
@@ -65,7 +65,7 @@ class _Meant:
 class HandTests:
     """Tests of a robot at any base pose and joint values against a target, other bodies and itself.
 
-    Only inside ``with hand_tests(...)``, with the lock held.
+    Use it within ``hand_tests``, with the lock held.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState, target: BodyState | None) -> None:
@@ -90,7 +90,7 @@ class HandTests:
 
     @block
     def freed(self) -> Generator[None]:
-        """Free the root links of the robot from the world; put everything back at the end."""
+        """Free the root links of the robot from the world during the block, then restore the model."""
         with restoring(self._restore):
             self._model.body_dofnum[self._roots] = 1  # otherwise MuJoCo takes them for fixed to the world
             for index, root in self._welds:
@@ -114,13 +114,13 @@ class HandTests:
     def __call__(
         self, links: frozenset[int], T_world_base: Floats, values: Floats, against: Against = "anything"
     ) -> str | None:
-        """Return the name of a body, or of a link of the robot, that some links touch; None if none.
+        """Return the name of a body, or of a link of the robot, that some links touch; None if there is none.
 
         Args:
-            links: Indices of links of the robot; what they hold counts.
+            links: Indices of links of the robot; bodies that they hold are tested, too.
             T_world_base: Pose of the robot, shape (4, 4).
             values: Values of all its DOFs [rad or m], shape (dof,).
-            against: What counts.
+            against: The bodies to test against.
         """
         self._move(T_world_base, values)
         for pair in self._pairs:
@@ -132,7 +132,7 @@ class HandTests:
     def contacts(
         self, links: frozenset[int], T_world_base: Floats, values: Floats, against: Against = "target"
     ) -> tuple[list[Contact], list[int]]:
-        """Return the contacts of some links, with normals out of the other body, and the link at each of them."""
+        """Return the contacts of some links, with normals out of the other body, and the link of each contact."""
         self._move(T_world_base, values)
         both = [(a, b) if self._meant.link[a] >= 0 else (b, a) for a, b in self._pairs]
         touching = [pair for pair in sorted(set(both)) if self._name(pair, links, against) and self._touches(pair)]
@@ -154,7 +154,7 @@ class HandTests:
         return None
 
     def _touches(self, pair: Pair) -> bool:
-        """Return whether two geoms whose hulls overlap touch."""
+        """Return whether two geoms touch, given that their hulls overlap."""
         if pair not in self._touching:
             self._touching[pair] = self._world.shapes.touch(*pair)
         return self._touching[pair]
@@ -192,12 +192,12 @@ def _pairs(rows: Ints | NDArray[np.int32]) -> list[Pair]:
 
 @block
 def hand_tests(world: CollisionWorld, body: BodyState, target: BodyState | None) -> Generator[HandTests]:
-    """Return tests of a robot at many base poses and joint values; the world is as before at the end of the ``with``.
+    """Yield tests of a robot at many base poses and joint values; afterwards restore the world.
 
     Args:
         world: The world; the caller holds the lock, and nothing else moves or changes meanwhile.
         body: The robot.
-        target: The body that ``target`` stands for in tests.
+        target: The body called ``target`` in tests.
     """
     with kept_in_place(body):
         tests = HandTests(world, body, target)

@@ -20,9 +20,9 @@ from ravemj.engine.simulation.body import SavedConfiguration
 class HeldRoots:
     """Root links of grabbed bodies, which are children of the world in the model.
 
-    Within ``on_carriers`` they are children of their carriers, so that ``mj_kinematics`` places them, and
-    ``mj_collision`` tests them against fixed geoms. If one precedes its carrier (``are_late``), ``mj_kinematics`` must
-    run twice.
+    Within ``on_carriers`` they are children of the grabbing links, so that ``mj_kinematics`` places them, and
+    ``mj_collision`` tests them against fixed geoms. If a root precedes its grabbing link (``are_late``),
+    ``mj_kinematics`` must run twice.
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState) -> None:
@@ -47,7 +47,7 @@ class HeldRoots:
 
     @block
     def on_carriers(self) -> Generator[None]:
-        """Context manager that attaches them to their carriers, then to the world; the caller restores their poses."""
+        """Context manager that attaches them to the grabbing links; the caller restores their poses afterwards."""
         with restoring(self._detach):
             self._attach()
             yield
@@ -69,7 +69,7 @@ class HeldRoots:
 
 
 class _Root(NamedTuple):
-    """Grabbed root link and the grabbing link, by MuJoCo's indices."""
+    """Grabbed root link, and the grabbing link, by MuJoCo's indices."""
 
     body_id: int
     carrier: int
@@ -83,17 +83,17 @@ _Kind = Callable[[CollisionWorld, BodyState, MovedBy | None], Pairs]
 _KINDS: tuple[_Kind, ...] = (body_and_others, itself)
 
 _KEY = 1 << 31
-"""Upper bound of the number of geoms, to encode a pair in one number."""
+"""Upper bound of the number of geoms, for encoding a pair as one number."""
 
 _MANY = 50
-"""Number of configurations below which threads are not worthwhile."""
+"""Number of configurations from which threads are worthwhile."""
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
     """Return a fast test of values of some joints, or None if links are displaced from their joints.
 
-    It tests the moved links and grabbed bodies, for a world that does not change otherwise; the caller holds the lock
-    all the time. The test moves the world's model, and possibly the body's joints: ``body.restore`` restores both.
+    It tests the moved links and grabbed bodies. While it is used, the world must not change otherwise, and the caller
+    holds the lock. The test moves the world's model, and possibly the body's joints: ``body.restore`` restores both.
     """
     world = body.simulation.collisions()
     if body.kinematics.displaced:
@@ -108,7 +108,7 @@ def moved_world(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None
 
 
 class Among(NamedTuple):
-    """Selected geom pairs of a batch of configurations.
+    """Selection of geom pairs for a batch of configurations.
 
     Attributes:
         others: Whether to test the body against other bodies.
@@ -159,7 +159,7 @@ def batch_distances(body: BodyState, values: Floats, among: Among) -> Floats:
 
 @block
 def kept_in_place(body: BodyState) -> Generator[None]:
-    """Bring a body and what it holds back to where they are, at the end of the block."""
+    """Context manager that restores the configurations of a body and its grabbed bodies."""
     before, stamp = body.configuration(), body.stamp
     held = [(grab.body, grab.body.configuration()) for grab in body.grabs]
     with restoring(lambda: _restore(body, before, held, stamp)):
@@ -167,7 +167,7 @@ def kept_in_place(body: BodyState) -> Generator[None]:
 
 
 def _bring_links_back(body: BodyState, values: Floats) -> None:
-    """Move links back to the poses of their joints if scripts displaced them."""
+    """Move displaced links back to the poses given by their joints."""
     if len(values) and body.kinematics.displaced:
         body.set_values(body.kinematics.values())
 

@@ -32,7 +32,7 @@ _NO_GEOMS = np.zeros((0, 2), dtype=np.int32)
 
 
 class Masks(NamedTuple):
-    """MuJoCo's ``body_contype`` and ``body_conaffinity`` that restrict it to some pairs of bodies."""
+    """MuJoCo's ``body_contype`` and ``body_conaffinity``, restricting collision detection to some pairs of bodies."""
 
     types: _Bits
     affinities: _Bits
@@ -41,12 +41,12 @@ class Masks(NamedTuple):
 class Detection:
     """MuJoCo's collision detection, which finds contacts of convex hulls.
 
-    It ignores geoms of one weld group (without a joint between them), of a group and its parent group, unless that is
-    the world's, and excluded pairs.
+    It ignores excluded pairs, geoms of one weld group (without a joint between them), and geoms of a weld group and its
+    parent group, unless the parent is the world.
 
     Attributes:
-        positions: Centres of spheres around all geoms [m], shape (n, 3).
-        radii: Their radii [m], shape (n,).
+        positions: Centres of the bounding spheres of all geoms [m], shape (n, 3).
+        radii: Radii of the spheres [m], shape (n,).
         all: The masks that admit all bodies.
         is_overruled: Whether geoms are displaced from their links, so that only bounding spheres are valid.
     """
@@ -95,16 +95,16 @@ class Detection:
         return Masks(types, affinities)
 
     def detect(self, look: Callable[[], None]) -> NDArray[np.int32] | None:
-        """Look for hulls that touch or nearly touch now.
+        """Detect hulls that touch or nearly touch at present.
 
         If there was more than one query in the last configuration, all bodies are tested, once for all queries in this
-        one.
+        configuration.
 
         Args:
-            look: What ``overlaps`` returned for the masks of the question.
+            look: The result of ``overlaps`` for the masks of the query.
 
         Returns:
-            Both geoms of each contact, shape (n, 2); None if they may be too many for MuJoCo's memory.
+            Both geoms of each contact, shape (n, 2); None if there may be too many for MuJoCo's memory.
         """
         if self._stamp != self.model.stamp:
             self._stamp, self._is_shared, self._questions = self.model.stamp, self._questions > 1, 0
@@ -120,7 +120,7 @@ class Detection:
         return self._found
 
     def detect_near(self, look: Callable[[], None]) -> None:
-        """Let MuJoCo find the contacts of hulls that touch or nearly touch; ``overlaps`` returns ``look``."""
+        """Run the detection ``look``, a result of ``overlaps``, also for hulls that nearly touch."""
         option, flags = self._option, self._option.enableflags
         try:
             option.enableflags = flags | _OVERRIDE
@@ -129,7 +129,7 @@ class Detection:
             option.enableflags = flags
 
     def overlaps(self, masks: Masks) -> Callable[[], None]:
-        """Return a function that looks for hulls that overlap now."""
+        """Return a function that runs MuJoCo's detection of overlapping hulls with the given masks."""
         model, data, detect = self._model, self._data, mujoco.mj_collision
         if masks is self.all:
             return partial(detect, model, data)
@@ -149,9 +149,9 @@ class Detection:
 
     @block
     def masked(self, masks: Masks) -> Generator[None]:
-        """Have MuJoCo look only at the pairs of masks inside the ``with``; where bodies have few geoms, at each pair.
+        """Context manager that restricts MuJoCo to the masks' pairs; if bodies have few geoms, each pair is tested.
 
-        It finds the same contacts with trees of geoms, but takes longer.
+        MuJoCo's trees of geoms give the same contacts, but take longer for few geoms.
         """
         flags = self._option.disableflags
         with restoring(lambda: self._mask(self.all, flags)):
@@ -185,7 +185,7 @@ class Pairs:
         self._found = b""  # the contacts, as MuJoCo has them
 
     def near(self) -> list[int]:
-        """Return the numbers of the pairs that may touch, in order. The caller holds the lock."""
+        """Return the indices of the pairs that may touch, in ascending order. The caller holds the lock."""
         detection, model = self._detection, self._model
         if detection.is_overruled:
             return self._all_spheres.near().tolist()
@@ -203,7 +203,7 @@ class Pairs:
         return sorted(self._touching + self._rest_near) if self._rest_near else self._touching
 
     def _detect(self) -> None:
-        """Find which of the pairs that MuJoCo looks at have hulls that touch."""
+        """Find the pairs with touching hulls, among those that MuJoCo tests."""
         geoms = self._detection.detect(self._look)
         chosen = b"" if geoms is None or geoms is _NO_GEOMS else geoms.tobytes()
         if geoms is not None and chosen != self._found:
@@ -243,7 +243,7 @@ class _Spheres:
         self._distance = np.empty(count)
 
     def near(self) -> Ints:
-        """Return the indices of the pairs whose spheres touch, in order."""
+        """Return the indices of the pairs whose spheres touch, in ascending order."""
         apart = self._apart
         self._positions.take(self._geoms, 0, self._centers, "clip")  # all are there; the default mode is slower
         apart -= self._from

@@ -1,8 +1,8 @@
 """Contact patches: all contact points of pairs of geoms, such as the corners of the overlap of two faces.
 
 ``mj_geomDistance``, which decides about collisions, gives one point of a pair. MuJoCo's collision detection gives the
-corners (``multiccd``, on by default), but only of bodies that a joint moves against each other; here all bodies count
-as such for a moment.
+corners (``multiccd``, on by default), but only of bodies with a joint between them; here all bodies are temporarily
+treated as such.
 """
 
 from collections.abc import Generator, Iterable, Sequence
@@ -19,15 +19,15 @@ from ravemj.engine.collision.world import CollisionWorld
 
 _PARENTS_COUNT = int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
 _MOST = 8
-"""Maximum number of contact points of a pair; further ones lie between them."""
+"""Maximum number of contact points of a pair; further ones lie between these."""
 
 _SAME = 1e-7  # m; contact points of one pair that are nearer to each other count as one
 
 
 def patches(world: CollisionWorld, pairs: Sequence[Pair]) -> list[list[Contact]]:
-    """Return the contact points of each of some pairs of geoms that touch, the deepest first.
+    """Return the contact points of each pair of touching geoms, the deepest first.
 
-    Pairs for which MuJoCo finds none have the point of ``ShapeTests.contact``. The caller holds the lock.
+    A pair for which MuJoCo finds none has the point of ``ShapeTests.contact``. The caller holds the lock.
     """
     convex = [pair for pair in pairs if not any(map(world.shapes.is_concave, pair))]
     contacts: dict[Pair, list[Contact]] = {}
@@ -46,7 +46,7 @@ def _of_pair(world: CollisionWorld, pair: Pair, contacts: list[Contact]) -> list
 
 
 def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Contact]]:
-    """Return the contacts that MuJoCo has found last, of some pairs; the keys have the smaller geom first."""
+    """Return those of MuJoCo's last contacts that belong to some pairs; keys have the smaller geom first."""
     wanted = {ordered_pair(*pair): pair for pair in pairs}
     by_pair: dict[Pair, list[Contact]] = {}
     data = world.model.data
@@ -63,7 +63,7 @@ def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Con
 
 
 def spread(contacts: list[Contact]) -> list[Contact]:
-    """Return contacts without doubles, the deepest first, and of many those that are farthest from one another."""
+    """Return contacts without duplicates, the deepest first; of many, those that are farthest from each other."""
     rest, chosen = sorted(contacts, key=lambda contact: -contact.depth), list[Contact]()
     if not rest:
         return chosen
@@ -83,7 +83,7 @@ def contact_rows(contacts: Iterable[Contact]) -> Floats:
 
 @block
 def _all_separate(world: CollisionWorld, bodies: list[int]) -> Generator[Masks]:
-    """Let MuJoCo test all geoms of its bodies against each other inside the ``with``; return masks for some bodies."""
+    """Let MuJoCo test all geoms of some bodies against each other during the block; yield the masks of the bodies."""
     model = world.model.model
     welds, dofs, flags = model.body_weldid.copy(), model.body_dofnum.copy(), model.opt.disableflags
 

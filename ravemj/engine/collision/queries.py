@@ -1,6 +1,6 @@
 """Geom pairs of each type of collision query.
 
-A body takes part with all bodies that it has grabbed or that have grabbed it, and is not tested against them.
+A body is tested together with all bodies that it has grabbed or that have grabbed it, and not against them.
 """
 
 from collections.abc import Iterable
@@ -21,13 +21,13 @@ from ravemj.model.scene import Bounds, KinBody
 
 
 class MovedBy(NamedTuple):
-    """Links moved by some DOFs, or the pairs of links moved relative to each other."""
+    """Links that some DOFs move, or pairs of links that these move relative to each other."""
 
     dofs: tuple[int, ...]
 
 
 Links = frozenset[int] | MovedBy | None
-"""Indices of the links of a body that take part; None means all."""
+"""Indices of a body's links to test; None means all."""
 
 LinkPairs = frozenset[Pair] | MovedBy | None
 """Pairs of links of a body, the smaller index first; None means all."""
@@ -99,7 +99,7 @@ def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> P
 
 
 def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
-    """Return the pairs of a link and its grabbed bodies with the rest of its body, as far as in ``itself``."""
+    """Return those pairs of ``itself`` that are between a link, with its grabbed bodies, and the rest of its body."""
     body, index = link
     others = range(len(body.scene.links))
     return itself(world, body, frozenset(ordered_pair(index, other) for other in others))
@@ -157,7 +157,7 @@ def touching_pairs(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
 
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:
-    """Return the indices of a body's links that touch or overlap another body, enabled or not."""
+    """Return the indices of a body's links that touch or overlap ``holder``, enabled or not."""
     pairs = world.make_pairs(*cross(*(world.geoms_of_body(either, enabled_only=False) for either in (holder, body))))
     return frozenset(world.owner(first)[1] for first, _ in world.hits(pairs))
 
@@ -175,7 +175,7 @@ def moved_links(body: KinBody, dofs: Iterable[int]) -> frozenset[int]:
 
 
 def body_of(thing: BodyState | LinkOf) -> BodyState:
-    """Return a body, or the body of a link."""
+    """Return the body, or the link's body."""
     return thing if isinstance(thing, BodyState) else thing[0]
 
 
@@ -234,5 +234,5 @@ def _boxes(bodies: Iterable[BodyState]) -> list[Bounds]:
 
 
 def _distance(box: Bounds, point: Floats) -> float:
-    """Return the maximum distance of a point from a box."""
+    """Return the distance of a point from the farthest corner of a box."""
     return float(np.linalg.norm(np.maximum(np.abs(box.low - point), np.abs(box.high - point))))

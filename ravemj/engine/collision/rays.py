@@ -15,7 +15,7 @@ _GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 _FAR = 1e10
 
 _SHORTEST = 1e-14
-"""Length of a direction [m] slightly above the one that MuJoCo treats as zero."""
+"""Length of a direction [m] slightly above that which MuJoCo treats as zero."""
 
 
 class RayHit(NamedTuple):
@@ -28,7 +28,7 @@ class RayHit(NamedTuple):
 
 
 class RayCaster:
-    """Casts rays against geoms of a model: one with ``mj_ray``, many in one call of ``mj_multiRay``.
+    """Casts rays against geoms of a model: a single ray by ``mj_ray``, several by one call of ``mj_multiRay``.
 
     MuJoCo tests geoms of selected groups that are not fully transparent. A copy of the model has all of them visible
     and in the selected group, so that concurrent drawing of the model is not affected.
@@ -75,7 +75,7 @@ class RayCaster:
         Geoms beyond ``reach`` [m] may be ignored. ``normals`` receives the outward unit normals at the hits, (n, 3).
 
         Returns:
-            The distance of each hit in lengths of its direction, and the geom, each (n,); -1 without a hit.
+            The distance of each hit as a multiple of its direction's length, and the geom, each (n,); -1 without a hit.
         """
         self._aim_at(geoms)
         count = len(directions)

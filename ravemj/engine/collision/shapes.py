@@ -71,7 +71,7 @@ class ShapeTests:
         return hulls
 
     def closest(self, first: int, second: int, limit: float) -> tuple[float, Floats]:
-        """Return ``distance``, and the nearest (or deepest) point of each geom, in one row [m], shape (6,)."""
+        """Return ``distance``, and the nearest (or deepest) points of both geoms as one vector [m], shape (6,)."""
         distance = self.distance(first, second, limit)
         return distance, self._segment.copy()
 
@@ -80,7 +80,7 @@ class ShapeTests:
         return self._contact(first, second, max(-self.distance(first, second), 0.0), self._segment)
 
     def contacts_of_triangles(self, first: int, second: int) -> list[Contact]:
-        """Return the contacts of two geoms that touch, one of which is concave: one for each pair of triangles."""
+        """Return a contact for each touching pair of triangles of two geoms, one of which is concave."""
         triangles = self._triangles
         assert triangles is not None, "one of them is a mesh"
         ours, theirs = (first, second) if triangles.is_concave(first) else (second, first)
@@ -90,7 +90,7 @@ class ShapeTests:
         return contacts or [self.contact(first, second)]
 
     def _contact(self, first: int, second: int, depth: float, segment: Floats) -> Contact:
-        """Return the contact of which the deepest points of both geoms are given, in one row [m], shape (6,)."""
+        """Return the contact of two geoms, given its depth and their deepest points as one vector [m], shape (6,)."""
         x, y, z, u, v, w = segment.tolist()  # plain floats: numpy takes ten times as long for so few
         normal = u - x, v - y, w - z
         if depth <= TOUCHING:  # no direction in the two points

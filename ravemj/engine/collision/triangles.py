@@ -1,4 +1,4 @@
-"""Tests of non-convex meshes by their triangles, of which MuJoCo would use the convex hulls.
+"""Tests of non-convex meshes by their triangles; MuJoCo would use the convex hulls.
 
 FCL's bounding volume hierarchies find overlapping triangles and distances of meshes. MuJoCo measures the depth between
 two triangles, or a triangle and a solid. For MuJoCo a triangle is a mesh of three vertices, the last one repeated; a
@@ -17,7 +17,7 @@ from ravemj.formats.meshes import area, volume
 from ravemj.model.scene import Mesh
 
 NOT_FILLED = 1e-3
-"""Maximum deficit of area and volume relative to the hull up to which a mesh is convex."""
+"""Largest missing part of the hull's area and volume, relative to these, with which a mesh counts as convex."""
 
 _XML = """<mujoco><asset>
 <mesh name="a" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/><mesh name="b" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>
@@ -27,7 +27,7 @@ _XML = """<mujoco><asset>
 _TRIANGLE, _OTHER_TRIANGLE, _SOLID = range(3)
 
 _Candidate = tuple[float, Floats, Floats | None]
-"""Lower bound of the distance [m], a triangle of a mesh, and one of the other mesh if that is measured."""
+"""Lower bound of the distance [m], triangle of a mesh, and triangle of the other mesh, or None for a solid."""
 
 _SLACK = 1e-4  # [m]; margin of boxes, since FCL's test of a box and a triangle has errors of 1e-6
 
@@ -62,7 +62,7 @@ class TriangleTests:
         return not self._is_convex[mesh]
 
     def touch(self, mesh: int, other: int, touching: float) -> bool:
-        """Return whether a mesh and another geom overlap, or a solid is within ``touching`` [m]."""
+        """Return whether a mesh and another geom overlap; a solid also touches within a distance ``touching`` [m]."""
         overlaps = fcl.CollisionResult()
         if not fcl.collide(self._placed(mesh), self._placed(other), _ANY, overlaps):
             return False
@@ -91,7 +91,10 @@ class TriangleTests:
         return min(distance, limit)
 
     def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
-        """Yield signed distance [m] and ``segment`` of each triangle that touches a solid or one of another mesh."""
+        """Yield signed distance [m] and ``segment`` of each triangle that touches the other geom.
+
+        A solid is measured as a whole, a mesh triangle by triangle.
+        """
         result, place = fcl.CollisionResult(), _OTHER_TRIANGLE
         if self._is_mesh(other):
             fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)
@@ -105,7 +108,7 @@ class TriangleTests:
                 yield distance, segment
 
     def _pairs(self, mesh: int, other: int, overlaps: Iterable[fcl.Contact]) -> Iterable[_Candidate]:
-        """Return the triangles of two meshes that overlap."""
+        """Return the intersecting pairs of triangles of two meshes, given FCL's contacts ``overlaps``."""
         pairs = np.array(sorted({(overlap.b1, overlap.b2) for overlap in overlaps}), dtype=int).reshape(-1, 2)
         rotation, position = self._pose_in(mesh, other)
         ours = self._triangles_of(mesh).corners[pairs[:, 0]]
@@ -113,10 +116,7 @@ class TriangleTests:
         return ((-np.inf, first, two) for first, two in zip(ours, theirs, strict=True))
 
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
-        """Put a solid into the scratch model, and return its bounding box along the axes of the mesh.
-
-        The box is given by centre and half extents in the mesh's frame.
-        """
+        """Put a solid into the scratch model; return centre and half extents of its box in the mesh's frame."""
         rotation, position = self._pose_in(mesh, solid)
         self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]
         self._scratch.geom_size[_SOLID] = self._model.geom_size[solid]
@@ -133,7 +133,7 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return ``distance`` of the nearest candidate, in the order of lower bounds.
+        """Return ``distance`` of the nearest candidate; they come in the order of lower bounds.
 
         Triangles are measured against the geom ``place`` of the scratch model, until one is as near as ``enough`` [m].
         """
@@ -203,9 +203,9 @@ class _Triangles:
         self.tree.endModel()
 
     def near(self, centre: Floats, half: Floats, limit: float) -> Iterable[_Candidate]:
-        """Yield the triangles whose boxes are within ``limit`` of a box, the nearest first.
+        """Yield the triangles whose boxes are within ``limit`` of another box, the nearest first.
 
-        ``centre`` and ``half`` are its centre and half extents in the frame of the mesh [m], shape (3,).
+        ``centre`` and ``half`` are the other box's centre and half extents in the frame of the mesh [m], shape (3,).
         """
         apart = np.maximum(np.maximum(self._low - centre - half, centre - half - self._high), 0.0)
         bounds = np.sqrt((apart * apart).sum(axis=1))

@@ -26,10 +26,10 @@ MOST_PAIRS = 300_000
 """Maximum number of cached pairs and masks."""
 
 MOST_AT_ONCE = 1000
-"""Maximum number of configurations per call of the threads, which bounds memory."""
+"""Maximum number of configurations per multithreaded call, which bounds memory."""
 
 _WORTH_MASKS = 1.5
-"""Factor of pairs saved from which setting masks is worthwhile."""
+"""Minimum factor of saved pairs with which masks are worthwhile."""
 
 _POSITIONS = 1  # mjSTAGE_POS: results of joint positions, including contacts
 
@@ -106,7 +106,7 @@ class CollisionWorld:
         return known
 
     def labels(self, geoms: NDArray[np.int32]) -> Ints:
-        """Return the body and link indices of geoms (...), as (..., 2); 0 and -1 for the geom -1, which means none."""
+        """Return body and link indices of geoms, shape (..., 2); 0 and -1 if the geom is -1 (none)."""
         indices = np.array([*(body.index for body in self.bodies), 0])
         bodies, links = indices[self._owner[geoms]], self._link[geoms]
         nothing = geoms < 0
@@ -139,7 +139,7 @@ class CollisionWorld:
         """Return the fastest masks with which MuJoCo finds geom pairs.
 
         Returns:
-            The masks, and whether they admit no other pairs and all geoms are convex; also False if there are too many
+            The masks, and whether they admit no other pairs and all geoms are convex; False also if there are too many
             geoms to count their pairs.
         """
         masks = self.detection.masks(first, second)
@@ -156,7 +156,7 @@ class CollisionWorld:
         return any(map(self.shapes.is_concave, self._colliding.tolist()))
 
     def have_contacts(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Return for each configuration, at most ``MOST_AT_ONCE``, shape (n, nq), whether MuJoCo finds contacts."""
+        """Return for at most ``MOST_AT_ONCE`` configurations, shape (n, nq), whether MuJoCo finds contacts."""
         threads = batch_threads()
         if threads == 1:
             return self._have_contacts_one_by_one(masks, qpos)
@@ -167,7 +167,7 @@ class CollisionWorld:
         return batch.bind("ncon")[:count] > 0
 
     def _have_contacts_one_by_one(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Do the same in one thread; a ``Batch`` is slower there, since it computes more."""
+        """Return the result of ``have_contacts`` by one thread; a ``Batch`` computes more, so it is slower."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
         counts: list[int] = []
@@ -180,7 +180,7 @@ class CollisionWorld:
         return np.array(counts) > 0
 
     def _batch(self, threads: int) -> "Batch":
-        """States of the model for threads; they share the model, in which bodies without joints move, too."""
+        """States of the model for several threads; they share the model, in which bodies without joints move, too."""
         from mujoco.batch import Batch  # noqa: PLC0415 - slow to import
 
         batch = Batch(self._model, MOST_AT_ONCE, threads)
@@ -198,7 +198,7 @@ class CollisionWorld:
         return (geoms for geoms in map(pairs.geoms, pairs.near()) if self.shapes.touch(*geoms))
 
     def nearest(self, pairs: Pairs, limit: float) -> tuple[float, tuple[int, int] | None]:
-        """Return the smallest signed distance of the pairs [m] and the pair; the limit and None if none is nearer."""
+        """Return the smallest signed distance of the pairs [m] and its pair; ``limit`` and None if none is nearer."""
         gaps, nearest = pairs.gaps(), None
         for number in np.argsort(gaps, kind="stable"):
             if gaps[number] >= limit:
@@ -227,7 +227,7 @@ class CollisionWorld:
 
     @block
     def moved(self, motions: Mapping[tuple[BodyState, int], Floats]) -> Generator[None]:
-        """Context manager that displaces links for tests by motions in the world (4, 4); bodies do not move."""
+        """Context manager that displaces geoms of links by motions in the world (4, 4); the bodies do not move."""
         positions, rotations = self._data.geom_xpos, self._data.geom_xmat
         with restoring(self._move_back):
             self.detection.is_overruled = True

@@ -1,4 +1,4 @@
-"""Inverse dynamics of one body: torques, external forces and motors, from MuJoCo's velocities to DOFs."""
+"""Inverse dynamics of one body: torques, external forces and motors, converted from MuJoCo's velocities to DOFs."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ class DerivativeRows:
     def __init__(self, shape: tuple[int, ...], nv: int, columns: Ints | None) -> None:
         """Allocate an array with a last axis of MuJoCo's ``nv`` velocities.
 
-        ``columns`` are the columns of the DOFs, ``nv`` for a DOF without effect; None if they are not one to one.
+        ``columns`` are the columns of the DOFs, ``nv`` for a DOF without effect; None if DOFs are coupled.
         """
         count = math.prod(shape)
         self._numbers = np.zeros(count * nv + 1)  # the last number stays 0
@@ -41,7 +41,7 @@ class DerivativeRows:
 
 
 AT_REST = 1e-12
-"""Speed [rad/s or m/s] that counts as zero: dry friction is discontinuous there, and speeds have rounding errors."""
+"""Speed [rad/s or m/s] that counts as zero: dry friction is discontinuous at 0, and speeds have rounding errors."""
 
 
 class Motors:
@@ -50,7 +50,10 @@ class Motors:
     def __init__(self, armature: Floats, coulomb: Floats, viscous: Floats) -> None:
         """Store motor data, each of shape (coordinates,).
 
-        Rotor inertia at the joint [kg m^2], Coulomb friction [N m] and viscous friction [N m s/rad].
+        Args:
+            armature: Rotor inertia at the joint [kg m^2].
+            coulomb: Coulomb friction [N m].
+            viscous: Viscous friction [N m s/rad].
         """
         self._armature, self._coulomb, self._viscous = armature, coulomb, viscous
 
@@ -67,7 +70,7 @@ class Motors:
     def torques(self, speeds: Floats, accelerations: Floats) -> Floats:
         """Return the torques and forces [N m or N] that motors need at speeds and accelerations of the coordinates.
 
-        All three have the same shape (coordinates, ...).
+        Arguments and result have the shape (coordinates, ...).
         """
         armature, coulomb, viscous = (
             coefficient.reshape(-1, *(1,) * (speeds.ndim - 1))
@@ -113,7 +116,7 @@ class BodyDynamics:
         self._rest_qacc = np.zeros(model.nv)
 
     def _columns(self) -> Ints | None:
-        """Column of each DOF among MuJoCo's velocities, ``nv`` if none; None if DOFs are coupled."""
+        """Column of each DOF among MuJoCo's velocities, ``nv`` if it has none; None if DOFs are coupled."""
         constant = self.couplings.constant
         if constant is None or not self.couplings.is_one_to_one:
             return None
@@ -255,7 +258,7 @@ class BodyDynamics:
         return np.concatenate((motions[:, 3:] + cross_rows(spins, arms), spins), axis=1)
 
     def link_velocities(self, rates: Floats, base: Floats) -> Floats:
-        """Return the link velocities, shape (links, 6), from DOF velocities and that of the first link, (6,).
+        """Return the link velocities, shape (links, 6), from DOF velocities and the velocity of the first link, (6,).
 
         Other root links are at rest.
         """
@@ -272,7 +275,7 @@ class BodyDynamics:
         return self._joint_velocities.of_joints(joints, velocities)
 
     def dof_velocities(self, velocities: Floats) -> Floats:
-        """Return DOF velocities computed from link velocities, shape (links, 6) to (dof,)."""
+        """Return DOF velocities, shape (dof,), computed from link velocities, shape (links, 6)."""
         return self._joint_velocities.of_dofs(velocities)
 
     def link_accelerations(
@@ -336,7 +339,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write DOF accelerations, and additional ones of roots, (6,), on top of velocity-dependent ones."""
+        """Write DOF accelerations and additional accelerations of roots, (6,), to velocity-dependent ones."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0
@@ -373,7 +376,7 @@ class BodyDynamics:
         return self._of_dofs(self._forces)
 
     def _needed(self, forces: Floats) -> None:
-        """Write the generalised forces of the motion in MuJoCo's data, shape (nv,)."""
+        """Write the generalised forces that the motion in MuJoCo's data requires, shape (nv,)."""
         mujoco.mj_rne(self._model, self._data, 1, forces)
         if self.motors is not None:
             inner = self._inner
@@ -386,7 +389,7 @@ class BodyDynamics:
         gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
-        """Return the components of ``inverse``: of accelerations, of joint velocities, and of all else."""
+        """Return the components of ``inverse`` due to accelerations, joint velocities, and all else."""
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
@@ -399,7 +402,7 @@ class BodyDynamics:
         return self._of_dofs(self._forces), self._of_dofs(self._by_velocity), self._of_dofs(self._rest)
 
     def _write_parts_of_joints(self) -> None:
-        """Write the force components for the motion in MuJoCo's data, if only joints without motors move.
+        """Write the force components of the motion in MuJoCo's data, if only joints without motors move.
 
         MuJoCo can omit accelerations; without gravity, only velocity effects remain.
         """
@@ -412,9 +415,9 @@ class BodyDynamics:
         rest -= by_velocity
 
     def _write_parts_of_all(self, velocities: Floats) -> None:
-        """Write the force components for the motion in MuJoCo's data.
+        """Write the force components of the motion in MuJoCo's data.
 
-        The part of the joint velocities is that with the base at rest and without gravity.
+        The component of joint velocities is computed with the base at rest and without gravity.
         """
         by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
         self._needed(by_acceleration)
@@ -440,5 +443,5 @@ class BodyDynamics:
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:
-    """Return the acceleration of a link with constant angular velocity, shape (6,): its origin's is ``w x v``."""
+    """Return the acceleration of a link with constant angular velocity, shape (6,): ``w x v`` of its origin, then 0."""
     return np.concatenate((cross_rows(velocity[3:], velocity[:3]), np.zeros(3)))

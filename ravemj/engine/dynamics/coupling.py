@@ -1,7 +1,7 @@
 """Coupling of a body's velocity coordinates to its DOFs.
 
-``qvel = P(q) dq/dt`` with the coupling matrix P, which is constant but for mimic joints with curved equations and for
-spherical joints. By virtual work the generalised forces of the DOFs are ``P^T`` times those of the coordinates.
+``qvel = P(q) dq/dt`` with the coupling matrix P, which is constant except for mimic joints with nonlinear equations and
+for spherical joints. By virtual work the generalised forces of the DOFs are ``P^T`` times those of the coordinates.
 """
 
 import math
@@ -37,7 +37,7 @@ class Coupling:
     second: list[tuple[int, int, int, Floats]]  # of P's derivative: coordinate, DOF that changes, DOF of column, value
 
     def forward(self, rates: Floats) -> Floats:
-        """Multiply by P: velocities of the coordinates, shape (dof, ...) to (coordinates, ...)."""
+        """Multiply DOF velocities, shape (dof, ...), by P; return those of the coordinates, (coordinates, ...)."""
         moved = np.zeros((self.count, *rates.shape[1:]))
         moved[self.coordinates] = rates[self.dofs]
         for coordinate, dof, value in self.first:
@@ -45,7 +45,7 @@ class Coupling:
         return moved
 
     def backward(self, forces: Floats) -> Floats:
-        """Multiply by P^T: forces on the DOFs, shape (coordinates, ...) to (dof, ...)."""
+        """Multiply forces on coordinates, shape (coordinates, ...), by P^T; return those on DOFs, (dof, ...)."""
         collected = np.zeros((self.dof, *forces.shape[1:]))
         collected[self.dofs] = forces[self.coordinates]
         for coordinate, dof, value in self.first:
@@ -53,7 +53,7 @@ class Coupling:
         return collected
 
     def bias(self, rates: Floats) -> Floats:
-        """Return dP/dt dq/dt: accelerations of the coordinates while the DOFs keep their velocities (dof, ...)."""
+        """Return dP/dt dq/dt: the accelerations of the coordinates at constant DOF velocities, shape (dof, ...)."""
         bias = np.zeros((self.count, *rates.shape[1:]))
         for coordinate, along, dof, value in self.second:
             bias[coordinate] += value * rates[along] * rates[dof]
@@ -84,7 +84,7 @@ class CouplingMap:
         return tree.of_qpos[places[0]] if places else NO_QPOS
 
     def at(self, values: Floats, *, second: bool = True) -> Coupling:
-        """Return P and, if wanted, its derivative at joint values [rad or m], shape (dof,) or (dof, N)."""
+        """Return P and, if ``second``, its derivative at joint values [rad or m], shape (dof,) or (dof, N)."""
         return self.constant or self._at(values, second=second)
 
     def _at(self, values: Floats, *, second: bool) -> Coupling:
@@ -152,7 +152,7 @@ class _Partials:
 
 
 def first_values(kinematics: BodyKinematics, values: Floats) -> list[Floats]:
-    """Return the first value of each joint, active ones and then passive ones, for values of shape (dof, ...)."""
+    """Return the first value of each active, then passive joint for DOF values, shape (dof, ...)."""
     passive = [np.full(values.shape[1:], first) for first in kinematics.first_values(np.zeros(kinematics.dof))]
     return [*(values[first] for first in kinematics.first_dofs), *passive[len(kinematics.first_dofs) :]]
 
@@ -162,7 +162,7 @@ def _index(name: str) -> int:
 
 
 def _value(expression: "Expression", named: dict[str, Floats], values: Floats) -> Floats:
-    """Return an expression's value in one configuration, or in each of many."""
+    """Return an expression's value in one configuration or in many."""
     wanted = {name: named[name] for name in expression.variables}
     if values.ndim > 1:
         return np.broadcast_to(expression.evaluate_many(wanted), values.shape[1:])

@@ -16,7 +16,7 @@ class JointAxes:
     """Axes of joints and the links that they connect; ``..._ids`` are MuJoCo's indices, others link indices."""
 
     def __init__(self, joints: Sequence[Joint], body_ids: Ints, ids: Ints | None = None) -> None:
-        """Store joints with MuJoCo's indices, or None if one has none or several axes."""
+        """Store joints and MuJoCo's indices of their axes; ``ids`` is None unless each joint has exactly one axis."""
         self.ids = ids
         self.parents = np.array([joint.parent for joint in joints], dtype=int)
         self.children = np.array([joint.child for joint in joints], dtype=int)
@@ -31,11 +31,11 @@ class JointAxes:
     def relative(self, velocities: Floats) -> tuple[Floats, Floats]:
         """Return the velocities of child links relative to their parents, for link velocities, shape (links, 6).
 
-        The array is immutable, and is queried in many configurations.
+        The result is cached, since ``velocities`` is immutable and used in many configurations.
 
         Returns:
-            Angular velocities, for sliders those of the origins, shape (joints, 3), and matrices that take the cross
-            product with the angular velocity of the parent of each slider, shape (sliders, 3, 3).
+            Angular velocities, or for sliders velocities of origins, shape (joints, 3); and for each slider the matrix
+            of the cross product with its parent's angular velocity, shape (sliders, 3, 3).
         """
         if self._seen is None or self._seen[0] is not velocities:
             apart = velocities.take(self.children, 0) - velocities.take(self.parents, 0)
@@ -59,12 +59,12 @@ class JointVelocities:
     def of_joints(self, joints: Sequence[Joint], velocities: Floats) -> list[Floats]:
         """Return the velocities of joints, active or passive, from link velocities, shape (links, 6).
 
-        The result has for each joint those of its axes [rad/s or m/s], shape (axes,).
+        For each joint, they are those of its axes [rad/s or m/s], shape (axes,).
         """
         return self._shown(velocities, JointAxes(joints, self._kinematics.body_ids))
 
     def of_dofs(self, velocities: Floats) -> Floats:
-        """Return the DOF velocities from link velocities, shape (links, 6) to (dof,)."""
+        """Return the DOF velocities, shape (dof,), from link velocities, shape (links, 6)."""
         if not np.count_nonzero(velocities):  # faster than ``any``
             return np.zeros(self._kinematics.dof)
         if self._of_dofs.special:
@@ -116,7 +116,7 @@ class JointVelocities:
         return np.linalg.pinv(np.array(columns).T) @ shown
 
     def _spherical_velocity(self, joint: Joint, turning: Floats) -> Floats:
-        """Return the rate of a rotation vector, for an angular velocity in the parent's axes."""
+        """Return the rate of a joint's rotation vector, for an angular velocity in the parent's axes."""
         spherical = next(
             (candidate for candidate in self._kinematics.spherical if candidate.joint.child == joint.child), None
         )

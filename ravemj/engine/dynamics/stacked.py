@@ -25,12 +25,12 @@ def with_base_columns(jacobians: Floats, arms: Floats) -> Floats:
     """Append the columns of a base twist to Jacobians of points, shape (k, 6, n).
 
     Args:
-        jacobians: Rows of the velocity of each point, then of its angular velocity, in world axes.
+        jacobians: Rows of the velocity of each point, then of its link's angular velocity, in world axes.
         arms: The points relative to the base's origin, in world axes [m], shape (k, 3).
 
     Returns:
         Shape (k, 6, n + 6): the last columns are the velocity of the base's origin and its angular velocity in world
-        axes, so those of a point at p are [I, -[p - o]x] above [0, I].
+        axes: [I, -[p - o]x] above [0, I] for a point p and the base's origin o.
     """
     columns = np.empty((len(arms), _BASE * _BASE))
     columns[:] = _STILL

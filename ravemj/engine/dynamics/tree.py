@@ -12,9 +12,9 @@ NONE = -1
 class CoordinateTree:
     """Tree of the velocity coordinates of the joints between links, and the links that they move.
 
-    A coordinate is one velocity of MuJoCo's: that of a hinge, a slider, an axis of a ``hinge2``, or one of the three of
-    a spherical joint; mimic joints have some, too. Coordinates are counted in the order of ``qvel`` without the free
-    joints of the roots. One comes after those that carry it.
+    A coordinate is one of MuJoCo's velocities: of a hinge, a slider, an axis of a ``hinge2``, or one of the three of a
+    spherical joint; mimic joints have coordinates, too. They are counted in the order of ``qvel`` without the free
+    joints of the roots. A coordinate comes after those that carry it.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:

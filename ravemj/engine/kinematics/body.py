@@ -46,7 +46,7 @@ class SphericalJoint(NamedTuple):
     qpos: slice
 
     def to_qpos(self, vector: Sequence[float]) -> tuple[float, float, float, float]:
-        """Return MuJoCo's quaternion, which is in the child's axes; the rotation vector is in the parent's."""
+        """Return MuJoCo's quaternion, in the child's axes, of a rotation vector in the parent's axes."""
         rest = self.joint.T_parent_child.wxyz
         turned = wxyz_from_rotation_vector((vector[0], vector[1], vector[2]))
         return multiply(conjugate(rest), multiply(turned, rest))
@@ -59,7 +59,7 @@ class SphericalJoint(NamedTuple):
 
 
 NO_QPOS = -1
-"""Index of a joint without ``qpos``, since it moves no link."""
+"""Index of a joint that moves no link and so has no ``qpos``."""
 
 _BODY, _JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 
@@ -147,7 +147,7 @@ class BodyKinematics:
         ]
 
     def _set_free_passive(self) -> None:
-        """Set passive joints that follow nothing to their first values; afterwards only physics moves them."""
+        """Set passive joints that are not mimic joints to their first values; afterwards only physics moves them."""
         body, of_passive = self.body, self.joint_qpos[len(self.first_dofs) :]
         for joint, values, places in zip(body.passive_joints, self._passive_values, of_passive, strict=True):
             if joint.mimic is not None or not places:
@@ -165,7 +165,7 @@ class BodyKinematics:
         return SphericalJoint(joint, slice(0), slice(places[0], places[0] + 4))
 
     def describe(self, body: KinBody) -> None:
-        """Update the description of the body with changed limits or masses; links and joints are the same."""
+        """Replace the description by one with other limits or masses, and the same links and joints."""
         before = self.body.links
         self.body = body
         axes = body.dof_axes
@@ -197,7 +197,7 @@ class BodyKinematics:
         self._are_multiples = len(self._multiples) == len(self.mimic.joints)
 
     def _touch(self) -> None:
-        """Mark a write of more than joint values."""
+        """Note a write of more than joint values."""
         self.stamp += 1
         self.pose_stamp = self.stamp
 
@@ -263,7 +263,7 @@ class BodyKinematics:
                 self._passive_values[mimic.joint - len(self.first_dofs)][0] = known[mimic.joint]
 
     def first_values(self, values: Floats) -> list[float]:
-        """Return the first value of each joint, active, then passive ones, for given DOF values."""
+        """Return the first value of each active, then passive joint for given DOF values."""
         plain = values.tolist()
         active = plain if len(self.first_dofs) == self.dof else [plain[first] for first in self.first_dofs]
         passive = [
@@ -276,7 +276,7 @@ class BodyKinematics:
 
     @property
     def multiples(self) -> list[tuple[int, Multiple, int]] | None:
-        """The mimic joints as affine functions of DOFs: the DOF, the equation and the index in ``qpos``; else None."""
+        """For each mimic joint its DOF, affine equation and index in ``qpos``; None if an equation is not affine."""
         return self._multiples if self._are_multiples else None
 
     def passive_values(self, index: int) -> Floats:
@@ -300,7 +300,7 @@ class BodyKinematics:
     def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
         """Copy MuJoCo's configuration from a model in which simulation moved the body.
 
-        It contains the positions of all joints, including the free joints of roots, or only those between links.
+        It contains the positions of all joints, including the free joints of roots, unless ``inner_only``.
         """
         self.qpos[self.inner_qpos if inner_only else slice(None)] = qpos
         self._touch()
@@ -312,7 +312,7 @@ class BodyKinematics:
         self._touch()
 
     def inner_index(self, qpos: int) -> int:
-        """Return the index among ``inner_qpos`` for an index into ``qpos``."""
+        """Return the index among ``inner_qpos`` of an index into ``qpos``."""
         return qpos - 7 * sum(root < qpos for root in self.root_qpos)
 
     def rest_transform(self, link: int) -> Floats:
@@ -361,7 +361,7 @@ class BodyKinematics:
             self.qpos[first + 3 : first + 7] = wxyz
 
     def configuration(self) -> Configuration:
-        """Return the state for ``restore``, also of another object for the same body."""
+        """Return the state for ``restore``, which may be that of another object for the same body."""
         passive = [list(values) for values in self._passive_values]
         model = self.model
         return Configuration(self.qpos.copy(), model.body_pos.copy(), model.body_quat.copy(), passive, self.displaced)
@@ -411,7 +411,7 @@ class BodyKinematics:
 
 
 def _others(count: int, first: list[int], width: int) -> slice | Ints:
-    """Return the indices below a count outside of ranges of one width."""
+    """Return the indices below ``count`` that are outside the ranges starting at ``first``, of length ``width``."""
     taken = {index for start in first for index in range(start, start + width)}
     return _index_range(np.array([index for index in range(count) if index not in taken], dtype=int))
 
@@ -419,7 +419,7 @@ def _others(count: int, first: list[int], width: int) -> slice | Ints:
 def fixed_view(numbers: Floats, indices: Ints) -> tuple[Floats, EllipsisType | Ints]:
     """Return an array and an index into it, for frequent writes to some elements.
 
-    For consecutive indices they are a view and ``...``, which is fastest.
+    If the indices are consecutive, these are a view and ``...``, which is fastest.
     """
     some = _index_range(indices)
     return (numbers[some], ...) if isinstance(some, slice) else (numbers, some)

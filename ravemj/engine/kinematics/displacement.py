@@ -1,9 +1,9 @@
 """Links displaced from the poses given by their joints.
 
-OpenRAVE's state are the link poses, from which it computes joint values. MuJoCo's state are joint values, from which
-``mj_kinematics`` computes the poses. To set given poses, the joint values computed from them are set, and the remaining
-displacement is written into the link's fixed pose in its parent, ``body_pos`` and ``body_quat``, so that the next
-``mj_kinematics`` reproduces these poses.
+OpenRAVE's state consists of the link poses, from which it computes joint values. MuJoCo's state consists of joint
+values, from which ``mj_kinematics`` computes the poses. To set given poses, the joint values computed from them are
+set, and the remaining displacement is written into the link's fixed pose in its parent, ``body_pos`` and ``body_quat``,
+so that the next ``mj_kinematics`` reproduces these poses.
 """
 
 from typing import TYPE_CHECKING
@@ -37,7 +37,7 @@ def place_links(kinematics: "BodyKinematics", T_world_links: Floats, last_values
 
 
 def _displace(kinematics: "BodyKinematics", placed: Floats, wanted: Floats) -> None:
-    """Change the links' fixed poses so that they reach their goals."""
+    """Change the links' fixed poses so that the links reach the wanted poses."""
     link_of = np.zeros(kinematics.model.nbody, dtype=int)
     link_of[kinematics.body_ids] = np.arange(len(placed))
     parents = link_of[kinematics.model.body_parentid[kinematics.body_ids]]
@@ -61,7 +61,7 @@ def _inverses(transforms: Floats) -> Floats:
 def fix_to_parents(model: mujoco.MjModel, data: mujoco.MjData, positions: Floats, quaternions: Floats) -> None:
     """Move joint axes to their parent links, as in OpenRAVE (random-api-234).
 
-    MuJoCo defines them in the child links; those of ``hinge2`` and spherical joints stay there. ``mj_kinematics`` must
+    MuJoCo defines axes in the child links; those of ``hinge2`` and spherical joints stay there. ``mj_kinematics`` must
     have run. ``positions`` and ``quaternions`` (wxyz) are the rest poses of links in their parents, shapes (nbody, 3)
     [m] and (nbody, 4).
     """

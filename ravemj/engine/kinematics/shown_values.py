@@ -18,7 +18,7 @@ _EYE = np.eye(4).ravel()
 class ShownValues:
     """Computes the values of a body's active joints from link poses.
 
-    It is ``measured_values`` for arrays, with constants precomputed.
+    It is a vectorized ``measured_values`` with precomputed constants.
     """
 
     def __init__(self, joints: Sequence[Joint], first_dofs: Sequence[int]) -> None:
@@ -30,7 +30,7 @@ class ShownValues:
         self._others = [pair for pair in pairs if not (pair[0].static or _has_one_axis(pair[0]))]
 
     def read(self, T_world_links: Floats, last_values: Floats) -> Floats:
-        """Return the values [rad or m], shape (dof,).
+        """Return the values [rad or m], shape (dof,), near ``last_values``.
 
         Values that differ from the last ones only by rounding are not changed, to avoid drift; hinge values are shifted
         by full turns nearest to the last ones.
@@ -70,7 +70,7 @@ class _SingleAxes:
         return R_parent_world @ T_world_links[self._children, :3, :3] @ self._R_child_parent, R_parent_world
 
     def angles(self, T_world_links: Floats) -> Floats:
-        """Return the values of hinges, at most half a turn from 0."""
+        """Return the values of hinges, within [-pi, pi]."""
         turned, _ = self._turned(T_world_links)
         products = turned.reshape(-1, 9) @ _PRODUCTS + _EYE
         largest = products[:, ::5].argmax(axis=1)  # scaled by the squares, for accuracy
@@ -97,9 +97,9 @@ def _settled(shown: Floats, last: Floats) -> Floats:
 
 
 def _products() -> Floats:
-    """Return the matrix from a rotation matrix, by rows, to four times the products of quaternion components.
+    """Return the matrix that maps a rotation matrix, by rows, to four times the products of quaternion components.
 
-    Shape (9, 16), for all products of w, x, y, z; 1 is subtracted from each square.
+    Its shape is (9, 16), for all products of w, x, y, z; squares are reduced by 1.
     """
     xx, xy, xz, yx, yy, yz, zx, zy, zz = np.eye(9)
     return (

@@ -23,10 +23,10 @@ _TEXTURES = 10
 class CompiledModel:
     """Model compiled by MuJoCo.
 
-    All values are from ``model``; ``spec`` has names, classes, and values as written.
+    Values are those of ``model``; ``spec`` has names, classes, and values as written.
 
     Attributes:
-        document: Its text.
+        document: The model's text.
         spec: MuJoCo's editable form.
         model: The compiled form.
         complaints: MuJoCo's warnings.

@@ -23,12 +23,12 @@ _TAG = re.compile(
 _ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _FOLDERS = {"mesh": ("meshdir", "assetdir"), "hfield": ("assetdir", "texturedir", "meshdir"), "model": ("assetdir",)}
 _NUMBERS = ("hfield",)
-"""Elements whose files are raw numbers of any content."""
+"""Elements that refer to files of raw numbers."""
 
 _COPIES = {"replicate": "count", "composite": "count", "flexcomp": "count"}
 _MOST_COPIES = 100_000
 _MOST_LOOKED_AT = 100
-"""Maximum number of files in a folder that are searched for the one that includes a partial model."""
+"""Maximum number of files in a folder that are searched for the model that includes a partial one."""
 
 
 class StartTag(NamedTuple):
@@ -60,10 +60,10 @@ class MjcfDocument:
     Attributes:
         path: The file, or a name for the text in messages.
         text: Its text.
-        access: The files that may be read, and those that were.
-        tags: All start tags; those of an included file stand in place of the ``<include>``.
+        access: The files that may be read, and those that were read.
+        tags: All start tags; those of an included file replace its ``<include>``.
         named: The first tag of each kind of element and name.
-        files: Tags that name files, by the end of the file's name.
+        files: Tags that name files, by the last component of the path.
         paths: Paths of these files, as far as they were found.
     """
 
@@ -94,7 +94,7 @@ class MjcfDocument:
         return document
 
     def source(self, name: str, *kinds: str) -> Source:
-        """Return the position of an element, by its name and possible tags; else the file."""
+        """Return the position of an element, by its name and possible tags; else that of the file."""
         for kind in kinds:
             if (kind, name) in self.named:
                 return self.named[kind, name].source

@@ -20,9 +20,9 @@ _ROUNDING = 1e-9
 
 
 class _Follower(NamedTuple):
-    """Equation of a joint: a polynomial in one leader's displacement, or a linear one in several.
+    """Equation of a mimic joint: a polynomial in one leader's displacement, or linear in those of several leaders.
 
-    Displacements are from ``ref``.
+    Displacements are relative to ``ref``.
     """
 
     joint: int
@@ -79,7 +79,7 @@ def _followers(model: mujoco.MjModel) -> Iterator[_Follower]:
 
 
 def _of_tendons(model: mujoco.MjModel, first: int, second: int, polynomial: list[float]) -> Iterator[_Follower]:
-    """Yield the equation of the first joint of a fixed tendon, if it is linear in the others."""
+    """Yield the equation of the first joint of a fixed tendon, if it is linear in the other joints."""
     own = _joints_of(model, first)
     other = {} if second < 0 else _joints_of(model, second)
     if own is None or other is None or not own or (other and any(polynomial[2:])):

@@ -22,7 +22,7 @@ _BALL_LIMIT = 100.0
 
 
 class JointReader:
-    """Reader of one model's joints; ``torques`` are joint limits [N m or N], 0 if unknown."""
+    """Reader of one model's joints; ``torques`` are torque limits of joints [N m or N], 0 if unknown."""
 
     def __init__(self, compiled: CompiledModel, names: ModelNames, torques: list[float]) -> None:
         self._model = compiled.model
@@ -38,7 +38,7 @@ class JointReader:
             index: MuJoCo's number of the joint.
             links: Parent and child.
             T_parent_child: Pose of the child in the parent at the joint's ``ref``.
-            T_parent_body: Pose in the parent of the frame in which anchor and axis are given.
+            T_parent_body: Pose in the parent of the MJCF body whose frame defines anchor and axis.
         """
         model, written = self._model, self.written[index]
         name, kind = self._names.joints[index], int(model.jnt_type[index])

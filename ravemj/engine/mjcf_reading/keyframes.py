@@ -16,7 +16,7 @@ HOME = "home"
 
 
 def add_keyframes(model: mujoco.MjModel, trees: Sequence[BodyTree]) -> None:
-    """Initialize bodies from the keyframe ``home``, else from the first one; named ones become configurations."""
+    """Initialize bodies from the keyframe ``home``, else from the first one; named keyframes become configurations."""
     names = [model.key(index).name for index in range(model.nkey)]
     if not names:
         return
@@ -52,7 +52,7 @@ def _joint_values(model: mujoco.MjModel, tree: BodyTree, index: int, qpos: Float
 
 
 def _root_pose(model: mujoco.MjModel, tree: BodyTree, key: int) -> Pose | None:
-    """Return the pose of a floating or mocap root; None for others."""
+    """Return the pose of a floating or mocap root; None for other roots."""
     mocap = int(model.body_mocapid[tree.root])
     if tree.free is not None:
         address = int(model.jnt_qposadr[tree.free])

@@ -10,8 +10,8 @@ _FIXED_GAIN, _NO_BIAS = int(mujoco.mjtGain.mjGAIN_FIXED), int(mujoco.mjtBias.mjB
 def joint_torques(model: mujoco.MjModel) -> list[float]:
     """Return the torque or force limit of each joint [N m or N]; 0 if the model has none.
 
-    It is the smaller of the joint's limit and that of its strongest actuator: its force limit, or its control limit if
-    it is a motor, times its gear.
+    It is the smaller of the joint's limit and that of its strongest actuator. An actuator's limit is its force limit,
+    or the control limit of a motor, times the gear.
     """
     given = [0.0] * model.njnt
     for index in range(model.nu):

@@ -1,4 +1,4 @@
-"""Values of a compiled model, and those as written.
+"""Values of a compiled model, restored to those written in the file.
 
 MuJoCo normalizes quaternions and axes and turns inertias into principal axes. Written values that differ from compiled
 ones only by rounding are used, so that files written by ravemj are restored exactly.
@@ -40,7 +40,7 @@ def pose(written: tuple[ArrayLike, ArrayLike], compiled: tuple[ArrayLike, ArrayL
 
 
 def tensor(moments: Floats, wxyz: Wxyz) -> Rows:
-    """Return the inertia tensor with principal moments along rotated axes, shape (3,)."""
+    """Return the inertia tensor with principal ``moments``, shape (3,), along axes rotated by ``wxyz``."""
     if wxyz == UNIT_WXYZ:
         xx, yy, zz = (float(part) for part in moments)
         return ((xx, 0.0, 0.0), (0.0, yy, 0.0), (0.0, 0.0, zz))

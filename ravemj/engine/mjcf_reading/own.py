@@ -34,7 +34,7 @@ _COLOUR_NEAR = 1e-6
 def own_bodies(
     reader: TreeReader, touching: Sequence[Pair], diagnostics: Diagnostics
 ) -> list[tuple[KinBody, set[int]]]:
-    """Return the bodies in texts, each with MuJoCo's indices of its root bodies."""
+    """Return the bodies in the model's texts, each with MuJoCo's indices of its root bodies."""
     bodies: list[tuple[KinBody, set[int]]] = []
     for text in reader.compiled.spec.texts:
         if not text.name.startswith(PREFIX):
@@ -53,7 +53,7 @@ def own_bodies(
 
 
 def own_scene(reader: TreeReader, diagnostics: Diagnostics) -> tuple[Scene | None, tuple[Pair, ...]]:
-    """Return the scene properties in a text, and the pairs of MuJoCo bodies that touched at the start."""
+    """Return the scene properties in a text of the model, and the pairs of MuJoCo bodies that touched at the start."""
     for text in reader.compiled.spec.texts:
         if text.name == SCENE:
             source = reader.compiled.document.source(text.name, "text")
@@ -90,7 +90,7 @@ class _GeomRecorder(XmlLines):
 
 
 class _OwnBody:
-    """Body from a text, to be compared with the MJCF.
+    """Body from a text of the model, to be compared with the MJCF.
 
     Attributes:
         roots: MuJoCo's numbers of its root bodies.
@@ -106,7 +106,7 @@ class _OwnBody:
         self.roots = {number for link, number in enumerate(self._bodies) if link not in self._placing}
 
     def check_fit(self) -> None:
-        """Compare the trees of bodies and joints.
+        """Compare the trees of bodies and joints with the MJCF.
 
         Raises:
             ValueError: they differ.
@@ -262,7 +262,7 @@ class _OwnBody:
         return (*(pair for pair in self._body.adjacent if ordered_pair(*pair) not in lost), *added)
 
     def _with_tools(self, body: KinBody) -> KinBody:
-        """Return a body with tools at their sites."""
+        """Return a body with the tools moved to their sites."""
         sites = {site.name: site for site in self._reader.compiled.spec.sites}
         arms = list(body.manipulators)
         for index, arm in enumerate(arms):

@@ -1,4 +1,4 @@
-"""Conversion of pairs that MuJoCo never tests to adjacent links."""
+"""Pairs that MuJoCo never tests become adjacent links."""
 
 from itertools import combinations
 
@@ -36,7 +36,7 @@ def _geoms(model: mujoco.MjModel, body: int, colliding: set[int]) -> list[int]:
 
 
 def _named_pairs(model: mujoco.MjModel) -> set[tuple[int, int]]:
-    """Return the pairs of bodies in ``<pair>``, by their geoms."""
+    """Return the pairs of bodies whose geoms are named in ``<pair>``."""
     bodies = zip(
         model.geom_bodyid[model.pair_geom1].tolist(), model.geom_bodyid[model.pair_geom2].tolist(), strict=True
     )

@@ -37,7 +37,7 @@ _GRAY = (0.5, 0.5, 0.5, 1.0)
 
 _FIRST_HIDDEN_GROUP = 3
 _THICKNESS, _REACH = 0.005, 5.0
-"""Half extents of the box that replaces an infinite plane [m]: thickness, and each side."""
+"""Half extents of the box that replaces an infinite plane [m]: along its normal, and along its sides."""
 
 _Type = mujoco.mjtGeom
 
@@ -78,7 +78,7 @@ class GeomReader:
         self.colliding = {index for index in range(model.ngeom) if masks[index] or index in pairs}
 
     def add(self, link: LinkBuilder, body: int) -> None:
-        """Add the geoms of a body to a link. Non-colliding ones are drawn, and form the group ``visual``."""
+        """Add the geoms of a body to a link. Non-colliding geoms are drawn, and form the group ``visual``."""
         first, model = int(self._model.body_geomadr[body]), self._model
         geoms = [self._geom(index) for index in range(first, first + int(model.body_geomnum[body]))]
         visual = {geom.group for geom in geoms if not geom.collides}
@@ -108,7 +108,7 @@ class GeomReader:
         return self._model.mesh(number).name if self.kind(index) == "mesh" and number >= 0 else None
 
     def pose_of(self, index: int) -> Pose:
-        """Return the pose of a geom in its body; for a mesh, that of its file's frame."""
+        """Return the pose of a geom in its body; for a mesh, the pose of the mesh file's frame."""
         return self._shape(index)[1]
 
     def mesh_of_name(self, name: str) -> Mesh:
@@ -154,7 +154,7 @@ class GeomReader:
         )
 
     def _rgba(self, index: int) -> tuple[float, float, float, float]:
-        """Return colour and opacity as the shortest decimals of single-precision values: those that were written."""
+        """Return colour and opacity as the shortest decimals of single-precision values, as in the file."""
         rgba, material = self._model.geom_rgba[index], int(self._model.geom_matid[index])
         if material >= 0 and tuple(rgba.tolist()) == _GRAY:
             rgba = self._model.mat_rgba[material]
@@ -162,7 +162,7 @@ class GeomReader:
         return red, green, blue, opacity
 
     def _shape(self, index: int) -> tuple[Shape | None, Pose, MeshFile | None]:
-        """Return the shape of a geom, its pose in the link, and its file; None as shape of unsupported types."""
+        """Return the shape of a geom (None if unsupported), its pose in the link, and its mesh file."""
         model, written = self._model, self._written[index]
         compiled = model.geom_pos[index], model.geom_quat[index]
         kind, size = int(model.geom_type[index]), vector(model.geom_size[index])
@@ -176,7 +176,7 @@ class GeomReader:
         return _SHAPES[kind](size) if kind in _SHAPES else None, T_link_geom, None
 
     def _mesh(self, index: int, T_link_geom: Pose) -> tuple[Shape | None, Pose, MeshFile | None]:
-        """Return a mesh in the frame of its file; MuJoCo moves it to its centre."""
+        """Return a mesh in the frame of its file; MuJoCo has moved it to its centre."""
         number, written = int(self._model.geom_dataid[index]), self._written[index]
         if number < 0:
             return None, T_link_geom, None
@@ -190,7 +190,7 @@ class GeomReader:
         return Pose(vector(self._model.mesh_pos[number]), quaternion(self._model.mesh_quat[number]))
 
     def _read_mesh(self, number: int, T_file_mesh: Pose) -> tuple[Mesh, MeshFile | None]:
-        """Return a mesh, and its file; for files written by ravemj, it is read from the file, which has more digits."""
+        """Return a mesh and its file; a file written by ravemj is read, since it has more digits than MuJoCo's mesh."""
         model, written = self._model, self._compiled.spec.meshes[number]
         path = self._compiled.document.paths.get(base_name(written.file))
         own = None if path is None else read_written(path)

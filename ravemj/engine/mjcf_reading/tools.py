@@ -33,7 +33,7 @@ _SIZE = (640, 480)
 
 
 def add_manipulators(reader: TreeReader, trees: Sequence[BodyTree], context: Context) -> None:
-    """Add an arm for each tool site; robots without one get guessed arms."""
+    """Add an arm for each tool site; robots without tool sites get guessed arms."""
     for tree in trees:
         if not tree.builder.is_robot:
             continue

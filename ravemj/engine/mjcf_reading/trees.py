@@ -18,7 +18,7 @@ from ravemj.model.scene import Inertial
 from ravemj.model.shape_bodies import MASSLESS
 
 WORLD = "world"
-"""Name of the body with the world's own shapes; its link has another, since MuJoCo's world body has this one."""
+"""Name of the body with the world's own shapes; its link has another name, since MuJoCo's world body has this one."""
 
 
 @dataclass
@@ -28,7 +28,7 @@ class BodyTree:
     Attributes:
         root: MuJoCo's index of the body.
         builder: The body under construction.
-        links: Link index of each MuJoCo body, by its index.
+        links: Link index of each MuJoCo body, by MuJoCo's index.
         joints: The moving joints, by MuJoCo's index.
         free: MuJoCo's index of the root's free joint, or None.
     """

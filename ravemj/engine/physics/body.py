@@ -9,7 +9,7 @@ from ravemj.engine.simulation import BodyState
 
 
 class PhysicalBody:
-    """Body in the physics model, in which its roots may be free; it exchanges its state with the simulation.
+    """Body in the physics model, in which its roots may be free.
 
     ``rows`` are the indices of the velocity coordinates of ``state.dynamics.tree`` in ``qvel``.
     """
@@ -50,7 +50,7 @@ class PhysicalBody:
 
     @property
     def can_move(self) -> bool:
-        """Whether it has a joint or is not fixed."""
+        """Whether it has a moving joint or its base is free."""
         return self.part.is_free or len(self.rows) > 0
 
     def give_velocities(self) -> None:

@@ -1,7 +1,7 @@
-"""Proof of a grasp by physics: fingers press, the hand lifts and is shaken, and the object should not move in it.
+"""Proof of a grasp by physics: the fingers press, the hand is lifted and shaken, and the object should not move in it.
 
-MuJoCo simulates the hand and the object as ``ravemj convert`` translates them, without what stands around. The hand
-never rotates, so that the simulation is done in its frame: an acceleration ``a`` of the hand acts on the object as the
+MuJoCo simulates the hand and the object as ``ravemj convert`` translates them, without their surroundings. The hand
+never rotates, so the simulation is done in its frame: an acceleration ``a`` of the hand acts on the object as the
 gravity ``g - a``. The object has no weight until the fingers press.
 """
 
@@ -72,7 +72,7 @@ def prove(robot: BodyState, arm: Manipulator, target: BodyState, friction: float
     Args:
         robot: The robot, in the configuration of the closed grasp. The caller holds the lock.
         arm: Its manipulator.
-        target: The object, where the hand grasps it. It may be static in the model.
+        target: The object at its pose in the grasp. It may be static in the model.
         friction: Friction coefficient of hand and object.
         gravity: Gravity in the world [m/s^2], shape (3,).
     """
@@ -82,8 +82,8 @@ def prove(robot: BodyState, arm: Manipulator, target: BodyState, friction: float
 class _Experiment:
     """Model of a hand that is fixed to the world, and of an object.
 
-    The joints of the arm are removed, so that the hand is where joint values of 0 take it. Object and gravity are moved
-    and rotated with it.
+    The joints of the arm are removed, so the hand has its pose at joint values of 0. Object and gravity are transformed
+    accordingly.
     """
 
     def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, friction: float) -> None:
@@ -103,7 +103,7 @@ class _Experiment:
         self._pressed = self._pressing_forces(hand_names)
 
     def _edit(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
-        """Remove the joints of the arm, damp those that close, and lock the others of the hand."""
+        """Remove the joints of the arm, damp the closing joints, and lock the others of the hand."""
         signs = dict(zip(self._arm.gripper_dofs, self._arm.chucking_direction, strict=True))
         removed: set[str] = set()
         dof = 0
@@ -127,7 +127,7 @@ class _Experiment:
         option.cone, option.integrator = mujoco.mjtCone.mjCONE_ELLIPTIC, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
 
     def _copy_values(self, state: BodyState, names: BodyNames) -> None:
-        """Copy joint values; the joints of the arm do not exist any more."""
+        """Copy the values of the remaining joints."""
         kinematics = state.kinematics
         for places, joint_names in zip(kinematics.joint_qpos, names.joints, strict=True):
             for place, name in zip(places, joint_names, strict=True):
@@ -169,7 +169,7 @@ class _Experiment:
         return forces
 
     def run(self, gravity: Floats) -> Proof:
-        """Press, lift and shake, until the object has moved too far."""
+        """Press the fingers on, lift and shake the object; stop early if it moves too far in the hand."""
         model, data = self._model, self._data
         rotation = self._T_model_world[:3, :3]
         model.opt.gravity[:] = 0.0
@@ -192,7 +192,7 @@ class _Experiment:
 
 
 def _accelerations(gravity: Floats) -> Iterator[Floats]:
-    """Yield the acceleration of the hand in the world at each time step, shape (3,): up, then to and fro."""
+    """Yield the acceleration of the hand in the world at each time step, shape (3,): up, then back and forth."""
     length = float(np.linalg.norm(gravity))
     up = -gravity / length if length else np.array([0.0, 0.0, 1.0])
     count = round(_LIFTING / _TIMESTEP)
@@ -205,7 +205,7 @@ def _accelerations(gravity: Floats) -> Iterator[Floats]:
 
 
 def _fixed(robot: KinBody) -> KinBody:
-    """Return a robot whose base does not move, and that holds nothing."""
+    """Return a robot with a fixed base and without grabbed bodies."""
     return replace(robot, grabs=(), links=(replace(robot.links[0], static=True), *robot.links[1:]))
 
 

@@ -11,7 +11,7 @@ from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.simulation import BodyState
 
 _FREQUENCY = 15.0
-"""Natural frequency of the dragging spring [rad/s]: it settles within a fifth of a second, with a sag of 4 cm."""
+"""Natural frequency of the dragging spring [rad/s]: it settles within 0.2 s, and sags by 4 cm."""
 
 
 @dataclass
@@ -48,7 +48,7 @@ class Loads:
         self._moments[link] = moment + add * self._moments[link]
 
     def apply(self, body: PhysicalBody) -> None:
-        """Apply torques and forces to a body in the physics model, until they are replaced."""
+        """Apply the loads to a body in the physics model, until they are replaced."""
         data = body.data
         data.xfrc_applied[body.body_ids] = np.hstack([self._forces, self._levers + self._moments])
         if self.torques.any():
@@ -57,7 +57,7 @@ class Loads:
             data.qfrc_applied[body.rows] += np.linalg.lstsq(columns.T, self.torques)[0]
 
     def drive(self, body: PhysicalBody, applied: Floats) -> None:
-        """Apply the motor: the torques with which the joints reach their velocities after a time step.
+        """Apply the torques of the motor with which joints reach their velocities after a time step.
 
         The accelerations of the model must be computed; ``applied`` are the other joint forces, shape (nv,).
         """
@@ -99,12 +99,12 @@ class Spring:
 
     @property
     def place(self) -> Floats:
-        """Present world position of the point [m], shape (3,)."""
+        """Current world position [m] of the link's point where the spring acts, shape (3,)."""
         T_world_link = self.state.link_transform(self.link)
         return T_world_link[:3, :3] @ self.point + T_world_link[:3, 3]
 
     def act(self, body: PhysicalBody, applied: Floats) -> None:
-        """Apply the spring during the next time step, in addition to ``applied``, shape (bodies, 6).
+        """Apply the spring during the next time step, in addition to the forces ``applied``, shape (bodies, 6).
 
         The force is m (w^2 d - 2 w v), critically damped, with d the vector to the goal, v the velocity of the point
         and m the effective mass: the inverse of the mean of the diagonal of J M^-1 J^T.

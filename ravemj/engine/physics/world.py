@@ -49,7 +49,7 @@ class Physics:
         return self._loads[state]
 
     def step(self, timestep: float) -> None:
-        """Advance by a time [s], and copy the result to the simulation."""
+        """Advance the dynamics by a time [s], and copy poses and velocities to the simulated bodies."""
         self.prepare()
         model, data = self._model, self._data
         count = math.ceil(timestep / LONGEST_STEP)
@@ -152,8 +152,8 @@ class Physics:
     def link_acceleration(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
         """Return the acceleration of a link's origin minus gravity, and its angular acceleration.
 
-        These are the reading of an accelerometer [m/s^2], upwards at rest, and [rad/s^2], each of shape (3,), in world
-        axes; zero before the first step.
+        The first is the reading of an accelerometer [m/s^2], upwards at rest; the second is in rad/s^2. Both are of
+        shape (3,), in world axes; zero before the first step.
         """
         body_id, acceleration = self._body_id(state, link), np.zeros(6)
         if body_id is not None:
@@ -171,7 +171,7 @@ class Physics:
     def contacts(self) -> tuple[Floats, Floats]:
         """Return the points of all contacts of the last step [m], and the force at each [N], each (n, 3), in the world.
 
-        The force is that on the movable body, or on either of two movable bodies.
+        The force acts on the movable body, or on one of two movable bodies.
         """
         touches, fixed = self._touches(), self._model.body_weldid == 0
         return _columns((point, -push if fixed[sides[1]] else push) for sides, point, push in touches)
@@ -202,12 +202,12 @@ class Physics:
         return int(body.body_ids[link])
 
     def _wrench(self, body_id: int, spatial: Floats, point: Floats) -> tuple[Floats, Floats]:
-        """Return force, and torque about a point, from a spatial force with torque about the tree's centre of mass."""
+        """Return the force and its torque about a point, from a spatial force about the tree's centre of mass."""
         center = self._data.subtree_com[self._model.body_rootid[body_id]]
         return spatial[3:].copy(), spatial[:3] - np.cross(point - center, spatial[3:])
 
     def _give_back(self) -> None:
-        """Copy the state to the simulation."""
+        """Copy poses and velocities to the simulated bodies."""
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_comVel(self._model, self._data)
@@ -225,6 +225,6 @@ class Physics:
 
 
 def _columns(pairs: Iterable[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
-    """Return the first and the second vectors of pairs, each of shape (n, 3)."""
+    """Return the first and the second vectors of pairs, shape (n, 3) each."""
     both = np.array(list(pairs)).reshape(-1, 2, 3)
     return both[:, 0], both[:, 1]

@@ -28,7 +28,7 @@ _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
 
 class GrabbedBody(NamedTuple):
-    """Body grabbed by a link of another."""
+    """Body grabbed by a link of another body."""
 
     body: "BodyState"  # the grabbed body
     link: int  # index of the grabbing link
@@ -123,7 +123,7 @@ class BodyState:
 
     @property
     def kinematics(self) -> BodyKinematics:
-        """``own_kinematics`` of a body in the world; OpenRAVE has no joint values outside of it.
+        """``own_kinematics`` of a body in the world; in OpenRAVE, bodies outside of it have no joint values.
 
         Raises:
             RavemjError: the body is not in the world.
@@ -145,7 +145,7 @@ class BodyState:
 
     @property
     def batch(self) -> "Batch":
-        """The chain of links prepared for many configurations; errors as for ``kinematics``."""
+        """Chain of links, prepared for many configurations; errors as for ``kinematics``."""
         dynamics = self.dynamics
         if self._batch is None:
             from ravemj.engine.batch import Batch  # noqa: PLC0415 - slow to import
@@ -189,13 +189,13 @@ class BodyState:
         self.carry()
 
     def enter_limits(self) -> None:
-        """Let joints that are outside their limits go to them."""
+        """Clamp joint values to their limits."""
         kinematics = self.known_kinematics
         if kinematics is not None and not kinematics.limits.contain(values := kinematics.values()):
             self.set_values(kinematics.limits.clamp(values))
 
     def set_transform(self, T_world_link0: Floats) -> None:
-        """Move the body rigidly, keeping joint values, by the pose of its first link, shape (4, 4)."""
+        """Move the body rigidly to the pose of its first link, shape (4, 4); joint values are kept."""
         self.will_move()
         self.own_kinematics.set_transform(T_world_link0)
         self.carry()
@@ -215,8 +215,8 @@ class BodyState:
 
         Args:
             T_world_links: Shape (links, 4, 4).
-            last_values: Joint values [rad or m], shape (dof,), nearest to which hinge values are shifted by full turns;
-                only for a body in the world. None means the present values.
+            last_values: Joint values [rad or m], shape (dof,); hinge values are shifted by the full turns nearest to
+                them. Only for a body in the world; None means the present values.
         """
         kinematics = self.own_kinematics if last_values is None else self.kinematics
         self.will_move()
@@ -229,7 +229,7 @@ class BodyState:
         self.carry()
 
     def will_move(self) -> None:
-        """Mark the model as outdated. Called before links move, so that an interrupt cannot skip it."""
+        """Mark the model as outdated. It is called before links move, so that an interrupt cannot skip it."""
         self.stamp += 1
         if self.index:
             self.simulation.changed.add(self)
@@ -265,7 +265,7 @@ class BodyState:
         grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
 
     def set_velocity(self, linear: Floats, angular: Floats) -> None:
-        """Set a rigid motion: the velocity of the first link's origin [m/s] and an angular velocity [rad/s]."""
+        """Set the link velocities of a rigid motion: of the first link's origin [m/s], and angular [rad/s]."""
         origins = self.link_transforms()[:, :3, 3]
         velocities = np.empty((len(origins), 6))
         velocities[:, :3] = linear + cross_rows(angular, origins - origins[:1])
@@ -315,7 +315,7 @@ class BodyState:
         self._velocities = other.link_velocities()
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
-        """Change the description of the body except for links and joints: names, limits, manipulators."""
+        """Change fields of the description, such as name, limits or manipulators, but not links and joints."""
         scene = replace(self.scene, **changes)
         if not changes.keys().isdisjoint(("joints", "passive_joints")) and _welds(scene) != _welds(self.scene):
             self.remake(scene)
@@ -367,7 +367,7 @@ class BodyState:
             self.set_geometries(link, geometries)
 
     def edit_joint(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Joint
-        """Change the description of a joint; the index counts active joints and then passive ones."""
+        """Change the description of a joint, given by its index among active, then passive joints."""
         joints = list(self.scene.all_joints)
         joints[index] = _still_moving(joints[index], replace(joints[index], **changes))
         count = len(self.scene.joints)
@@ -381,7 +381,7 @@ class BodyState:
 
 
 def _still_moving(before: Joint, after: Joint) -> Joint:
-    """Return ``after``, still movable if ``before`` was: limits of scripts weld nothing (random api-91001-36)."""
+    """Return ``after``, still movable if ``before`` was: limits set by scripts do not weld (random api-91001-36)."""
     return replace(after, keeps_moving=True) if after.static and not before.static else after
 
 

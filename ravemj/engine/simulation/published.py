@@ -8,7 +8,7 @@ from ravemj.core.transforms import Floats
 
 
 class Published:
-    """Copy of the state of the world that is readable without the lock of the simulation."""
+    """Copy of the world's state that is readable without the lock of the simulation."""
 
     def __init__(self) -> None:
         self.number = 0  # number of copies so far
@@ -26,7 +26,7 @@ class Published:
             self.number += 1
 
     def copy_to(self, data: mujoco.MjData, model: mujoco.MjModel) -> bool:
-        """Copy the state to that of a viewer; return False without a change if it is of another model."""
+        """Copy the state into a viewer's data; return False without a change if it belongs to another model."""
         with self._lock:
             if self._data is None or self._model is not model:
                 return False
@@ -34,7 +34,7 @@ class Published:
             return True
 
     def poses(self, model: mujoco.MjModel) -> tuple[Floats, Floats] | None:
-        """Return positions (B, 3) [m] and quaternions wxyz (B, 4) of a model's bodies; None for another model."""
+        """Return positions (B, 3) [m] and quaternions wxyz (B, 4) of the bodies; None if they are of another model."""
         with self._lock:
             if self._data is None or self._model is not model:
                 return None

@@ -19,7 +19,7 @@ class BodyRecord(NamedTuple):
         rest_poses: See ``BodyState``.
         configuration: Joint values and link poses; None if they are those of the description.
         velocities: Link velocities, shape (links, 6).
-        grabs: Grabs: the index of each body, the link, ``T_link_body`` and the ignored links.
+        grabs: For each grab: index of the body, link, ``T_link_body`` and ignored links.
     """
 
     scene: KinBody

@@ -78,7 +78,7 @@ class Simulation:
         return body
 
     def insert(self, body: BodyState, index: int | None = None) -> None:
-        """Add a body at its present pose, with a free index, by default the first.
+        """Add a body at its present pose, with an unused index; by default the first.
 
         Raises:
             RavemjError: a body of that name is already there, or the name is empty.
@@ -138,7 +138,7 @@ class Simulation:
         """Give a body another name.
 
         Raises:
-            RavemjError: the name is empty, or both bodies are in the world and another one has it.
+            RavemjError: the name is empty, or the body is in the world and another one there has the name.
         """
         with self.lock:
             if self.holds(body):
@@ -161,7 +161,7 @@ class Simulation:
             raise RavemjError(f"there already is a body '{name}' in the environment", ErrorCode.BodyNameConflict)
 
     def free_name(self, name: str) -> str:
-        """Return a name that no body has: the given one, if possible, else with a number appended."""
+        """Return a name that no body has: ``name`` if possible, else with a number appended."""
         number, free = self._next_numbers.get(name, 0), name or "_"
         while free in self._by_name:
             free = f"{name}{number}"

@@ -63,7 +63,7 @@ class WorldModel(Compiled):
         return self._parts[body]
 
     def take(self, bodies: Iterable[BodyState]) -> None:
-        """Take over what changed of some bodies: joint values, poses, masses, colours."""
+        """Copy changes of some bodies: joint values, poses, masses, colours."""
         parts, described = self._parts, self._described
         for body in bodies:
             part, scene = parts[body], body.scene
@@ -79,7 +79,7 @@ class WorldModel(Compiled):
         mujoco.mj_kinematics(self.model, self.data)
 
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
-        """Update masses of links and colours of geometries; surfaces drawn instead of a shape keep theirs."""
+        """Update masses of links and colours of geometries; surfaces drawn instead of a shape keep their colours."""
         from ravemj.formats.mjcf import rgba  # noqa: PLC0415 - slow to import
 
         for old, link, body_id, counts in zip(before, links, part.body_ids.tolist(), part.names.geoms, strict=True):
@@ -103,5 +103,5 @@ class WorldModel(Compiled):
 
 
 def _is_at_reference(body: KinBody) -> bool:
-    """Return whether the loaded joint values are those for which MuJoCo compiles the poses."""
+    """Return whether the loaded joint values are those at which MuJoCo compiles the poses."""
     return all(axis.value == axis.reference for joint in body.all_joints for axis in joint.axes)

@@ -135,7 +135,7 @@ class GeometryReader:
             self._library.warn("broken-mesh", message, element)
 
     def _colours(self, instance: Element, symbol: str) -> tuple[Rgb, Rgb, float]:
-        """Return the diffuse and the ambient colour and the transparency of a group."""
+        """Return diffuse colour, ambient colour and transparency of the primitives with the material ``symbol``."""
         if instance not in self._bound:
             self._bound = {instance: bindings(instance)}  # for all of its groups, which come one after the other
         bound = self._bound[instance]

@@ -69,7 +69,7 @@ class ExtraReader:
         return index
 
     def _joint(self, element: Element, scope: Element) -> int | None:
-        """Return the index of the joint of an element; None, with a warning, if it does not exist."""
+        """Return the index of the joint that an element refers to; None, with a warning, if it does not exist."""
         path = element.get("joint") or ""
         index = self._found(path, scope, self.joints)
         if index is None:

@@ -152,7 +152,7 @@ def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -
 
 
 def remedy(backend: str) -> str:
-    """Return what makes a backend work that does not."""
+    """Return advice on how to make an unavailable backend work."""
     if backend == "egl" and _DEVICE in os.environ:
         return f"unset {_DEVICE}, or set it to the number of a GPU"
     return INSTALL[backend]

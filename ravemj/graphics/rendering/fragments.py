@@ -229,7 +229,7 @@ class Raster:
 
 
 def _whole_screen(count: int) -> tuple[Floats, Floats]:
-    """Return the corners of unbounded rectangles, shape (count, 2) each."""
+    """Return lower and upper bounds of ``count`` rectangles without bounds: -inf and inf, shape (count, 2) each."""
     return np.full((count, 2), -np.inf), np.full((count, 2), np.inf)
 
 

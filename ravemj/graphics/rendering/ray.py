@@ -191,9 +191,12 @@ class _RayScene:
         return colors
 
     def cast(self, rays: Floats) -> tuple[NDArray[np.int32], Floats, Floats]:
-        """Return the first hits of rays, shape (N, 3): geom ids, -1 for none; depths; outer unit normals, shape (N, 3).
+        """Cast rays from the camera in given directions, shape (N, 3).
 
         Like OpenGL, it ignores shapes seen from inside. Meshes are visible from both sides.
+
+        Returns:
+            Of the first hit of each ray: geom id (-1: none), depth, and outer unit normal, shape (N, 3).
         """
         count = len(rays)
         geom_ids = np.empty(count, dtype=np.int32)

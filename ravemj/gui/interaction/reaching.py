@@ -75,7 +75,7 @@ class Reach:
         self._free = self._free_joint()
 
     def _free_joint(self) -> int | None:
-        """Return the free joint of a redundant arm, whose value is arbitrary while the link stays; else None.
+        """Return the redundant joint, whose value is arbitrary while the link keeps its pose; None if there is none.
 
         Of several candidates it is the joint that moves most in the null space.
         """
@@ -88,7 +88,7 @@ class Reach:
 
     @property
     def free_dof(self) -> int | None:
-        """The free DOF of a redundant arm, or None."""
+        """The DOF of the redundant joint, or None."""
         return None if self._free is None else self._dofs[self._free]
 
     @property
@@ -96,7 +96,7 @@ class Reach:
         return self.body.kinematics.values()[self._dofs]
 
     def follow(self, ray: ViewRay) -> None:
-        """Move the link towards the intersection of the ray and the drag plane."""
+        """Move the link's grabbed point towards the intersection of the pointer's ray and the drag plane."""
         goal = in_plane(ray, self._point, self._normal)
         if goal is not None:
             self._T_world_goal[:3, 3] = goal
@@ -115,7 +115,7 @@ class Reach:
             self._come_near(self._values + _SWEEP * steps * self._self_motion(self._free))
 
     def sweep_to(self, value: float) -> None:
-        """Move the free joint to a value [rad or m] while the link stays, as far as the limits permit."""
+        """Move the redundant joint to a value [rad or m] while the link keeps its pose, as far as limits permit."""
         free = self._free
         if free is None:
             return
@@ -144,8 +144,8 @@ class Reach:
     def ghosts(self) -> Primitives:
         """Return drawings of the other IK solutions for the link's present pose: lines from joint to joint.
 
-        They are the closed-form solutions, with the present values of free joints; none if there is no closed form.
-        Solid links would be megabytes per second for pages, which receive all drawings with every frame.
+        They are closed-form solutions with the present value of the redundant joint; none if there is no closed form.
+        Drawings of solid links would take megabytes per second, since pages receive all drawings with every frame.
         """
         solver, values = self._solver, self._values
         if solver.closed is None:
@@ -169,7 +169,7 @@ def _ghost(points: Floats) -> Primitives:
 
 
 def _arm_to(body: KinBody, base: int, link: int, place: Floats) -> Manipulator:
-    """Return the arm from a base link to a point of another link, in that link's frame [m], shape (3,)."""
+    """Return the arm from link ``base`` to a point [m] in the frame of another link."""
     way = chain(body, base, link) or []
     moving = [index for index in way if index < len(body.joints) and not body.joints[index].static]
     if not moving:

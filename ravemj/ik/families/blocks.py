@@ -15,7 +15,7 @@ from ravemj.ik.vectors import Floats, Screw, constant, cross, dot, perpendicular
 
 
 class RigidMotion(NamedTuple):
-    """Rigid motion as functions of vectors (3, B, N) that apply it."""
+    """Rigid motion as two functions that apply it to directions and to points, shape (3, B, N)."""
 
     turned: Callable[[Floats], Floats]
     moved: Callable[[Floats], Floats]
@@ -30,9 +30,9 @@ class Wrist:
 
     Attributes:
         centre: The point, shape (3, 1, 1).
-        side: A direction perpendicular to the last axis, shape (3, 1, 1), whose goal determines the last joint.
+        side: A direction perpendicular to the last axis, shape (3, 1, 1), whose required image gives the last joint.
         phase: Cosine and sine of the middle joint at the smallest angle between the outer axes.
-        gaps: 1 - cos of the smallest angle between them, and 1 + cos of the largest.
+        gaps: 1 - cos of the smallest angle between the outer axes, and 1 + cos of the largest.
     """
 
     names = ((1, 2),)
@@ -48,7 +48,7 @@ class Wrist:
         self.side = constant(perpendicular(c))
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return the name of the family and its reason, for joints of these indices."""
+        """Return the name of the family and the reason, for joints with these indices."""
         return "spherical wrist", f"the axes of joints {_numbers(joints)} meet in a point"
 
     def solve(self, needed: RigidMotion) -> list[Floats]:
@@ -61,9 +61,9 @@ class Wrist:
         return [turn, two, turn_between(last, self.side, middle.turned_back(two, side))]
 
     def _middle(self, tip: Floats) -> Floats:
-        """Return both turns of the middle joint for a direction of the last axis.
+        """Return both turns of the middle joint for a direction ``tip`` of the last axis.
 
-        They are computed from distances of unit vectors, since the cosine of their angle would lose half of the digits
+        They are computed from distances of unit vectors, since the cosine of the angle would lose half of the digits
         if the outer axes nearly coincide.
         """
         axis = self.screws[0].axis
@@ -77,7 +77,7 @@ class Wrist:
 
 
 class Planar:
-    """Three joints of a planar motion: revolute ones with parallel axes, prismatic ones perpendicular to them.
+    """Three joints of a planar motion: revolute ones with parallel axes, prismatic ones perpendicular to these.
 
     The two joints before the last revolute one carry a point of its axis; the last one gives the remaining rotation. If
     the last joint is prismatic, the block is solved from its other end.
@@ -112,12 +112,12 @@ class Planar:
 
     @property
     def names(self) -> tuple[tuple[int, int], ...]:
-        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
+        """Return the joints with several solutions: index, 0 to 2, and number of solutions."""
         names = self._carry.names if self._carry is not None else []
         return tuple((2 - joint if self.backward else joint, count) for joint, count in names)
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return the name of the family and its reason, for joints of these indices."""
+        """Return the name of the family and the reason, for joints with these indices."""
         return "parallel axes", f"joints {_numbers(joints)} move a plane in itself"
 
     def solve(self, motion: RigidMotion) -> list[Floats]:

@@ -11,12 +11,12 @@ from ravemj.ik.vectors import Floats, Screw, cross, dot, tile
 
 Screws = Sequence[Screw]
 _NEAR = 1e-9
-"""Length, in units of the reach, and sine of an angle below which these are 0 by the arm's geometry."""
+"""Tolerance of zero lengths, divided by the reach, and of zero sines of angles in the arm's geometry."""
 
 
 @dataclass(frozen=True)
 class Plane:
-    """Planes carried by joints: a normal and a point, both of shape (3, B, N)."""
+    """Planes moved by joints: a normal and a point, both of shape (3, B, N)."""
 
     normal: Floats
     point: Floats
@@ -77,13 +77,13 @@ class CarryPoint:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
+        """Return the joints with several solutions: index, 0 to 2, and number of solutions."""
         return _names(self.pair)
 
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
         """Return the values of the joints, turns (2, B, N) or distances (1, B, N), that carry points (3, B, N).
 
-        Joints shared by all poses are those of the examples.
+        Joints shared by all poses must be those of the examples.
         """
         first, middle, third = screws
         one, three = self.pair.solve(*self._sides(screws, start, goal))
@@ -133,7 +133,7 @@ class CarryPlane:
 
     @property
     def names(self) -> list[tuple[int, int]]:
-        """Return the choices of a solution: index of the joint, 0 to 2, and number of options."""
+        """Return the joints with several solutions: index, 0 to 2, and number of solutions."""
         if self.pair is not None:
             return _names(self.pair)
         return [(2 if self.slider != 2 else 1, 2)]
@@ -168,11 +168,11 @@ class CarryPlane:
 
 
 class NoFamilyError(Exception):
-    """The geometry does not belong to this family."""
+    """The arm's geometry does not belong to a family."""
 
 
 def _plane_side(joint: Screw, middle: Screw, foot: Floats, plane: Plane, sign: float) -> Side:
-    """Return a plane's invariants of the middle joint: the tilt against its axis, and the offset from a point on it."""
+    """Return the invariants of a plane under the middle joint: tilt against its axis, and offset from a point on it."""
     direction = Screw(joint.axis, np.zeros((3, 1, 1)))
     side = Measure(middle.axis, joint.point - foot, sphere=False).side(direction, plane.normal, sign)
     offset = dot(plane.normal, plane.point - joint.point)

@@ -9,7 +9,7 @@ from ravemj.ik.vectors import Floats, Transform, cross, dot
 
 
 class Gantry:
-    """Arm whose three revolute joints give the orientation, after which its three prismatic joints are linear."""
+    """Arm whose three revolute joints give the orientation, and whose three prismatic joints then give the position."""
 
     coupled, equations = False, "a quadratic equation"
 
@@ -31,7 +31,7 @@ class Gantry:
         self.why = "three other joints give the orientation, and the place is linear in their values"
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
+        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
         return [(self.order[self.turning[joint]], count) for joint, count in self.wrist.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

@@ -34,7 +34,7 @@ _UNIT = np.einsum("x,y,z->xyz", *[_HALF[0]] * 3).reshape(3, 9)
 
 
 class General:
-    """General six-revolute arm as a closed loop; any joint can be the first, in either direction.
+    """General six-revolute arm as a closed loop, which can start at any joint, in either direction.
 
     If axes intersect or are parallel, the elimination fails for some of these choices, so all are tried.
     """
@@ -43,7 +43,7 @@ class General:
     coupled, shared, equations = True, False, "an eigenvalue problem of 24 rows"
 
     def __init__(self, arm: Arm, shift: int, *, backward: bool) -> None:
-        """Arrange the joints in a loop that starts at one of them, backward from the tool to the base.
+        """Arrange the joints in a loop that starts at joint ``shift``; ``backward`` reverses it, from tool to base.
 
         Raises:
             NoFamilyError: the joints are not six revolute ones, or there are locked ones between them.
@@ -59,7 +59,7 @@ class General:
         self._shared_left = None if shift else _left(self._screws)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the choices of a solution: index of the joint, number of options."""
+        """Return the joint with several solutions: index, number of solutions."""
         return [(self.order[2], _BRANCHES)]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
@@ -97,7 +97,7 @@ def _left(screws: Sequence[Screw]) -> Floats:
 
 
 def _carried(screws: Sequence[Screw], turns: Sequence[Floats]) -> Floats:
-    """Return the fourteen quantities of the elimination after joints 3, 4 and 5, for turns (2, B, N); (14, B, N)."""
+    """Return the fourteen quantities of the elimination, (14, B, N), after turns (2, B, N) of joints 3, 4 and 5."""
     line, point = screws[5].axis, screws[5].point
     for screw, turn in zip(screws[4:1:-1], turns[::-1], strict=True):
         line, point = screw.turned(turn, line), screw.moved(turn, point)
@@ -151,7 +151,7 @@ def _eigen(matrix: Floats) -> list[Floats]:
 
 
 def _ratio(low: NDArray[np.complex128], high: NDArray[np.complex128]) -> Floats:
-    """Return the ratio of monomials that differ by one power, shape (16, N), at the largest pair for accuracy."""
+    """Return the ratio of monomials that differ by one power, shape (16, N), from the largest pair."""
     low, high = (part.reshape(len(part), -1, part.shape[-1]) for part in (low, high))
     best = np.argmax(np.abs(low) + np.abs(high), axis=1)[:, None]
     below, above = np.take_along_axis(low, best, axis=1)[:, 0], np.take_along_axis(high, best, axis=1)[:, 0]

@@ -21,11 +21,11 @@ Locked = Mapping[int, Floats]
 
 @dataclass(frozen=True, eq=False)
 class Arm:
-    """Arm as input of a family, with lengths in units of its reach.
+    """Arm as input of a family; lengths are divided by its reach.
 
     Attributes:
         screws: The joints.
-        joints: Index of each in the chain; -1 for added joints, which must be 0.
+        joints: Index of each joint in the chain; -1 for added joints, which must be 0.
         locked: Positions of joints whose values are given.
     """
 
@@ -82,7 +82,7 @@ class Family(Protocol):
     shared: bool
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
+        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
         ...
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
@@ -134,7 +134,7 @@ def _moved(transform: Transform | None, points: Floats) -> Floats:
 
 
 Step = Callable[[Screw, Floats, Floats], Floats]
-"""Method of ``Screw`` that moves vectors by a joint value."""
+"""Method of ``Screw`` that moves vectors, given a joint value."""
 
 
 class _Around:
@@ -213,7 +213,7 @@ class BlockFamily:
         return points, (Plane(normals[0], points[0]), Plane(normals[1], points[1]))
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
+        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
         around = [(self.circle.places[joint], count) for joint, count in self.carry.names]
         return around + [(self.circle.block[joint], count) for joint, count in self.inside.names]
 
@@ -242,7 +242,7 @@ class PointFamily:
         """Find the solution method from examples of motions, of which only the translation matters.
 
         Raises:
-            NoFamilyError: the joints cannot carry it to arbitrary positions.
+            NoFamilyError: the joints cannot carry the tool to arbitrary positions.
         """
         self.arm, self.tool = arm, tool
         self.order = arm.free(range(len(arm.screws)))
@@ -267,7 +267,7 @@ class PointFamily:
         return screws, _moved(seen, self.tool)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the choices of a solution, the fastest first: index of the joint, number of options."""
+        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
         return [(self.order[joint], count) for joint, count in self.carry.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

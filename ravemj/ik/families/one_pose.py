@@ -1,7 +1,7 @@
-"""Solver of a single pose in plain floats, for six revolute joints with a spherical wrist or shoulder.
+"""Solver of a single pose in Python floats, for six revolute joints with a spherical wrist or shoulder.
 
 The equations are those of ``BlockFamily`` with a ``Wrist``. For one pose, the overhead of a numpy call is fifty times
-its arithmetic, so plain floats are twice as fast.
+its arithmetic, so Python floats are twice as fast.
 """
 
 from math import sqrt
@@ -14,9 +14,9 @@ from ravemj.ik.vectors import TINY, Floats, Screw
 
 Vector = tuple[float, float, float]
 Turn = tuple[float, float]
-"""Cosine and sine."""
+"""Cosine and sine of an angle."""
 Motion = tuple[Vector, Vector, Vector, Vector]
-"""Rows of a rotation, and a translation."""
+"""Rotation by rows, and translation."""
 
 
 class OnePose:
@@ -77,7 +77,7 @@ class OnePose:
         ]
 
     def _outer(self, start: Vector, goal: Vector) -> list[tuple[Turn, Turn]]:
-        """Return the turns of the first and the third joint of those that carry the centre from a start to a goal."""
+        """Return the first and third turns of three joints that carry the centre from a start to a goal, by branch."""
         sides = self._numbers(self._arm[0], goal, -1.0), self._numbers(self._arm[2], start, 1.0)
         rest = sides[1][0][0] - sides[0][0][0], sides[1][0][1] - sides[0][0][1]
         side, equation = self._alone
@@ -100,7 +100,7 @@ class OnePose:
         return turns_found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
-        """Return the invariants of the middle joint for a point moved by another joint: constants and factors."""
+        """Return the invariants of the middle joint for a point moved by another joint; see ``Side``."""
         axis, at = line
         one, centre = self._measure
         arm = _minus(point, at)

@@ -16,15 +16,15 @@ from ravemj.ik.subproblems import normalized, solve_linear, solve_parabola, solv
 from ravemj.ik.vectors import Floats, Screw, dot, tile
 
 NEGLIGIBLE = 1e-9
-"""Relative size below which a coefficient, in all examples, is 0 by the arm's geometry."""
+"""Relative size below which a coefficient is 0 by the arm's geometry, if it is in all examples."""
 
 
 class Side(NamedTuple):
-    """Two invariants of one side: constant + factors · (cos, sin), or (value, value²), of its joint.
+    """Two invariants of one side: constant + factors · (cos, sin) of its joint, or factors · (value, value²).
 
     Attributes:
-        constant: For both equations, shape (2, B, N).
-        factors: For both equations, two each, shape (2, 2, B, N).
+        constant: Constants of both equations, shape (2, B, N).
+        factors: Two factors of each equation, shape (2, 2, B, N).
     """
 
     constant: Floats
@@ -37,7 +37,7 @@ class Measure:
 
     Attributes:
         first: The first invariant is the dot product of this vector with the point or normal, shape (3, B, N).
-        second: The same for the second invariant; for spheres the centre of squared distances.
+        second: Vector of the second invariant, or for spheres the centre of squared distances.
         sphere: Whether the second invariant is a squared distance.
     """
 
@@ -46,7 +46,7 @@ class Measure:
     sphere: bool
 
     def side(self, joint: Screw, point: Floats, sign: float) -> Side:
-        """Return the invariants of points moved by a joint, or moved backwards if the sign is -1.
+        """Return the invariants of points moved by a joint, or moved backwards if ``sign`` is -1.
 
         For a normal, the caller omits the joint's point and its distance.
         """
@@ -166,7 +166,7 @@ class Pair:
         return solve_parabola(factors[0], factors[1], rest)
 
     def _both_sliding(self, factors: tuple[Floats, Floats], rest: Floats) -> tuple[Floats, Floats]:
-        """Solve for two distances: eliminate x by the first equation, which is linear."""
+        """Solve for two distances: eliminate one by the first equation, which is linear."""
         slope, start = -factors[1][0, 0] / factors[0][0, 0], rest[0] / factors[0][0, 0]
         (a1, b1), (a3, b3) = factors[0][1], factors[1][1]
         linear, square = a3 + a1 * slope + 2 * b1 * start * slope, b3 + b1 * slope * slope
@@ -175,7 +175,7 @@ class Pair:
         return tile(start, other.shape[-2]) + slope * other, other
 
     def _slider_and_turn(self, slider: Floats, turn: Floats, rest: Floats) -> tuple[Floats, Floats]:
-        """Solve for a distance, linear in the turn x by the first equation, and x by the second."""
+        """Solve for a distance and a turn: eliminate the distance by the first equation, which is linear in it."""
         start, slope = rest[0] / slider[0, 0], -turn[0] / slider[0, 0]
         a, b = slider[1]
         k = a * start + b * start * start - rest[1]

@@ -20,15 +20,15 @@ from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, Transform, constant, perpendicular, turn_of
 
 EXACT = 1e-9
-"""Lengths and sines of angles below this are 0 in nominal geometry."""
+"""Tolerance of zero lengths and sines of angles in nominal geometry."""
 _EXAMPLES = 24
 _SEED = 20
 
 
 def families(nominal: Chain, task: Task, locked: Sequence[int]) -> Iterator[Family]:
-    """Yield methods that solve an arm of exact geometry, in units of its reach.
+    """Yield methods that solve an arm of nominal geometry, with lengths divided by its reach.
 
-    The fastest come first if several are known without trials.
+    Of methods for the same completed arm, the fastest come first.
     """
     arm = _arm(nominal, locked)
     free = nominal.dof - len(locked)
@@ -66,7 +66,7 @@ def _arm(nominal: Chain, locked: Sequence[int]) -> Arm:
 
 
 def _of(arm: Arm) -> Iterator[Family]:
-    """Return the families that an arm of six joints belongs to."""
+    """Yield the families that an arm of six joints belongs to."""
     for ordered in _orders(arm):
         examples = _examples(ordered, np.zeros((3, 1, 1)))
         with contextlib.suppress(NoFamilyError):
@@ -91,7 +91,7 @@ def _block(arm: Arm, block: int, examples: tuple[Transform, Locked]) -> Iterator
 
 
 def _orders(arm: Arm) -> Iterator[Arm]:
-    """Return equivalent joint orders; a prismatic and a revolute joint on one axis commute."""
+    """Yield equivalent joint orders; a prismatic and a revolute joint with parallel axes commute."""
     yield arm
     for toward_tool in (True, False):
         order = list(range(len(arm.screws)))
@@ -114,7 +114,7 @@ def _commute(arm: Arm, slider: int, other: int) -> bool:
 
 
 def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
-    """Return motions of an arm in random configurations, and the values of its locked joints there."""
+    """Return motions of an arm in random configurations, and the values of its locked joints."""
     rng = np.random.default_rng(_SEED)
     seen: Transform | None = None
     locked: dict[int, Floats] = {}
@@ -130,7 +130,10 @@ def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
 
 
 def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
-    """Yield the arm completed by missing joints, those that add the fewest to a block first."""
+    """Yield variants of an arm with ``missing`` joints added.
+
+    First, all are appended at the tool; then one, two or three of them complete a block (see ``blocks``).
+    """
     if missing < 0:
         return
     if missing == 0:
@@ -144,7 +147,7 @@ def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
 
 
 def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
-    """Return arms in which existing joints and joints added after them form a block."""
+    """Yield arms with a block of existing joints and ``added`` new ones; ``more`` are appended at the tool."""
     size = 3 - added
     for place in range(len(arm.screws) - size + 1):
         around = range(place, place + size)
@@ -154,7 +157,7 @@ def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
 
 
 def _third(screws: Sequence[Screw], added: int) -> Iterator[list[Screw]]:
-    """Yield the joints that complete two, one or no joints to a block."""
+    """Yield sets of ``added`` joints that complete the given ones to a block of three."""
     turning = [screw for screw in screws if not screw.prismatic]
     if not turning:
         if not screws:
@@ -196,5 +199,5 @@ def _inserted(arm: Arm, place: int, screws: Sequence[Screw]) -> Arm:
 
 
 def _generic(count: int) -> Floats:
-    """Return vectors without special directions, so that added axes are neither parallel nor intersecting by chance."""
+    """Return vectors in no special direction, so that added axes are neither parallel nor intersecting."""
     return np.array([[0.37, -0.29, 0.41], [-0.23, 0.43, 0.31]])[:count]

@@ -13,11 +13,11 @@ from ravemj.ik.families.blocks import common_point
 from ravemj.ik.vectors import Bools, Floats, Screw, constant
 
 TOLERANCE = 1e-5
-"""Lengths, in units of the reach, and sines of angles up to this are snapped to 0."""
+"""Lengths, divided by the reach, and sines of angles up to this are snapped to 0."""
 
 
 def nominal(chain: Chain) -> Chain:
-    """Return a chain with exact parallels, right angles and intersections, and lengths in units of the reach."""
+    """Return a chain with exact parallels, right angles and intersections; lengths are divided by the reach."""
     axes = _aligned(chain.axes)
     points = _joined(axes, chain.points / chain.reach, chain.prismatic)
     tool = chain.T_base_tool.copy()

@@ -156,7 +156,10 @@ def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bo
 
 
 def _distinct(candidates: list[Pair]) -> list[Pair]:
-    """Return pairs without doubles, in either order of their points."""
+    """Return point pairs without duplicates: (a, b) is the same as (b, a).
+
+    Refused pairs are duplicates if their first points are equal.
+    """
     seen: set[tuple[tuple[int, ...], ...]] = set()
     distinct: list[Pair] = []
     for pair in candidates:

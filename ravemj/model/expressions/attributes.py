@@ -7,7 +7,7 @@ from ravemj.model.expressions.nodes import ExpressionError
 
 
 class Replacements(dict[str, str]):
-    """Replacement of each name.
+    """Map from names to replacements.
 
     Attributes:
         lengths: The lengths of the names, the largest first.
@@ -18,7 +18,7 @@ class Replacements(dict[str, str]):
         self.lengths = sorted({len(name) for name in names if name}, reverse=True)
 
     def found_in(self, text: str) -> Iterator[tuple[int, str]]:
-        """Yield the positions and names found in a text, the longest of several names at one position."""
+        """Yield the positions and names found in a text; at each position, the longest name."""
         at = 0
         while at < len(text):
             parts = (text[at : at + length] for length in self.lengths)
@@ -38,8 +38,8 @@ def substitute(text: str, names: Mapping[str, str]) -> str:
 
     From left to right, the longest joint name at each position is replaced; replacements are not scanned again. Word
     boundaries and functions are ignored: a joint called ``s`` turns ``sin(x)`` into ``joint0in(x)``, and the equation
-    is invalid. Names may have any characters (``/arm/j01``). Other text stays, so equations may also say ``joint0``,
-    and the second axis of joint ``u`` is ``u_1``.
+    is invalid. Names may have any characters (``/arm/j01``). Other text is kept, so equations may also contain
+    ``joint0``, and the second axis of joint ``u`` is ``u_1``.
     """
     names = names if isinstance(names, Replacements) else Replacements(names)
     parts: list[str] = []
@@ -68,8 +68,8 @@ def before_substitution(error: ExpressionError, text: str, names: Replacements) 
 def partials(text: str) -> dict[str, str]:
     """Return the expressions in ``mimic_vel`` or ``mimic_accel``, ``|name expression |name expression``, by name.
 
-    Every ``|`` starts a partial derivative, so they cannot use the logical operator. Text before the first one defines
-    inline variables for all of them. If a name is repeated, the last one is used.
+    Every ``|`` starts a partial derivative, so expressions cannot use the logical operator. Text before the first ``|``
+    defines inline variables for all of them. If a name is repeated, the last one is used.
 
     Raises:
         ExpressionError: If a name or an expression is missing.
@@ -90,11 +90,11 @@ def partials(text: str) -> dict[str, str]:
 
 
 def linear_mimic(text: str) -> tuple[str, str, str]:
-    """Translate the deprecated attribute ``mimic="J a b"``; without b it is 0.
+    """Translate the deprecated attribute ``mimic="J a b"``; if b is missing, it is 0.
 
     Returns:
-        The equation of the position, ``J*a+b`` with six digits behind the points, and those of the velocity and of the
-        acceleration, both ``|J a``.
+        The equation of the position, ``J*a+b`` with six decimals, and those of the velocity and of the acceleration,
+        both ``|J a``.
 
     Raises:
         ExpressionError: the text is not a name and one or two finite numbers.

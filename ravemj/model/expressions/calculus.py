@@ -1,6 +1,6 @@
 """Derivatives of expressions, by the chain rule over the nodes in order.
 
-Each node adds a few new ones, so the size of a derivative is proportional to that of the equation.
+Each node adds a few new nodes, so the size of a derivative is proportional to that of the equation.
 """
 
 import math
@@ -73,7 +73,7 @@ class Algebra:
 
 
 def is_number(node: Node, value: float) -> bool:
-    """Return whether a node is this constant."""
+    """Return whether a node is the constant ``value``."""
     return isinstance(node, Number) and node.value == value
 
 
@@ -156,7 +156,7 @@ def _smaller(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
-    """Return the derivative of a root: the negative differentiated polynomial over the slope of the original."""
+    """Return the derivative of a root: minus the polynomial with differentiated coefficients, divided by its slope."""
     change, steepness = slopes[0], algebra.number(0.0)
     value = node.arguments[0]
     for coefficient, slope in zip(node.arguments[1:], slopes[1:], strict=True):

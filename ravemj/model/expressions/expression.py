@@ -20,8 +20,7 @@ Compiled = Callable[[Sequence[float]], float]
 MOST_NESTED = 40
 
 _MOST_NODES = 20_000
-"""Maximum number of nodes of an equation with all its values: more than any robot needs, few enough for malicious text.
-"""
+"""Maximum number of nodes of an equation with all its values, which no robot needs and malicious text may exceed."""
 
 
 def parse(text: str, variables: Collection[str]) -> "Expression":
@@ -41,8 +40,8 @@ def parse(text: str, variables: Collection[str]) -> "Expression":
 class Expression:
     """Function of named variables; undefined values are nan, never exceptions.
 
-    Some functions have several values, for instance the two of ``polyroots2``. ``within`` gives the expression with the
-    first value within limits; all other methods use the first value.
+    Some functions have several values, for instance two in ``polyroots2``. ``within`` returns the expression that
+    selects the first value within limits; all other methods use the first value.
 
     Attributes:
         root: The last of the nodes.
@@ -99,7 +98,7 @@ class Expression:
     def compiled(self, order: Sequence[str] | None = None) -> Compiled:
         """Return a fast form of ``evaluate``: a function of a list, tuple or one-dimensional array.
 
-        It consists of nested closures without look-ups. Values are in the given order, which may include unused
+        It consists of nested closures without look-ups. Values are in the order ``order``, which may include unused
         variables; by default in that of ``variables``.
         """
         names = self.variables if order is None else tuple(order)
@@ -198,7 +197,7 @@ def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
 def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
     """Return a node for the first value of an equation within limits, else for its first value; see ``within``.
 
-    A root used twice has the same value in both uses.
+    A multivalued function that is used twice has the same value in both uses.
     """
     several = [node for node in nodes if isinstance(node, Call) and FUNCTIONS[node.function].most_roots > 1]
     choices = list(product(*(range(FUNCTIONS[node.function].most_roots) for node in several)))

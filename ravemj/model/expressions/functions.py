@@ -1,8 +1,8 @@
 """OpenRAVE's multivalued functions: roots of polynomials, and triangle functions for linkages.
 
 Their values are sorted best first; the tuple is empty if there is none. In the names of the triangle functions, S is a
-side and A an angle, in the order around the triangle; the last letter is the result. Only their names are known for
-certain; arguments and order follow from the geometry.
+side and A an angle, in the order around the triangle; the last letter is the result. In OpenRAVE, only the names are
+documented; arguments and order follow from the geometry.
 """
 
 import functools
@@ -90,9 +90,9 @@ class Function:
 
     Attributes:
         arity: Number of arguments.
-        scalar: From floats to a float.
-        array: From arrays of one shape to an array of that shape; may warn, so call it within ``np.errstate``.
-        roots: For multivalued functions, from floats to all values, best first; else None.
+        scalar: Function of floats that returns a float.
+        array: Function of arrays of one shape that returns such an array; it may warn, so use ``np.errstate``.
+        roots: For multivalued functions, a function of floats that returns all values, best first; else None.
         most_roots: Maximum number of values.
     """
 
@@ -166,7 +166,7 @@ def _nearest_arrays(x: Floats) -> Floats:
 
 
 def is_true(x: float) -> bool:
-    """Return whether a condition holds: whether its nearest integer is not 0."""
+    """Return whether a number used as a condition is true: whether its nearest integer is not 0."""
     return abs(x) >= 0.5
 
 
@@ -218,7 +218,7 @@ def _several(arity: int, roots: Roots, most_roots: int) -> Function:
 
 
 def _root(arity: int, roots: Roots, index: int) -> Function:
-    """Make a function that returns one of several values, or nan if there are fewer."""
+    """Make a function that returns the root number ``index`` of its arguments, or nan if there are fewer roots."""
 
     def root(*arguments: float) -> float:
         values = roots(*arguments)
@@ -228,7 +228,7 @@ def _root(arity: int, roots: Roots, index: int) -> Function:
 
 
 def nth(function: str, index: int) -> str:
-    """Return the internal name of the function for one value of a multivalued function."""
+    """Return the internal name of the function that returns value ``index`` of a multivalued function."""
     return f"{function}#{index}"
 
 

@@ -13,7 +13,7 @@ class ExpressionError(ArgumentError):
     """Invalid equation; a one-line message with the position.
 
     Attributes:
-        problem: The error, without the place.
+        problem: The error, without the position.
         position: Index of the character in the text, from 0; its length if the text ends too early.
         expected: The expected text; may be empty.
     """
@@ -66,15 +66,15 @@ class Graph:
         self._known = {_key(node): node for node in nodes}
 
     def number(self, value: float) -> Node:
-        """Return the constant."""
+        """Return the node of a constant."""
         return self._only(Number(value))
 
     def variable(self, name: str) -> Node:
-        """Return the variable."""
+        """Return the node of a variable."""
         return self._only(Variable(name))
 
     def call(self, function: str, *arguments: Node) -> Node:
-        """Return a call, or its value if all arguments are numbers."""
+        """Return the node of a call, or its value if all arguments are numbers."""
         definition = FUNCTIONS[function]
         if definition.roots is None:
             numbers = [node.value for node in arguments if isinstance(node, Number)]
@@ -87,7 +87,7 @@ class Graph:
 
 
 def _key(node: Node) -> tuple[object, ...]:
-    """Return a key that is equal for equal nodes, given that their arguments are the same objects."""
+    """Return a key that is equal for equal nodes; equal arguments must be the same objects."""
     match node:
         case Number(value):
             return (Number, repr(value))  # distinguishes -0.0 from 0.0, and treats all nan as equal

@@ -46,7 +46,7 @@ _OPERAND = "a number, a joint, a function or '('"
 
 
 class Token(NamedTuple):
-    """Token of the text; empty at the end."""
+    """Token of the text; it is empty at the end."""
 
     kind: str
     text: str
@@ -113,7 +113,7 @@ class _EquationParser:
             left = self._graph.call(function, left, self._expression(precedence + 1))
 
     def _operand(self) -> Node:
-        """Parse an element, its power and the unary operators before them."""
+        """Parse an element, its power, and unary operators before it."""
         signs: list[str] = []
         while self._next.text in _UNARY:
             signs.append(_UNARY[self._next.text])

@@ -13,7 +13,7 @@ MAX_PRODUCTS = 1000  # maximum number of terms in one multiplication, against ma
 Coefficients = tuple[float, ...]  # ascending
 
 _Polynomial = dict[tuple[str, ...], float]
-"""Nonzero coefficients by product of variables: that of x^2 y is at ("x", "x", "y"), the constant at ()."""
+"""Nonzero coefficients by product of variables: the key of x^2 y is ("x", "x", "y"), that of the constant ()."""
 
 
 def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficients | None:

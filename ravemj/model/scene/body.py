@@ -21,11 +21,11 @@ class Manipulator(Record):
         direction: Direction of the tool, a unit vector in its own frame.
         arm_dofs: DOFs of the joints from base to effector.
         gripper_joints: Indices of the active joints of the gripper.
-        gripper_dofs: Their DOFs.
-        chucking_direction: Closing sign of each of these DOFs: 1, 0 or -1.
+        gripper_dofs: DOFs of the gripper joints.
+        chucking_direction: Closing sign of each gripper DOF: 1, 0 or -1.
         source: The element that it comes from.
-        gripper_name: Name of what describes the gripper; empty where nobody says.
-        ik_solver: Name of the solver of inverse kinematics that the file asks for, and numbers for it; else empty.
+        gripper_name: Name of the gripper's description; may be empty.
+        ik_solver: Name of the IK solver that the file requests, and numbers for it; may be empty.
     """
 
     name: str
@@ -50,7 +50,7 @@ class AttachedSensor(Record):
         name: Its name.
         link: Index of the link that carries it, or None.
         T_link_sensor: Its pose in the link.
-        type: OpenRAVE's name of the kind of sensor, or None for a frame without a device.
+        type: OpenRAVE's name of the sensor type, or None for a frame without a device.
         device: Its constant properties; None for a frame or an unknown type.
         source: The element that it comes from.
         is_on: Whether it measures from the start.
@@ -86,8 +86,8 @@ class Grab(Record):
     Attributes:
         body: Name of the grabbed body in the same scene.
         link: Index of the grabbing link.
-        T_link_body: Its pose in the link.
-        ignored: Indices of the holder's links whose collisions with it are ignored.
+        T_link_body: Pose of the body in the link.
+        ignored: Indices of the grabbing body's links whose collisions with the grabbed one are ignored.
     """
 
     body: str
@@ -102,7 +102,7 @@ class NamedConfiguration(Record):
 
     Attributes:
         name: Its name.
-        values: Values by the names of joints [rad or m]; other joints do not change.
+        values: Values by joint name [rad or m]; other joints do not change.
     """
 
     name: str
@@ -122,9 +122,9 @@ class KinBody(Record):
         adjacent: Pairs of link indices that ``<adjacent>`` names.
         joined_links_adjacent: Whether links that a joint connects count as adjacent.
         manipulators: Arms.
-        has_active_manipulator: Whether the first one is active; of a robot that OpenRAVE refuses none is.
+        has_active_manipulator: Whether the first manipulator is active; False for robots that OpenRAVE rejects.
         sensors: Sensors on links.
-        grabs: The bodies that it holds after loading.
+        grabs: The bodies that it has grabbed after loading.
         description: A text for people.
         element: Id of the body in a COLLADA file that has several; else empty.
         configurations: Named configurations: the group states of an SRDF.

@@ -22,7 +22,7 @@ AXES: dict[JointKind, str] = {
     "pr": "RP",
     "pp": "PP",
 }
-"""Axes of each joint kind, the carrying one first: R revolute, P prismatic; the names are in reverse order."""
+"""Axes of each joint kind, R revolute or P prismatic, the carrying one first; ``rp`` and ``pr`` name it last."""
 
 OWN_SHAPES = "self"
 """Name of the group of a link's own shapes, stored while another group replaces them."""
@@ -70,7 +70,7 @@ class Link(Record):
     Attributes:
         name: Its name.
         T_world_link: Its pose after loading.
-        inertial: Its mass properties, as the file gives them.
+        inertial: Its mass properties, as in the file.
         geometries: Its shapes, in document order.
         static: True for ``type="static"``.
         enabled: Whether it takes part in collision checks.
@@ -98,27 +98,27 @@ class Axis(Record):
 
     Attributes:
         direction: Unit vector in the frame of the joint's parent link.
-        reference: The value at which ``Joint.T_parent_child`` holds.
+        reference: The value at which the joint has the pose ``Joint.T_parent_child``.
         value: The value after loading.
         lower: Lower limit [rad or m].
         upper: Upper limit [rad or m].
-        circular: Whether it rotates without limits, which are then ±``UNLIMITED``.
+        circular: Whether it rotates without limits; the limits are then ±``UNLIMITED``.
         weight: Weight in distances between configurations.
         resolution: Step of planners [rad or m].
         max_velocity: Velocity limit [rad/s or m/s].
         max_acceleration: Acceleration limit [rad/s^2 or m/s^2].
         max_jerk: Jerk limit [rad/s^3 or m/s^3].
-        max_torque: Torque or force limit [N m or N], that of the motor at rest if there is one; 0 if unknown.
-        joint_torque: The limit of the joint itself if its motor has another one; None means ``max_torque``.
-        speed_torques: Speeds [rad/s or m/s] and the motor's torque limits at them; none means ``max_torque``.
-        max_inertia: Limit of the inertia that it moves [kg m^2 or kg]; 0 if unknown.
+        max_torque: Torque or force limit [N m or N]; with a motor, its limit at rest. 0 if unknown.
+        joint_torque: Limit of the joint itself if its motor has a different one; None means ``max_torque``.
+        speed_torques: Speeds [rad/s or m/s] with the motor's torque limits; empty means ``max_torque`` at any speed.
+        max_inertia: Limit of the moved inertia [kg m^2 or kg]; 0 if unknown.
         hard_max_velocity: Velocity that planners never exceed [rad/s or m/s]; 0 if unknown.
-        hard_max_acceleration: Acceleration that they never exceed.
-        hard_max_jerk: Jerk that they never exceed.
+        hard_max_acceleration: Acceleration that planners never exceed.
+        hard_max_jerk: Jerk that planners never exceed.
         armature: Inertia of a motor behind its gear [kg m^2].
         coulomb_friction: Friction of a motor at any speed [N m].
         viscous_friction: Friction of a motor per speed [N m s/rad].
-        wrap_offset: The value about which scripts chose the turn that the value is in [rad].
+        wrap_offset: Centre [rad] of the full turn to which scripts wrap the value.
     """
 
     direction: Vec3
@@ -158,7 +158,7 @@ RARE_NUMBERS = (
     "hard_max_jerk",
     "wrap_offset",
 )
-"""Fields of axes that few files have, and COLLADA lacks: names of ravemj's own attributes there."""
+"""Fields of axes that few files have and COLLADA lacks; ravemj writes them to COLLADA as attributes of its own."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -166,7 +166,7 @@ class Mimic(Record):
     """Equations of a mimic joint.
 
     Attributes:
-        position: The equation as written; it has the names of the joints.
+        position: The equation as written, with the names of joints.
         velocity: The partial derivatives as written.
         acceleration: The second derivatives as written.
         expression: The equation over ``joint0``, ``joint1``, … (active joints, then passive ones); None if mimic joints
@@ -191,13 +191,13 @@ class Joint(Record):
             first carries the second: ``hinge2``, or with prismatic axes ``rp``, ``pr`` and ``pp``; see ``AXES``.
         parent: Index of the link nearer to link 0.
         child: Index of the link farther from link 0.
-        T_parent_child: Relative pose of the two at ``Axis.reference``.
+        T_parent_child: Pose of the child in the parent at ``Axis.reference``.
         anchor: A point on the axis, in the parent's frame.
         axes: Its degrees of freedom.
         places_child: False for a joint that closes a loop: another joint places its child.
-        keeps_moving: True if a script set limits that leave no room: as in OpenRAVE, only files make welds.
-        mimic: How it follows other joints, or None.
-        parameters: What scripts attach to it.
+        keeps_moving: True if a script set equal limits: as in OpenRAVE, only limits from files make welds.
+        mimic: Its mimic equations, or None.
+        parameters: Named values attached by scripts.
         source: The element that it comes from.
     """
 
@@ -237,10 +237,10 @@ class Joint(Record):
 
     @property
     def static(self) -> bool:
-        """True for a weld: a joint whose limits left no room when its body was made."""
+        """True for a weld: a joint without range when its body was made."""
         return not (self.has_room or self.keeps_moving)
 
     @property
     def has_room(self) -> bool:
-        """True if an axis can move within its limits."""
+        """True if an axis is circular or its lower limit is below the upper one."""
         return any(axis.lower < axis.upper or axis.circular for axis in self.axes)

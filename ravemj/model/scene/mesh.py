@@ -23,9 +23,8 @@ class Mesh:
     """Triangle mesh; meshes compare by value.
 
     Attributes:
-        vertices: Shape (n, 3) [m]; read-only.
-        triangles: Indices of the corners of each triangle, counter-clockwise seen from outside, shape (m, 3);
-            read-only.
+        vertices: Vertices [m], shape (n, 3); read-only.
+        triangles: Vertex indices of each triangle, counter-clockwise seen from outside, shape (m, 3); read-only.
         known_digest: A cached ``digest``, else empty, since hashing a large mesh is slow.
     """
 
@@ -57,7 +56,7 @@ class Mesh:
         return Mesh(self.vertices @ T_a_mesh[:3, :3].T + T_a_mesh[:3, 3], self.triangles)
 
     def bounds(self, T_a_mesh: Floats) -> Bounds:
-        """Return the bounding box of the vertices in frame a; without vertices, the origin of the mesh frame."""
+        """Return the bounding box of the vertices in frame a; if there are none, the origin of the mesh frame."""
         if not len(self.vertices):
             return Bounds(T_a_mesh[:3, 3], T_a_mesh[:3, 3])
         vertices = self.vertices @ T_a_mesh[:3, :3].T + T_a_mesh[:3, 3]

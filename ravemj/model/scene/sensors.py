@@ -12,7 +12,7 @@ from ravemj.core.transforms import ZERO, Vec3
 from ravemj.model.scene.record import Record
 
 MOST_RAYS = 1_000_000
-"""Maximum number of rays per measurement; more indicate a wrong unit."""
+"""Maximum number of rays per measurement; a larger number indicates a wrong unit."""
 
 _WIDEST = 16_384
 """Maximum number of pixels along a side of an image; OpenGL's limit."""
@@ -49,14 +49,14 @@ class Laser(Record):
     Attributes:
         min_angle: First angle of a scan [rad].
         max_angle: Maximum angle of a scan [rad].
-        resolution: Step between rays [rad].
+        resolution: Angle between rays [rad].
         min_range: Start distance of a ray [m].
         max_range: End distance of a ray [m].
         scan_time: Time between scans [s].
         time_increment: Time between the rays of a real scanner [s]; here all rays of a scan have the same time.
         spins: Whether the scan plane rotates.
         spin_axis: Rotation axis, of any length.
-        spin_position: A point on that axis [m].
+        spin_position: A point on the rotation axis [m].
         spin_speed: Rotation speed [rad/s].
     """
 
@@ -148,13 +148,13 @@ class ForceTorque(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Imu(Record):
-    """Inertial measurement unit; covariances are 3 x 3 matrices by rows, which are only passed on.
+    """Inertial measurement unit; covariances are 3 x 3 matrices by rows, which are not used but passed on.
 
     Attributes:
         scan_time: Time between measurements [s].
-        rotation_covariance: Of the orientation [rad^2].
-        angular_velocity_covariance: Of the angular velocity [rad^2/s^2].
-        linear_acceleration_covariance: Of the acceleration [m^2/s^4].
+        rotation_covariance: Covariance of the orientation [rad^2].
+        angular_velocity_covariance: Covariance of the angular velocity [rad^2/s^2].
+        linear_acceleration_covariance: Covariance of the acceleration [m^2/s^4].
     """
 
     scan_time: float = 0.0
@@ -220,7 +220,7 @@ class SensorKind(NamedTuple):
     """Type of sensor.
 
     Attributes:
-        name: OpenRAVE's name of it in XML.
+        name: OpenRAVE's name of the type in XML.
         device: The default properties.
     """
 

@@ -240,7 +240,7 @@ class Container(Shape):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Prism(Shape):
-    """Walls along z over the edges of a polygon, without top and bottom.
+    """Walls along z on the edges of a polygon, without top and bottom.
 
     Attributes:
         cross_section: The polygon.
@@ -281,8 +281,9 @@ class ShapeType(NamedTuple):
     Attributes:
         shape: The class.
         name: Its name in ``GeometryType``.
-        xml: The ``type`` of a ``<Geom>``; None if XML has none.
-        collada: Elements of a ``geometry_info`` in COLLADA; those of capsules, prisms and empty shapes are ravemj's.
+        xml: The ``type`` of a ``<Geom>``; None if the type does not exist in XML.
+        collada: Elements of a ``geometry_info`` in COLLADA; those of capsules, prisms and empty shapes are ravemj's
+            own.
     """
 
     shape: type[Shape]
@@ -326,10 +327,10 @@ class Geometry(Record):
     """Shape fixed to a link.
 
     Attributes:
-        shape: Its kind and sizes.
+        shape: The shape with its sizes.
         T_link_geometry: Its pose in the link.
         name: Its name; often empty.
-        diffuse: Colour, each part from 0 to 1.
+        diffuse: Colour, each component from 0 to 1.
         ambient: Ambient colour, each component from 0 to 1.
         transparency: 0 is opaque, 1 invisible.
         visible: Whether it is drawn.
@@ -337,7 +338,7 @@ class Geometry(Record):
         display: Surfaces drawn instead of the shape; None draws the shape itself.
         render_file: The file of ``display``, or None.
         collision_file: The file of the shape's triangles, or None.
-        collision_mesh: Triangles returned to scripts for a shape that is not a mesh; None means its own.
+        collision_mesh: Triangles returned to scripts for a shape that is not a mesh; None means the shape's own.
         source: The element that it comes from.
     """
 
@@ -356,5 +357,5 @@ class Geometry(Record):
     source: Source
 
     def triangulated(self) -> Mesh:
-        """Return the triangles for scripts in the geometry frame: those that were set, else those of the shape."""
+        """Return the triangles for scripts in the geometry frame: ``collision_mesh``, or else those of the shape."""
         return self.shape.triangulated() if self.collision_mesh is None else self.collision_mesh

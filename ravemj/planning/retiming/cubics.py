@@ -10,7 +10,7 @@ from ravemj.core.transforms import Floats
 from ravemj.planning.retiming.segments import ENOUGH, PathLimits, RetimingError, Timed
 
 _ROUNDING = 1e-10
-"""Relative reserve to the limits, for rounding errors in computations with the result."""
+"""Relative margin to the limits, for rounding errors in later computations."""
 
 
 def corners_of(points: Floats, limits: PathLimits, same: float) -> Floats:
@@ -53,15 +53,15 @@ def timed_cubics(
     """Return a piecewise cubic motion, slowed down until it keeps its limits everywhere.
 
     Args:
-        values: The values at the rows, shape (m, n).
-        velocities: The velocities there, shape (m, n).
-        deltas: The times between the rows [s], shape (m - 1,).
-        is_point: Whether each row is a waypoint of the path, shape (m,).
+        values: The values at m knots, shape (m, n).
+        velocities: The velocities at the knots, shape (m, n).
+        deltas: The times between the knots [s], shape (m - 1,).
+        is_point: Whether each knot is a waypoint of the path, shape (m,).
         limits: The limits.
         time_step: The duration is a multiple of it [s]; 0 means no rounding.
 
     Raises:
-        RetimingError: values between the rows are outside the limits.
+        RetimingError: values between the knots are outside the limits.
     """
     moving = (np.diff(values, axis=0) != 0).any(axis=0) | (velocities != 0).any(axis=0)
     cubics = _Cubics(np.diff(values, axis=0), velocities[:-1], velocities[1:], deltas[:, None])
@@ -77,7 +77,7 @@ def timed_cubics(
 
 
 def _check_values(values: Floats, cubics: "_Cubics", limits: PathLimits) -> None:
-    """Check that the values between the rows are within the limits."""
+    """Check that the values between the knots are within the limits."""
     for extreme in cubics.extremes():
         beyond = values[:-1] + extreme
         for row, column in np.argwhere(limits.coordinates.outside(beyond, limits.lower, limits.upper)):
@@ -87,7 +87,7 @@ def _check_values(values: Floats, cubics: "_Cubics", limits: PathLimits) -> None
 
 
 class _Cubics:
-    """Cubic polynomials by their displacements, end velocities, shape (m, n) each, and durations, shape (m, 1)."""
+    """Cubic polynomials, given by displacements and end velocities, shape (m, n), and durations, shape (m, 1)."""
 
     def __init__(self, steps: Floats, starts: Floats, ends: Floats, times: Floats) -> None:
         self._starts, self._times = starts, times
@@ -110,7 +110,7 @@ class _Cubics:
         return np.maximum(np.abs(first).max(axis=0), np.abs(last).max(axis=0))
 
     def extremes(self) -> Iterator[Floats]:
-        """Yield the displacements of the values at their turning points, shape (m, n)."""
+        """Yield the displacements at which each value reverses, shape (m, n)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             root = np.sqrt(self._square**2 - 3 * self._cube * self._starts)
             for top in (-self._square + root, -self._square - root):

@@ -21,7 +21,7 @@ class Polynomial:
     merges: bool
 
     def _first_time(self, way: Floats, limits: PathLimits) -> float:
-        """Return the shortest duration to try [s] where all joints move; by default that from rest to rest."""
+        """Return the first duration to try [s], by default that from rest to rest. All joints move by ``way``."""
         return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
@@ -54,7 +54,7 @@ class Polynomial:
         return np.inf
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
-        """Return the single row of a segment; None if the limits do not allow its velocities."""
+        """Return the end of a segment as its only row; None if the limits do not allow its velocities."""
         if not segment.is_from_rest_to_rest and (duration <= 0 or not self._keeps_limits(segment, duration, limits)):
             return None
         rest = np.zeros_like(segment.step)[None]
@@ -68,7 +68,7 @@ class Polynomial:
 class Cubic(Polynomial):
     """Cubic polynomial with given end velocities.
 
-    Its duration grows in steps of 5 % from displacement over speed until the limits hold.
+    Its duration is increased in steps of 5 %, from displacement divided by speed, until the limits hold.
     """
 
     interpolation = "cubic"
@@ -142,7 +142,7 @@ def _only(limits: PathLimits, chosen: Any) -> PathLimits:  # noqa: ANN401 - a ma
 
 
 class Linear:
-    """Constant velocity on each segment, the maximum of its slowest joint, with jumps between segments."""
+    """Constant velocity on each segment, limited by the slowest joint; velocities jump at waypoints."""
 
     interpolation = "linear"
     order = 1
@@ -159,14 +159,14 @@ class Linear:
             return float((ways[moving] / speeds[moving]).max(initial=0.0))
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows:
-        """Return the single row of a segment."""
+        """Return the end of a segment as its only row."""
         del limits
         velocity = segment.step / duration if duration > 0 else np.zeros_like(segment.step)
         return SegmentRows(np.array([duration]), (segment.step[None], velocity[None]))
 
 
 def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
-    """Return distances and speeds of a base: translation along a straight line, and rotation."""
+    """Return distances and maximum speeds, with one of each for a base's translation and one for its rotation."""
     parts = limits.coordinates
     translation, rotation = list(parts.translation), list(parts.rotation)
     rest = [column for column in range(len(step)) if column not in parts.translation + parts.rotation]
@@ -180,7 +180,7 @@ def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
 
 
 def _angle(step: Floats) -> float:
-    """Return the angle of a difference of angles, rotation vectors or unit quaternions of any sign [rad]."""
+    """Return the rotation angle [rad] for a difference of angles, rotation vectors or unit quaternions of any sign."""
     length = float(np.linalg.norm(step))
     if len(step) != 4:
         return length
@@ -223,7 +223,7 @@ class Parabolic:
         return float(times.max(initial=0.0))
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
-        """Return the rows of a segment: one for each change of acceleration, and its end."""
+        """Return the rows of a segment: each change of acceleration, and the end."""
         if segment.is_from_rest_to_rest:
             ramps = self._fit_from_rest(segment.step, duration, limits)
         else:
@@ -281,7 +281,7 @@ class JerkLimited:
             return np.inf
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
-        """Return the rows of a segment: one for each change of jerk, and its end."""
+        """Return the rows of a segment: each change of jerk, and the end."""
         if not segment.is_from_rest_to_rest:
             return None
         joints = _joints(segment.step, limits)
@@ -313,8 +313,8 @@ def _double_s(way: float, speed: float, acceleration: float, jerk: float) -> tup
     """Return the times of the fastest motion over a distance from rest to rest.
 
     Returns:
-        Durations [s] of the jerk, of the acceleration with its two flanks, of the motion up to the deceleration, and of
-        the whole motion.
+        Durations [s] of constant jerk, of the whole acceleration, of the motion before the deceleration, and of the
+        whole motion.
     """
     if not (speed > 0 and acceleration > 0 and jerk > 0):
         return 0.0, 0.0, 0.0, np.inf

@@ -11,15 +11,15 @@ from ravemj.core.transforms import Floats
 from ravemj.planning.space import Coordinates
 
 ENOUGH = 1e-9
-"""Tolerance [s] of given times that are shorter than necessary, for rounding."""
+"""Rounding tolerance [s] of given durations that are shorter than the minimum."""
 
 LONGER = 1.05
-"""Growth factor of durations without formula until the limits hold, as in OpenRAVE."""
+"""Factor by which a duration without formula grows until the limits hold, as in OpenRAVE."""
 
 MOST_ATTEMPTS = 500
 
 _SHORTEST, _LONGEST = 1e-100, 1e100
-"""Durations [s] whose squares are numbers other than 0."""
+"""Range of durations [s] whose squares are finite and not 0."""
 
 
 class RetimingError(Exception):
@@ -87,10 +87,10 @@ class Segment(NamedTuple):
 
 
 class SegmentRows(NamedTuple):
-    """Timed rows of a segment.
+    """Rows of a timed segment: intermediate states and its end.
 
     Attributes:
-        times: Times of the rows since the start of the segment [s], shape (m,); the last is its end.
+        times: Times of the rows since the start of the segment [s], shape (m,).
         orders: Values relative to the first waypoint, velocities, accelerations, ...; shape (m, n) each.
     """
 
@@ -99,7 +99,7 @@ class SegmentRows(NamedTuple):
 
 
 class Interpolated(Protocol):
-    """Interpolation of a result between its rows, and its number of derivatives."""
+    """Interpolation between the rows of a timed path, and its number of derivatives."""
 
     interpolation: str
     order: int
@@ -108,7 +108,7 @@ class Interpolated(Protocol):
 class Profile(Interpolated, Protocol):
     """Retimer that works segment by segment.
 
-    If it merges, consecutive equal waypoints become one, and the first waypoint has time 0.
+    If ``merges``, consecutive equal waypoints become one, and the first waypoint has time 0.
     """
 
     merges: bool
@@ -118,7 +118,7 @@ class Profile(Interpolated, Protocol):
         ...
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
-        """Return the motion of a segment in a given duration, or None if no motion keeps the limits."""
+        """Return the rows of a segment that takes a given duration, or None if no motion keeps the limits."""
         ...
 
 
@@ -127,12 +127,12 @@ _QUATERNION = 4
 
 
 class Timed(NamedTuple):
-    """Timed path.
+    """Timed path: waypoints and intermediate rows.
 
     Attributes:
-        deltas: Times since the previous waypoint [s], shape (m,).
-        orders: Values, velocities, ... at the waypoints, shape (m, n) each.
-        is_point: For each row, whether it is a waypoint of the path, shape (m,).
+        deltas: Times since the previous row [s], shape (m,).
+        orders: Values, velocities, ... at the rows, shape (m, n) each.
+        is_point: Whether each row is a waypoint of the path, shape (m,).
     """
 
     deltas: Floats
@@ -216,7 +216,7 @@ def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: fl
 
 
 class _TimedRows:
-    """Rows collected so far."""
+    """Timed path under construction."""
 
     def __init__(self, profile: Profile, first: Floats, velocity: Floats) -> None:
         self._profile = profile
@@ -231,7 +231,7 @@ class _TimedRows:
         self._deltas[0][0] = time
 
     def append(self, rows: SegmentRows, start: Floats, end: Floats) -> None:
-        """Append a segment; its last row is the waypoint."""
+        """Append a segment; its last row is the waypoint ``end``."""
         times = rows.times
         if self._profile.merges and times[-1] <= 0:
             return

@@ -23,7 +23,7 @@ _ROUNDING = 1e-6
 class Spline:
     """Retimer along a cubic curve through the waypoints with continuous direction.
 
-    Between close waypoints, as of paths on a constraint, it stays near the straight lines. The speed at each waypoint
+    Between close waypoints, as in paths on a constraint, it stays near the straight lines. The speed at each waypoint
     is the maximum from which the motion can still brake for all bends ahead; the motion is then slowed down until all
     limits hold.
     """

@@ -18,7 +18,7 @@ from ravemj.planning.retiming.segments import PathLimits, RetimingError, Timed
 
 _LEAST_ROWS = 400
 _ROWS_OF_SEGMENT = 20
-"""Grid rows per segment. TOPP-RA keeps limits at the rows; with a finer grid, less slow-down is needed between them."""
+"""Grid points per segment. TOPP-RA keeps limits at these; a finer grid exceeds them less in between."""
 
 
 def is_installed() -> bool:
@@ -29,8 +29,8 @@ def is_installed() -> bool:
 class ToppRa:
     """Time-optimal retimer along a cubic spline through the waypoints, without stops.
 
-    The result is one cubic polynomial for each row of a fine grid. Their maximum speeds and accelerations are computed
-    exactly, and the motion is slowed down until all limits hold.
+    The result has a cubic polynomial for each cell of a fine grid. The maximum speeds and accelerations of polynomials
+    are computed exactly, and the motion is slowed down until all limits hold.
     """
 
     interpolation = "cubic"
@@ -52,7 +52,7 @@ class ToppRa:
 
 
 def _fastest(corners: Floats, moving: Ints, limits: PathLimits) -> "_Rows":
-    """Return the time-optimal motion along the spline through waypoints, at the rows of a grid."""
+    """Return the time-optimal motion along the spline through waypoints, sampled at grid points."""
     toppra, constraint = (importlib.import_module(f"toppra{part}") for part in ("", ".constraint"))
     bounds = [np.stack([-bound[moving], bound[moving]], axis=1) for bound in (limits.velocity, limits.acceleration)]
     places = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1)))
@@ -74,7 +74,14 @@ def _fastest(corners: Floats, moving: Ints, limits: PathLimits) -> "_Rows":
 
 
 class _Rows(NamedTuple):
-    """Motion at the m rows of a grid; deltas are the times between them [s]."""
+    """Values and velocities at m grid points along a path.
+
+    Attributes:
+        values: Values [rad or m], shape (m, n).
+        velocities: Velocities, shape (m, n).
+        deltas: Times between neighbouring grid points [s], shape (m - 1,).
+        is_point: Whether each grid point is a waypoint of the path, shape (m,).
+    """
 
     values: Floats
     velocities: Floats

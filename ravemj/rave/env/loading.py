@@ -176,7 +176,7 @@ class Loading(Description):
         return f"{missing[0]}{others}" if missing else ""
 
     def _try_elsewhere(self, path: str) -> None:
-        """Load a JSON file into a temporary environment; errors as of ``_load_json``."""
+        """Load a JSON file into a temporary environment, so that errors in it leave this one unchanged."""
         trial = type(self)()
         try:
             trial._load_json(path)

@@ -51,16 +51,16 @@ class EndWaypoint:
         self._extension = Extension(traj.waypoints, spec.GetGroups(), new, rates, index, replaced, find_body)
 
     def line(self) -> Trajectory:
-        """Return an untimed trajectory of the two waypoints, with velocities."""
+        """Return an untimed trajectory of the adjacent old waypoint and the new one, with velocities."""
         way = Trajectory(self._traj.GetEnv(), "")
         way.set_waypoints(self._extension.segment())
         return way
 
     def retimed(self, factors: tuple[float, float], plannername: str, extra: str) -> Trajectory:
-        """Return the timed segment between the two waypoints.
+        """Return the timed segment between the adjacent old waypoint and the new one.
 
-        ``factors`` scale the velocity and acceleration limits. An empty name selects the retimer that matches the
-        trajectory's interpolation.
+        ``factors`` scale the velocity and acceleration limits. ``plannername`` selects the retimer; if it is empty, the
+        retimer matches the trajectory's interpolation. ``extra`` is XML of further planner parameters.
 
         Raises:
             RavemjError: the retimer fails.

@@ -109,7 +109,10 @@ class WorkspaceTrajectoryTracker(Planner):
     def _solutions(
         self, values: Values, hand: Hand, goal: IkParameterization, near: Floats, *, check: bool
     ) -> list[Floats]:
-        """Return the configurations that reach a goal, the nearest to ``near`` first; greedy searches need only one."""
+        """Return the configurations that reach a goal, the nearest to ``near`` first; greedy searches take only that.
+
+        ``check``: Return only those that satisfy the planner's conditions.
+        """
         hand.tool.bodies.move(near)
         solutions: list[Floats] = []
         for row in hand.manip.FindIKSolutions(goal, 0):
