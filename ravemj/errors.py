@@ -20,7 +20,7 @@ import sys
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import Literal, NamedTuple
 
 
@@ -43,6 +43,8 @@ class ErrorCode(IntEnum):
     BodyNameConflict = 13
     SensorNameConflict = 14
     BodyIdConflict = 15
+
+    __str__ = Enum.__str__  # class and name, as those of OpenRAVE
 
 
 class Source(NamedTuple):

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
 
+from ravemj.core.progress import progress_bar
 from ravemj.core.signals import on_signal
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
 
@@ -105,20 +106,10 @@ def progress(task: str, total: float, unit: str = "frames") -> Generator[Callabl
     Yields:
         A function that sets the amount of finished work.
     """
-    if not sys.stderr.isatty():
-        yield lambda done: None
-        return
-    from rich import progress as bars  # noqa: PLC0415 - slow to import
-    from rich.console import Console  # noqa: PLC0415
-
-    columns = (
-        bars.TextColumn("{task.description}"),
-        bars.BarColumn(),
-        bars.MofNCompleteColumn(),
-        bars.TextColumn(unit),
-        bars.TimeRemainingColumn(),
+    restoring = (
+        on_signal(lambda: os.write(sys.stderr.fileno(), _WITHOUT_BAR))
+        if sys.stderr.isatty()
+        else contextlib.nullcontext()
     )
-    bar = bars.Progress(*columns, console=Console(stderr=True), transient=True)
-    with on_signal(lambda: os.write(sys.stderr.fileno(), _WITHOUT_BAR)), bar:
-        number = bar.add_task(task, total=total)
-        yield lambda done: bar.update(number, completed=done)
+    with restoring, progress_bar(task, total, unit) as update:
+        yield update

@@ -1,4 +1,7 @@
-"""The page of ``grasp``: hands side by side that approach their target and close, with the contacts."""
+"""The page of ``grasp``: hands side by side that approach their target and close, with the contacts.
+
+If the arm reaches the grasps, the whole robot shows the best one behind them.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple, cast
@@ -6,7 +9,9 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from ravemj.core.transforms import Floats, inverse
+from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.graphics.rendering.camera import three_quarter_view
+from ravemj.ik.candidates import ranked
 from ravemj.manipulation.grasping.search import Grasp
 from ravemj.rave import Environment, GraphHandle, KinBody, RaveCreateKinBody, RaveCreateRobot, Robot
 from ravemj.rave.grasping import draw_grasp
@@ -14,6 +19,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.recording import animate
 from ravemj.trajectories.body_motion import BodyMotion
 
+_POSE = IkParameterizationType.Transform6D
 _COLUMNS = 5
 _BACK = 0.12  # m, from which hands approach
 _APPROACH, _CLOSE, _REST = 1.5, 1.0, 1.0  # s
@@ -21,6 +27,15 @@ _FPS = 20
 _ASIDE = 0.6  # columns to the right, beside the notes
 _DEPTH = 1.7  # distance of the rows, in distances of the columns
 _TRANSPARENCY = 0.5  # of hands, so that contacts show
+_STEPS = 12  # of the arm along the approach
+_JUMP = 0.3  # rad or m, between two of them
+_WIDER = 1.35  # of the view, to show the arm behind the hands
+_BEHIND = 1.6  # distances of the columns, from the middle of the hands to that of the view
+_LEGEND = (
+    "arrows: contacts; red ones limit the quality",
+    "double arrow: the weakest direction,",
+    "pink for a force along it, violet for a torque about it",
+)
 
 
 class _DrawnHand(NamedTuple):
@@ -34,13 +49,27 @@ class _DrawnHand(NamedTuple):
     along: Floats
 
 
+class _DrawnArm(NamedTuple):
+    """A copy of the robot that reaches its grasp; ``rows``: values of the arm on the way back from there."""
+
+    robot: Robot
+    joints: list[int]
+    gripper: list[int]
+    rows: Floats
+    grasp: Grasp
+
+
 def write_grasps(path: str, arm: Manipulator, target: KinBody, grasps: Sequence[Grasp], notes: Sequence[str]) -> None:
     """Write a page with a hand for each grasp, from left to right; the second row is in front."""
     env = Environment()
     env.SetViewer("offscreen")  # which keeps drawings
     spacing, rows = 1.3 * _reach(arm, target), -(-len(grasps) // _COLUMNS)
-    camera = three_quarter_view(np.zeros(3), spacing * max(1.0, min(len(grasps), _COLUMNS) / 2.2), 4 / 3)
+    with_arm = grasps[0].arm is not None
+    radius = spacing * max(1.0, min(len(grasps), _COLUMNS) / 2.2) * (_WIDER if with_arm else 1.0)
+    camera = three_quarter_view(np.zeros(3), radius, 4 / 3)
     right, nearer = camera.rotation[:, 0], np.cross(camera.rotation[:, 0], [0, 0, 1])
+    if with_arm:
+        camera = three_quarter_view(-_BEHIND * spacing * nearer, radius, 4 / 3)
     hands, drawn = list[_DrawnHand](), list[GraphHandle]()
     for number, grasp in enumerate(grasps):
         row, column = divmod(number, _COLUMNS)
@@ -51,14 +80,23 @@ def write_grasps(path: str, arm: Manipulator, target: KinBody, grasps: Sequence[
         body.SetTransform(T)
         hands.append(_hand(env, arm, body, grasp, number + 1))
         drawn += draw_grasp(body, grasp)
-    motion = _motion(hands)
+    arms = list[_DrawnArm]()
+    if with_arm:
+        body = _copied(env, target, 0)
+        T_place = target.GetTransform()
+        T_place[:3, 3] = -spacing * _DEPTH * (rows + 1) / 2 * nearer
+        body.SetTransform(T_place)
+        arms.append(_arm(env, arm, body, target, grasps[0]))
+        drawn += draw_grasp(body, grasps[0])
+    motion = _motion(hands, arms)
     lines = [f"{number}: {_told(grasp)}" for number, grasp in enumerate(grasps, 1)]
+    order = "from left to right, the first row is behind" + ("; the arm is number 1:" if with_arm else ":")
     animate(
         env,
         motion,
         fps=_FPS,
         camera=camera.T_world_camera,
-        notes=["from left to right, the first row is behind:", *lines, *notes],
+        notes=[order, *lines, *_LEGEND, *notes],
     ).save(path)
     del drawn
 
@@ -106,7 +144,27 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
     )
 
 
-def _motion(hands: Sequence[_DrawnHand]) -> BodyMotion:
+def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, grasp: Grasp) -> _DrawnArm:
+    """Add a copy of the robot, which stands to a copy of the target as the robot to the target, with its approach."""
+    T_world_target = body.GetTransform()
+    robot = cast("Robot", RaveCreateRobot(env, ""))
+    robot.Clone(arm.GetRobot(), 0)
+    robot.SetName(f"{arm.GetRobot().GetName()} 0")
+    env.Add(robot, True)
+    robot.SetTransform(T_world_target @ inverse(target.GetTransform()) @ arm.GetRobot().GetTransform())
+    copied = next(manipulator for manipulator in robot.GetManipulators() if manipulator.GetName() == arm.GetName())
+    assert grasp.arm is not None, "the arm reaches it"
+    rows = [grasp.arm]
+    for back in np.linspace(0.0, _BACK, _STEPS + 1)[1:]:
+        T = T_world_target @ grasp.pose
+        T[:3, 3] -= back * T_world_target[:3, :3] @ grasp.approach
+        solutions = ranked(arm.ik_solver(), copied.goals_in_base(T, _POSE)[0], rows[-1])
+        near = [row for row, _ in solutions[:1] if np.abs(row - rows[-1]).max() < _JUMP]
+        rows.append(near[0] if near else rows[-1])
+    return _DrawnArm(robot, copied.GetArmIndices().tolist(), copied.GetGripperIndices().tolist(), np.array(rows), grasp)
+
+
+def _motion(hands: Sequence[_DrawnHand], arms: Sequence[_DrawnArm]) -> BodyMotion:
     """Return the motion of all hands: to the target along a straight line, then the fingers close."""
 
     def place(time: float) -> None:
@@ -118,6 +176,13 @@ def _motion(hands: Sequence[_DrawnHand]) -> BodyMotion:
             hand.robot.SetTransform(T @ inverse(hand.T_base_tool))
             values = hand.grasp.preshape + share * (hand.grasp.closed - hand.grasp.preshape)
             hand.robot.SetDOFValues(values, hand.gripper, checklimits=0)
+        for arm in arms:
+            steps = np.arange(len(arm.rows)) * _BACK / _STEPS
+            joints = np.array([np.interp(back, steps, column) for column in arm.rows.T], float)
+            arm.robot.SetDOFValues(joints, arm.joints, checklimits=0)
+            values = arm.grasp.preshape + share * (arm.grasp.closed - arm.grasp.preshape)
+            arm.robot.SetDOFValues(values, arm.gripper, checklimits=0)
 
-    rows = tuple(hand.robot.GetDOFValues()[None] for hand in hands)
-    return BodyMotion(tuple(hand.robot.simulation_state for hand in hands), _APPROACH + _CLOSE + _REST, place, rows)
+    robots = [shown.robot for shown in (*hands, *arms)]
+    rows = tuple(robot.GetDOFValues()[None] for robot in robots)
+    return BodyMotion(tuple(robot.simulation_state for robot in robots), _APPROACH + _CLOSE + _REST, place, rows)

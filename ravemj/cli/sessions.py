@@ -64,6 +64,8 @@ def _execute(script: str, main: ModuleType, py2: bool) -> int:
         _print_traceback(error, script)
         if isinstance(error, SyntaxError) and error.filename and not py2 and python2.is_python2(error.filename):
             print(f"ravemj: {error.filename} is Python 2; ravemj run --py2 {script} translates it", file=sys.stderr)
+        elif isinstance(error, NameError) and not py2 and error.name in python2.OLD_NAMES:
+            print(f"ravemj: Python 2 has {error.name}; ravemj run --py2 {script} knows its names", file=sys.stderr)
         return 1
     return 0
 

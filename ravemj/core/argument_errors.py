@@ -129,9 +129,10 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
         kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             description = "None" if value is None else f"of type {type(value).__name__}"
-            wanted = " or ".join(dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else f"a {kind}" for kind in kinds))
-            caller = type(args[0]).__name__ if function.__name__ == "__init__" else function.__name__
-            return f"{caller}: {name}: is {description}, and should be {wanted}"
+            wanted = " or ".join(
+                dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else _with_article(kind) for kind in kinds)
+            )
+            return f"{_caller(function, args)}: {name}: is {description}, and should be {wanted}"
     return None
 
 
@@ -149,7 +150,16 @@ def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwar
         return None
     values = ", ".join(f"{name}={reprlib.repr(value)}" for name, value in given.items())
     kind = next(base for base in type(error).__mro__ if base.__module__ == "builtins")  # numpy's take other arguments
-    return kind(f"{function.__name__}: {error}; given {values}")
+    return kind(f"{_caller(function, args)}: {error}; given {values}")
+
+
+def _caller(function: FunctionType, args: tuple[Any, ...]) -> str:
+    """Return the name of a function, or of the class whose constructor it is."""
+    return type(args[0]).__name__ if function.__name__ == "__init__" else function.__name__
+
+
+def _with_article(kind: str) -> str:
+    return f"{'an' if kind[0] in 'AEIO' else 'a'} {kind}"
 
 
 def _kinds(annotation: object) -> list[str]:

@@ -1,6 +1,7 @@
 """Enumerations like OpenRAVE's: ``str`` gives the name, and dictionaries list the members."""
 
-from enum import Enum, EnumMeta, IntEnum, IntFlag
+from enum import Enum, EnumMeta, IntEnum
+from functools import reduce
 from typing import Any
 
 
@@ -28,8 +29,23 @@ class NamedInt(IntEnum, metaclass=_Listed):
     __str__ = Enum.__str__
 
 
-class NamedFlag(IntFlag, metaclass=_Listed):
-    """Flags; ``str`` gives class and name, or the number for flags combined with ``|``, as in OpenRAVE."""
+class NamedFlag(NamedInt):
+    """Flags: ``|``, ``&``, ``^`` and ``~`` give whole numbers, as in OpenRAVE, and any whole number makes a flag.
+
+    ``str`` gives class and name, or the number if the flag is none of the members.
+    """
+
+    @classmethod
+    def _missing_(cls, value: object) -> Enum | None:
+        """Return a flag that is no member, such as the combination of two; its name lists its parts."""
+        if not isinstance(value, int):
+            return None
+        parts = [member for member in cls if member and member & value == member]
+        unnamed = reduce(lambda rest, part: rest & ~part, parts, value)
+        flag = int.__new__(cls, value)
+        flag._name_ = "|".join([*(part.name for part in parts), *([str(unnamed)] if unnamed else [])])
+        flag._value_ = value
+        return cls._value2member_map_.setdefault(value, flag)
 
     def __str__(self) -> str:
-        return Enum.__str__(self) if self.name in type(self).__members__ else str(int(self))
+        return super().__str__() if self.name in type(self).__members__ else str(int(self))

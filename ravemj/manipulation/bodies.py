@@ -3,6 +3,7 @@
 from collections.abc import Callable, Generator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +20,16 @@ from ravemj.engine.simulation.body import SavedConfiguration
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, RaveGetAffineDOF, affine_values, pose_with_values
 from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.planning.certificates import Certificate
 from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
-from ravemj.planning.edges import Allowed, Edges, Proof
+from ravemj.planning.edges import Allowed, Edges
+from ravemj.planning.proofs import Curve
 from ravemj.planning.space import Coordinates, Space
 from ravemj.trajectories.extraction import rotation_columns
 from ravemj.trajectories.groups import AFFINE, IK, JOINTS, Group, affine_parts, ik_type, joint_indices
+
+if TYPE_CHECKING:
+    from ravemj.manipulation.certification import Certifier
 
 FREE, ENV_COLLISION, SELF_COLLISION, USER = 0, 1, 2, 0x8000
 """Reasons for rejecting a configuration: bits of OpenRAVE's ``ConstraintFilterOptions``. ``USER`` is that of user
@@ -320,7 +326,7 @@ class Conditions:
         bodies: The bodies; None if nothing collides.
         constraints: User callbacks that return whether a configuration is allowed.
         manifold: The manifold of a tool constraint, or None.
-        proves: Whether shortcuts of a path must be certified.
+        proves: Whether each shortcut of a path must be certified.
     """
 
     bodies: Bodies | None = None
@@ -354,22 +360,29 @@ class Conditions:
             step: The step of trees, a weighted distance.
             ends: The starts and goals, at which shapes may touch.
         """
-        proof = self._proof(ends)
+        certifier = self.certifier(ends) if self.proves else None
+        proof = certifier and certifier.proves
         if self.manifold is None:
             return Edges(space, allowed, step, proof)
         return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold, step, proof)
 
     def straight_edges(self, space: Space, ends: Sequence[Floats]) -> Edges:
         """Return the tests of straight edges, ignoring a constraint manifold; see ``edges``."""
-        return Edges(space, self.allowed(), proof=self._proof(ends))
+        certifier = self.certifier(ends) if self.proves else None
 
-    def _proof(self, ends: Sequence[Floats]) -> Proof | None:
-        if not self.proves or self.bodies is None:
-            return None
+        def certify(curves: Sequence[Curve]) -> Certificate | None:
+            nonlocal certifier
+            certifier = certifier or self.certifier(ends)  # on first use, since it takes as long as many tests
+            return certifier and certifier.certificate(curves, whole=False)
+
+        return Edges(space, self.allowed(), proof=certifier and certifier.proves, certify=certify)
+
+    def certifier(self, ends: Sequence[Floats]) -> "Certifier | None":
+        """Return what certifies motions between starts and goals within ``kept``; None if that is impossible."""
         from ravemj.manipulation.certification import Certifier, UncertifiableError  # noqa: PLC0415 - rarely wanted
 
         try:
-            return Certifier(self.bodies, ends).proves
+            return None if self.bodies is None else Certifier(self.bodies, ends)
         except UncertifiableError:
             return None
 

@@ -7,13 +7,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.blocks import block, restoring
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.findings import Checker
+from ravemj.engine.collision.hand import hand_tests
 from ravemj.engine.collision.queries import body_and_others
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import SavedConfiguration
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.arm_search import ArmSearch
+from ravemj.manipulation.grasping.closing import Approach, Steps, close
+from ravemj.manipulation.grasping.hands import hand_of, target_of
 from ravemj.manipulation.motions import follow_goals
 from ravemj.manipulation.options import GraspMotion
 from ravemj.model.scene import Manipulator
@@ -24,6 +27,9 @@ _LINE_STEP = 0.01
 
 _IN_LIMITS = 1e-3
 """The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
+
+_BACK = 1e-3  # m, step of a hand back out of the target, as in OpenRAVE
+_MOST_BACK = 300  # steps
 
 _POSES = ("grasptrans_nocol", "igrasptrans")
 """Properties with the pose of the tool; the first has precedence."""
@@ -37,7 +43,8 @@ class GraspTable(NamedTuple):
         columns: The first column of each property of a grasp, by OpenRAVE's names: ``igrasptrans`` (``T_target_tool``,
             12 numbers by columns) or ``grasptrans_nocol``, which has precedence; ``igraspdir`` (the approach direction
             of the hand in the target frame), ``imanipulatordirection`` (the same in the tool frame), ``igrasppreshape``
-            (the values of the gripper).
+            (the values of the gripper). If a row has no pose, or zeros, the grasp is simulated, from ``igraspdir``,
+            ``igrasppos``, ``igrasproll``, ``igraspstandoff`` and ``ichuckingdirection``.
     """
 
     rows: Floats
@@ -65,14 +72,41 @@ class GraspTable(NamedTuple):
         Raises:
             ArgumentError: there are none.
         """
-        if all(self.columns.get(name, -1) < 0 for name in _POSES):
-            raise ArgumentError("graspindices: should have 'igrasptrans' or 'grasptrans_nocol', the pose of the tool")
+        if all(self.columns.get(name, -1) < 0 for name in (*_POSES, "igraspdir")):
+            raise ArgumentError(
+                "graspindices: should have 'igrasptrans' or 'grasptrans_nocol', the pose of the tool, or 'igraspdir', "
+                "the direction in which the hand flies to the target"
+            )
 
-    def pose(self, grasp: int) -> Floats:
-        """Return ``T_target_tool``, shape (4, 4)."""
+    def pose(self, grasp: int) -> Floats | None:
+        """Return ``T_target_tool``, shape (4, 4); None if the row has none."""
         given = (self.numbers(grasp, name, 12) for name in _POSES)
-        numbers = next(numbers for numbers in given if numbers is not None)
-        return np.vstack([numbers.reshape(4, 3).T, [0.0, 0.0, 0.0, 1.0]])
+        numbers = next((numbers for numbers in given if numbers is not None and numbers.any()), None)
+        return None if numbers is None else np.vstack([numbers.reshape(4, 3).T, [0.0, 0.0, 0.0, 1.0]])
+
+    def approach(self, grasp: int, tool_direction: Sequence[float]) -> Approach | None:
+        """Return how the hand flies to the target; None if the row does not say it.
+
+        Args:
+            grasp: The row.
+            tool_direction: The manipulator's direction, for rows without one.
+        """
+
+        def part(name: str, count: int) -> Floats:
+            numbers = self.numbers(grasp, name, count)
+            return np.zeros(count) if numbers is None else numbers
+
+        direction, in_tool = part("igraspdir", 3), part("imanipulatordirection", 3)
+        if not direction.any():
+            return None
+        return Approach(
+            direction=_unit(direction),
+            tool_direction=_unit(in_tool if in_tool.any() else np.array(tool_direction, float)),
+            position=part("igrasppos", 3),
+            roll=part("igrasproll", 1).item(),
+            standoff=part("igraspstandoff", 1).item(),
+            avoid_contact=True,
+        )
 
 
 class GraspingArm(NamedTuple):
@@ -99,8 +133,8 @@ class Grasp:
 
     Attributes:
         number: Its index in the table.
-        preshape: Values of the gripper [rad or m].
-        rows: Arm values at the start of the approach, from which the tool reaches the grasp along a straight line.
+        preshape: Joint values of the gripper [rad or m].
+        rows: Solutions: arm values at the start of the approach, a straight line of the tool to the grasp.
         T_world_goals: Poses of the tool at the destinations of the target.
     """
 
@@ -145,12 +179,39 @@ class GraspSearch:
         preshape = self._preshaped(number)
         if preshape is None:
             return None
-        T_target_tool = self._table.pose(number)
+        T_target_tool = self._pose(number)
+        if T_target_tool is None:
+            return None
         T_world_tool = self._target.link_transform(0) @ T_target_tool
         grasp = Grasp(number, preshape, self._approaches(T_world_tool, self._direction(number, T_world_tool)))
         if grasp.rows and self._places:
             grasp.T_world_goals = self._goals(T_target_tool)
         return grasp if grasp.rows and (grasp.T_world_goals or not self._places) else None
+
+    def _pose(self, number: int) -> Floats | None:
+        """Return ``T_target_tool`` of a row, simulated if the row has none; None if the simulation fails.
+
+        From the simulated grasp, the open hand is moved back until it is free of the target.
+        """
+        given = self._table.pose(number)
+        approach = self._table.approach(number, self._hand.arm.direction) if given is None else None
+        if approach is None:
+            return given
+        body, arm = self._hand.body, self._hand.arm
+        closing = self._table.numbers(number, "ichuckingdirection", len(arm.gripper_dofs))
+        signs = arm.chucking_direction if closing is None or not closing.any() else closing.tolist()
+        flying, target = hand_of(body, arm, dict(zip(arm.gripper_dofs, signs, strict=True))), target_of(self._target)
+        steps = Steps(fine=self._options.graspfinestep, per_radian=self._options.grasptranslationstepmult)
+        with hand_tests(self._hand.checker().world(), body, self._target) as tests:
+            closed = close(flying, target, approach, tests, steps)
+            if closed.reason is not None:
+                return None
+            T_world_base = closed.T_world_base.copy()
+            for _ in range(_MOST_BACK):
+                if not tests(flying.links, T_world_base, flying.values, "target"):
+                    break
+                T_world_base[:3, 3] -= _BACK * target.T_world_target[:3, :3] @ approach.direction
+        return inverse(target.T_world_target) @ T_world_base @ flying.T_base_tool
 
     def _preshaped(self, number: int) -> Floats | None:
         """Move the gripper to the preshape of a grasp and return its values; None if they are outside the limits."""
@@ -176,7 +237,7 @@ class GraspSearch:
         else:
             in_tool = self._table.numbers(number, "imanipulatordirection", 3)
             direction = T_world_tool[:3, :3] @ (np.array(self._hand.arm.direction) if in_tool is None else in_tool)
-        return direction / (np.linalg.norm(direction) or 1.0)
+        return _unit(direction)
 
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
         """Return arm values from which the tool reaches a grasp along a straight line in the approach direction."""
@@ -235,6 +296,10 @@ class GraspSearch:
             saved = [(body, body.configuration()) for body in bodies]
             with restoring(lambda: _restore(saved)):
                 yield
+
+
+def _unit(vector: Floats) -> Floats:
+    return vector / (np.linalg.norm(vector) or 1.0)
 
 
 def _restore(saved: Sequence[tuple[BodyState, SavedConfiguration]]) -> None:

@@ -9,8 +9,9 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.manipulation.arm_search import ArmSearch
 from ravemj.manipulation.bodies import Bodies, Conditions
-from ravemj.planning.constrained_edges import ConstrainedEdges, bent_path
-from ravemj.planning.edges import nearby
+from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold, bent_path
+from ravemj.planning.edges import Allowed, nearby
+from ravemj.planning.projection import PROJECTION_STEPS, project
 from ravemj.planning.rrt import End, Problem, Search
 from ravemj.planning.shortcuts import shorten
 from ravemj.planning.space import Space
@@ -52,13 +53,43 @@ def _spaced(space: Space, path: Floats, spacing: float) -> Floats:
 def jittered(conditions: Conditions, space: Space, configurations: Sequence[Floats], jitter: float) -> list[Floats]:
     """Replace each configuration in collision by a free one nearby, if one is found.
 
-    Each value changes by at most ``jitter`` [rad or m].
+    Each value changes by at most ``jitter`` [rad or m]. On a constraint, the line to the new configuration keeps it.
     """
-    random = np.random.default_rng(0)
+    random, tries = np.random.default_rng(0), _JITTER_TRIES
     with conditions.kept():
-        test = conditions.allowed()
-        moved = [nearby(space, configuration, test, _JITTER_TRIES, jitter, random) for configuration in configurations]
+        test, manifold = conditions.allowed(), conditions.manifold
+        moved = [
+            nearby(space, configuration, test, tries, jitter, random)
+            if manifold is None
+            else _jittered_on(manifold, space, configuration, test, jitter, random)
+            for configuration in configurations
+        ]
     return [old if new is None else new for old, new in zip(configurations, moved, strict=True)]
+
+
+def _jittered_on(
+    manifold: Manifold,
+    space: Space,
+    configuration: Floats,
+    test: Allowed,
+    jitter: float,
+    random: np.random.Generator,
+) -> Floats | None:
+    """Return a free configuration near one on a constraint; None if there is none, or it is not on the constraint."""
+    if not manifold.has(configuration):
+        return None
+
+    def projected(values: Floats) -> Floats:
+        return project(values, manifold.error, space, manifold.threshold / 2, PROJECTION_STEPS)[1]
+
+    def is_joined(values: Floats) -> bool:
+        change = space.difference(values, configuration)
+        line = configuration + np.linspace(0, 1, 5)[:, None] * change
+        return np.abs(change).max() <= jitter and all(map(manifold.has, line)) and test(values)
+
+    if test(configuration):
+        return configuration
+    return nearby(space, configuration, is_joined, _JITTER_TRIES, jitter, random, projected)
 
 
 def free_configuration(

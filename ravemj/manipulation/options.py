@@ -111,6 +111,10 @@ class GraspMotion:
     """Distance from the grasp at which the motion ends [m]."""
     steplength: float = STEP_LENGTH
     """Length of a step of the planner's trees, a weighted distance of configurations."""
+    grasptranslationstepmult: float = 0.1
+    """Factor of the steps for sliders and the flight of a grasp that is simulated [m/rad]."""
+    graspfinestep: float = 0.001
+    """Step from which the tolerance of contacts of a grasp that is simulated follows [rad]."""
 
 
 Kind = TypeVar("Kind", JointMotion, ToolMotion, StraightMotion, UnsyncMotion, JitterMotion, GraspMotion)

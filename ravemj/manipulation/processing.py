@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.planning.certificates import Certificate
 from ravemj.planning.edges import Edges, path_is_allowed
-from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
+from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, MatchedRamps, Parabolic, Quintic
 from ravemj.planning.retiming.segments import Interpolated, PathLimits, Profile, RetimingError, Timed, retime
 from ravemj.planning.retiming.spline import Spline
 from ravemj.planning.retiming.topp_ra import ToppRa
-from ravemj.planning.shortcuts import MotionSegment, faster, lines, shorten
+from ravemj.planning.shortcuts import MotionSegment, ShortenedMotion, lines, motion_curves, shorten
 from ravemj.trajectories.conversion import FindBody
 from ravemj.trajectories.groups import DELTATIME, Group
 from ravemj.trajectories.layout import (
@@ -38,7 +39,8 @@ def flag(options: Mapping[str, str], name: str, *, default: bool = False) -> boo
 
 
 def _parabolic(options: Mapping[str, str]) -> Parabolic:
-    return Parabolic(with_changes=flag(options, "outputaccelchanges", default=True))
+    profile = MatchedRamps if options.get("multidofinterp", "").strip() == "2" else Parabolic
+    return profile(with_changes=flag(options, "outputaccelchanges", default=True))
 
 
 SPLINE = "splinetrajectoryretimer"
@@ -93,6 +95,7 @@ class Processor:
         iterations: The number of attempted shortcuts; 0 for OpenRAVE's.
         random: The random numbers.
         edges: For smoothers: returns the tests of edges, given the path.
+        certifies: Whether smoothers certify motions, and remove shortcuts that prevent it.
         proceed: Callback before each attempt; returning False ends them.
     """
 
@@ -104,10 +107,13 @@ class Processor:
     iterations: int
     random: np.random.Generator
     edges: Callable[[Floats], Edges]
+    certifies: bool = False
     proceed: Callable[[int], bool] = lambda attempt: True
 
-    def process(self, path: Waypoints, find_body: FindBody) -> Waypoints:
-        """Return the timed path. ``find_body`` finds the bodies, whose present state supplies missing joints.
+    def process(self, path: Waypoints, find_body: FindBody) -> tuple[Waypoints, Certificate | None]:
+        """Return the timed path, and its certificate if smoothers certify and it has no undecided span.
+
+        ``find_body`` finds the bodies, whose present state supplies missing joints.
 
         Raises:
             RetimingError: the path cannot be timed.
@@ -127,7 +133,7 @@ class Processor:
 
     # Retimers
 
-    def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> Waypoints:
+    def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> tuple[Waypoints, None]:
         """Time waypoints within the velocity and acceleration limits. Collisions are ignored."""
         profile, options, coordinates = profile_of(self.name, self.options), self.options, self.limits.coordinates
         is_base = bool(coordinates.translation or coordinates.rotation) and not self._is_of_goals()
@@ -147,7 +153,7 @@ class Processor:
                 if find_compatible(path.groups, group.name, exact=True) is None:
                     raise RetimingError(f"the velocities should be kept, and there is no group '{group.name}'")
             velocities = rows(rates)
-        return self._written(profile, self._timed(profile, rows(self.groups), deltas, velocities))
+        return self._written(profile, self._timed(profile, rows(self.groups), deltas, velocities)), None
 
     def _timed(
         self, profile: Profile | ToppRa | Spline, points: Floats, deltas: Floats | None, velocities: Floats | None
@@ -162,7 +168,7 @@ class Processor:
 
     # Smoothers
 
-    def _smoothed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> Waypoints:
+    def _smoothed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> tuple[Waypoints, Certificate | None]:
         """Replace parts of a path by collision-free shortcuts, and time the result."""
         self._check_layout(path)
         points, coordinates = rows(self.groups), self.limits.coordinates
@@ -181,10 +187,11 @@ class Processor:
             tries = self.iterations or _TRIES
             short = shorten(edges, points, tries, self.random, self.proceed)
             if not isinstance(profile, Parabolic):
-                return self._written(profile, retime(profile, short, self.limits))
-            straight = lines(short, self.limits)
-            motion = faster(edges, straight, self.limits, tries, self.random, self.proceed)
-            return self._written(profile, _timed(motion, points), marks=True)
+                return self._written(profile, retime(profile, short, self.limits)), None
+            motion = ShortenedMotion(lines(short, self.limits))
+            motion.shorten(edges, self.limits, tries, self.random, self.proceed)
+            certificate = _certified(motion, edges) if self.certifies else None
+            return self._written(profile, _timed(motion.segments, points), marks=True), certificate
         except (RetimingError, ValueError) as error:
             raise RetimingError(str(error)) from None
 
@@ -211,6 +218,19 @@ class Processor:
                 rows[:, target.columns] = numbers[:, group.columns]
                 target = find_shifted(result, target.name, 1, exact=True)
         return Waypoints(result, rows)
+
+
+def _certified(motion: ShortenedMotion, edges: Edges) -> Certificate | None:
+    """Certify a motion, without the shortcuts that prevent it; return None if that leaves an undecided span."""
+    if edges.certify is None or not motion.segments:
+        return None
+    while True:
+        certificate = edges.certify(motion_curves(motion.segments))
+        if certificate is None or not certificate.undecided:
+            return certificate
+        first = certificate.undecided[0]
+        if not motion.remove_shortcut((first.start + first.end) / 2):
+            return None
 
 
 def _timed(motion: list[MotionSegment], points: Floats) -> Timed:

@@ -1,7 +1,7 @@
 """Reasons for the rejection of starts and goals: single configurations, and statistics of samples."""
 
 from collections import Counter, deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from enum import Enum
 
 import numpy as np
@@ -39,10 +39,14 @@ class Tally:
 
     Args:
         names: The names of the regions.
+
+    Attributes:
+        shortfall: Describes how far the arm stays from a region that is out of reach; None if none is.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names = list(names)
+        self.shortfall: Callable[[], str] | None = None
         self.counts: list[Counter[Cause | None]] = [Counter() for _ in names]
         self.examples: dict[Cause, RefusedError] = {}
         self._off = (np.inf, 0.0)
@@ -97,6 +101,8 @@ class Tally:
 
     def _detail(self, total: "Counter[Cause | None]") -> str:
         told: list[str] = []
+        if self.shortfall is not None and total[Cause.REACH] == total.total():
+            told.append(self.shortfall())
         for cause in (Cause.SELF_COLLISION, Cause.COLLISION):
             findings = self.examples[cause].findings if total[cause] else None
             if findings is not None:

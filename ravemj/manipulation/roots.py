@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -103,6 +104,7 @@ class RegionRoots:
         names: Their names.
         solve: Returns the solutions of a pose ``T_world_tool`` of a region, by the index of the region.
         repair: Returns a configuration nearby that keeps the constraint and is still in the region, or None.
+        shortfall: Describes how far the arm stays from a region, given its index and one of its poses.
     """
 
     def __init__(
@@ -111,7 +113,9 @@ class RegionRoots:
         names: Sequence[str],
         solve: Callable[[int, Floats, np.random.Generator], PoseSolutions],
         repair: Callable[[int, Floats], Floats | None],
+        shortfall: Callable[[int, Floats], str],
     ) -> None:
+        self._shortfall = shortfall
         self._regions, self._names, self._solve, self._repair = list(regions), names, solve, repair
         self._weights = weights(self._regions)
         self._random = np.random.default_rng(0)
@@ -161,6 +165,8 @@ class RegionRoots:
             self._test(region, row, refuse, roots, refusals)
         if not len(rows):
             refusals = [RefusedError(cause.value, cause=cause)]
+            if cause is Cause.REACH and self._tally.shortfall is None:
+                self._tally.shortfall = partial(self._shortfall, region, pose)
         self._tally.note(region, [] if roots else refusals)
         self._drawn += [(root, region) for root in roots]
         return [roots[index] for index in self._random.permutation(len(roots))]

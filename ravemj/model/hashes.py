@@ -64,7 +64,7 @@ def _gripper(body: KinBody, arm: Manipulator) -> tuple[object, ...]:
 
 
 def _way(body: KinBody, arm: Manipulator) -> list[object]:
-    """Return the joints between base and effector."""
+    """Return the joints between an arm's base and effector, as hashed."""
     if arm.base is None or arm.effector is None:
         return []
     joints = (*body.joints, *body.passive_joints)

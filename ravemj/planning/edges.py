@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.planning.certificates import Certificate
 from ravemj.planning.proofs import Curve, line_curve
 from ravemj.planning.space import Space
 
@@ -26,6 +27,9 @@ Allowed = Callable[[Floats], bool]
 
 Proof = Callable[[Sequence[Curve]], bool]
 """Proof that a motion is free of collisions at all times."""
+
+Certify = Callable[[Sequence[Curve]], Certificate | None]
+"""Returns the certificate of a motion, up to its first undecided span, or None if there can be none."""
 
 
 class Growth(NamedTuple):
@@ -50,13 +54,21 @@ class Edges:
         allowed: The test of one configuration.
         step: Length of a step of a tree, a weighted distance; 0 selects ``STEP``.
         proof: Additional test of shortcuts, or None.
+        certify: Certifies motions of shortcuts, or None.
 
     Attributes:
         is_strict: Whether the edges of trees have to pass ``proof``, too.
     """
 
-    def __init__(self, space: Space, allowed: Allowed, step: float = STEP, proof: Proof | None = None) -> None:
-        self.space, self.allowed, self.proof = space, allowed, proof
+    def __init__(
+        self,
+        space: Space,
+        allowed: Allowed,
+        step: float = STEP,
+        proof: Proof | None = None,
+        certify: Certify | None = None,
+    ) -> None:
+        self.space, self.allowed, self.proof, self.certify = space, allowed, proof, certify
         self.step = step if step > 0 else STEP
         self.is_strict = False
 
@@ -139,17 +151,26 @@ def length(space: Space, points: Floats) -> float:
 
 
 def nearby(
-    space: Space, configuration: Floats, allowed: Allowed, tries: int, farthest: float, random: np.random.Generator
+    space: Space,
+    configuration: Floats,
+    allowed: Allowed,
+    tries: int,
+    farthest: float,
+    random: np.random.Generator,
+    projected: Callable[[Floats], Floats] | None = None,
 ) -> Floats | None:
     """Return a configuration if it is allowed, else an allowed one nearby; None after ``tries`` random ones.
 
-    Each value changes by at most ``farthest`` [rad or m]; the first tries stay closer.
+    Each value changes by at most ``farthest`` [rad or m]; the first tries stay closer. Candidates are then moved by
+    ``projected``, if given.
     """
     if allowed(configuration):
         return configuration
     for attempt in range(tries if farthest > 0 else 0):
         reach = farthest * (attempt + 1) / tries
         candidate = space.clamp(configuration + random.uniform(-reach, reach, len(configuration)))
+        if projected is not None:
+            candidate = projected(candidate)
         if allowed(candidate):
             return candidate
     return None

@@ -112,6 +112,26 @@ def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: F
     return Ramps(duration, np.zeros(len(steps)), rate, first, last)
 
 
+def fit_matched_ramps(steps: Floats, duration: float, speed: Floats, acceleration: Floats) -> Ramps | None:
+    """Return motions from rest to rest whose accelerations all change at the same times; None if there are none.
+
+    The ramps are as short as the limits allow. Arguments are as for ``shortest_ramps``.
+    """
+    moving = steps != 0
+    way, speed, acceleration = np.abs(steps[moving]), speed[moving], acceleration[moving]
+    if not way.size:
+        return Ramps(duration, np.zeros_like(steps), np.zeros_like(steps), *[np.full(len(steps), duration / 2)] * 2)
+    cruise = float((way / speed).max())  # the time of the whole displacement at maximum speed
+    product = float((way / acceleration).max())  # at least that of ramp and displacement over speed
+    longest = min(duration / 2, duration - cruise)
+    if longest <= 0 or longest * (duration - longest) < product * (1 - _ROUNDING):
+        return None
+    ramp = min((duration - max(duration * duration - 4 * product, 0.0) ** 0.5) / 2, longest)
+    rate = steps / (ramp * (duration - ramp))
+    first = np.full(len(steps), ramp)
+    return Ramps(duration, np.zeros(len(steps)), rate, first, duration - first)
+
+
 def fit_ramps(
     steps: Floats, start: Floats, end: Floats, duration: float, speed: Floats, acceleration: Floats
 ) -> Ramps | None:

@@ -92,6 +92,8 @@ class MotionSegment(NamedTuple):
         velocities: Velocities at its start, shape (n,).
         accelerations: Shape (n,).
         is_corner: Whether it starts at a junction of lines or shortcuts.
+        source: Number of the line or shortcut of which it is a part.
+        begins: Time of its start in the source [s].
     """
 
     duration: float
@@ -99,6 +101,8 @@ class MotionSegment(NamedTuple):
     velocities: Floats
     accelerations: Floats
     is_corner: bool
+    source: int = 0
+    begins: float = 0.0
 
     def after(self, time: float) -> tuple[Floats, Floats]:
         """Return values and velocities at a time after the start."""
@@ -108,7 +112,8 @@ class MotionSegment(NamedTuple):
     def part(self, start: float, end: float, *, is_corner: bool) -> "MotionSegment":
         """Return the part between two times after the start."""
         values, velocities = self.after(start)
-        return MotionSegment(end - start, values, velocities, self.accelerations, is_corner)
+        begins = self.begins + start
+        return MotionSegment(end - start, values, velocities, self.accelerations, is_corner, self.source, begins)
 
 
 def lines(points: Floats, limits: PathLimits) -> list[MotionSegment]:
@@ -143,35 +148,105 @@ def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) ->
     return segments
 
 
-def faster(
-    edges: Edges,
-    motion: list[MotionSegment],
-    limits: PathLimits,
-    tries: int,
-    random: np.random.Generator,
-    proceed: Callable[[int], bool] = lambda attempt: True,
-) -> list[MotionSegment]:
-    """Return a motion with the same start and end, made faster by random shortcuts of constant accelerations.
+class _Place(NamedTuple):
+    """Place on a motion, as a time [s] in a line or shortcut."""
 
-    At most ``tries`` shortcuts between random times are tried. ``proceed`` is called before each with its number;
-    returning False stops the search.
+    source: int
+    time: float
+
+
+class _Shortcut(NamedTuple):
+    """Shortcut between two places of a motion, and its segments, which have one source."""
+
+    start: _Place
+    end: _Place
+    segments: list[MotionSegment]
+
+
+class ShortenedMotion:
+    """Motion that random shortcuts of constant accelerations make faster; each of them can be removed again.
+
+    Args:
+        straight: The motion without shortcuts.
+
+    Attributes:
+        segments: The motion.
     """
-    for attempt in range(tries):
-        if not motion or not proceed(attempt):
-            break
-        ends: Floats = np.cumsum([piece.duration for piece in motion])
-        low, high = sorted((random.random() * float(ends[-1]), random.random() * float(ends[-1])))
-        first, second = (min(int(np.searchsorted(ends, time)), len(motion) - 1) for time in (low, high))
-        before = low - (ends[first] - motion[first].duration)
-        behind = high - (ends[second] - motion[second].duration)
-        start, end = motion[first].after(before), motion[second].after(behind)
-        shortcut = _shortcut(edges, start, end, (high - low) * (1 - _WORTH_TIME), limits)
-        if shortcut is not None:
-            head = [motion[first].part(0.0, before, is_corner=motion[first].is_corner)]
-            tail = [motion[second].part(behind, motion[second].duration, is_corner=True)]
-            fresh = [piece for piece in [*head, *shortcut, *tail] if piece.duration > _SAME_TIME]
-            motion = [*motion[:first], *fresh, *motion[second + 1 :]]
-    return motion
+
+    def __init__(self, straight: list[MotionSegment]) -> None:
+        self._straight = [piece._replace(source=number) for number, piece in enumerate(straight)]
+        self.segments = self._straight
+        self._shortcuts: list[_Shortcut] = []
+
+    def shorten(
+        self,
+        edges: Edges,
+        limits: PathLimits,
+        tries: int,
+        random: np.random.Generator,
+        proceed: Callable[[int], bool] = lambda attempt: True,
+    ) -> None:
+        """Add shortcuts between random times; start and end stay.
+
+        There are at most ``tries`` attempts; ``proceed``, called with the number of the attempt, stops them by False.
+        """
+        source = len(self._straight)
+        for attempt in range(tries):
+            if not self.segments or not proceed(attempt):
+                break
+            ends = self._ends()
+            low, high = sorted((random.random() * float(ends[-1]), random.random() * float(ends[-1])))
+            (start, first), (end, second) = self._at(low, ends), self._at(high, ends)
+            pieces = _shortcut(edges, first, second, (high - low) * (1 - _WORTH_TIME), limits)
+            if pieces is not None:
+                shortcut = _Shortcut(start, end, _from_one_source(pieces, source + attempt))
+                self._shortcuts.append(shortcut)
+                self._insert(shortcut)
+
+    def remove_shortcut(self, time: float) -> bool:
+        """Remove the shortcut at a time [s], and those that start or end on it; return whether one is there."""
+        source = self._at(time, self._ends())[0].source
+        if source < len(self._straight):
+            return False
+        self.segments = self._straight
+        others = [shortcut for shortcut in self._shortcuts if shortcut.segments[0].source != source]
+        self._shortcuts = [shortcut for shortcut in others if self._insert(shortcut)]
+        return True
+
+    def _ends(self) -> Floats:
+        return np.cumsum([piece.duration for piece in self.segments])
+
+    def _at(self, time: float, ends: Floats) -> tuple[_Place, tuple[Floats, Floats]]:
+        """Return the place, and values and velocities, at a time; ``ends`` are the end times of the segments."""
+        number = min(int(np.searchsorted(ends, time)), len(ends) - 1)
+        piece = self.segments[number]
+        after = time - (float(ends[number]) - piece.duration)
+        return _Place(piece.source, piece.begins + after), piece.after(after)
+
+    def _insert(self, shortcut: _Shortcut) -> bool:
+        """Replace the motion between two places by a shortcut; return whether both places are there."""
+        first, second = self._find(shortcut.start), self._find(shortcut.end)
+        if first is None or second is None or first > second:
+            return False
+        before, behind = self.segments[first], self.segments[second]
+        head = before.part(0.0, shortcut.start.time - before.begins, is_corner=before.is_corner)
+        tail = behind.part(shortcut.end.time - behind.begins, behind.duration, is_corner=True)
+        fresh = [piece for piece in (head, *shortcut.segments, tail) if piece.duration > _SAME_TIME]
+        self.segments = [*self.segments[:first], *fresh, *self.segments[second + 1 :]]
+        return True
+
+    def _find(self, place: _Place) -> int | None:
+        """Return the index of the segment that contains a place, or None."""
+        for number, piece in enumerate(self.segments):
+            since = place.time - piece.begins
+            if piece.source == place.source and -_SAME_TIME <= since <= piece.duration + _SAME_TIME:
+                return number
+        return None
+
+
+def _from_one_source(pieces: list[MotionSegment], source: int) -> list[MotionSegment]:
+    begins = np.cumsum([0.0, *(piece.duration for piece in pieces)]).tolist()
+    return [piece._replace(source=source, begins=time) for piece, time in zip(pieces, begins[:-1], strict=True)]
 
 
 def _shortcut(
@@ -190,12 +265,11 @@ def _shortcut(
     if (beyond & ~limits.coordinates.circular).any():
         return None
     pieces = _pieces(ramps, lambda numbers: numbers, start[0])
-    if not all(_is_allowed(edges, piece) for piece in pieces):
-        return None
-    return pieces if edges.proof is None or edges.proof(_curves(pieces)) else None
+    return pieces if all(_is_allowed(edges, piece) for piece in pieces) else None
 
 
-def _curves(pieces: list[MotionSegment]) -> list[Curve]:
+def motion_curves(pieces: list[MotionSegment]) -> list[Curve]:
+    """Return segments as curves, of which the first starts at 0 s."""
     curves, time = list[Curve](), 0.0
     for piece in pieces:
         middle = piece.values + piece.velocities * (piece.duration / 2)

@@ -586,11 +586,16 @@ __all__ = [
 ]
 
 _KINDS: dict[str, type[Controller]] = {
-    "idealcontroller": IdealController,
-    "idealvelocitycontroller": VelocityController,
+    "IdealController": IdealController,
+    "IdealVelocityController": VelocityController,
     "odevelocity": VelocityController,
-    "genericmulticontroller": MultiController,
+    "GenericMultiController": MultiController,
 }
+CONTROLLERS = tuple(_KINDS)
+
+
+def _kind_of(name: str) -> type[Controller] | None:
+    return next((kind for known, kind in _KINDS.items() if known.lower() == name.lower()), None)
 
 
 def RaveCreateController(env: "Environment", name: str) -> Controller | None:
@@ -610,7 +615,7 @@ def RaveCreateController(env: "Environment", name: str) -> Controller | None:
         True
     """
     word = asked_for(env, name, "RaveCreateController")[0]
-    kind = _KINDS.get(word.lower())
+    kind = _kind_of(word)
     return None if kind is None else kind(env, word)
 
 
@@ -625,4 +630,4 @@ def RaveCreateMultiController(env: "Environment", name: str = "") -> MultiContro
         The controller; None for an unknown name.
     """
     word = asked_for(env, name, "RaveCreateMultiController")[0] or "GenericMultiController"
-    return MultiController(env, word) if _KINDS.get(word.lower()) is MultiController else None
+    return MultiController(env, word) if _kind_of(word) is MultiController else None

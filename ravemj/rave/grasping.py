@@ -1,16 +1,21 @@
 """Grasps of a body by a robot: search, inverse kinematics, proof by physics, drawings."""
 
-from typing import cast
+import pickle
+from collections.abc import Callable
+from functools import lru_cache
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_number
+from ravemj.core.processes import blocks_of, map_parts
+from ravemj.core.progress import progress_bar
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.manipulation.bodies import Bodies
-from ravemj.manipulation.grasping.search import Choices, Grasp, Grasps, Method, Reach, proved, search
+from ravemj.manipulation.grasping.search import Choices, Grasp, Grasps, Method, Reach, count_candidates, proved, search
 from ravemj.rave.env.viewing import GraphHandle
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
@@ -18,6 +23,9 @@ from ravemj.rave.robot import Robot
 from ravemj.trajectories.bodies import body_groups
 
 _POSE = IkParameterizationType.Transform6D
+
+_BLOCK = 64
+"""Number of candidates that a process gets at a time."""
 
 _ARROW = 0.035
 """Length of the arrow of a contact [m]."""
@@ -37,6 +45,7 @@ def grasps(  # noqa: PLR0913 - keyword arguments
     rolls: int | None = None,
     reach: bool = True,
     proofs: int = 0,
+    processes: int = 1,
 ) -> Grasps:
     """Return grasps of a body where it stands, and the reason for each candidate that was rejected.
 
@@ -57,6 +66,10 @@ def grasps(  # noqa: PLR0913 - keyword arguments
             force or torque (10 N or N m if the model has none), the hand is lifted by 0.1 m and shaken along each axis
             with 5 m/s^2 for a second. ``Grasp.proof`` says whether the body moved in the hand by less than 5 mm and 5
             degrees.
+        processes: Number of processes that try candidates; a process needs about two seconds to start, so several help
+            from some thousand candidates on. The result is the same.
+
+    A terminal shows a progress bar.
 
     Returns:
         The grasps, the best first. ``print`` shows how many candidates were rejected for which reason.
@@ -74,13 +87,58 @@ def grasps(  # noqa: PLR0913 - keyword arguments
     choices = _checked(method, friction, delta, rolls)
     if body is robot or robot.IsGrabbing(body):
         raise ArgumentError(f"grasps: body: '{body.GetName()}' is the robot or in its hand; expected a body to grasp")
+    if processes < 1:
+        raise ArgumentError(f"grasps: processes: is {processes}; expected 1 or more")
     with robot.GetEnv():
         state, target = robot.simulation_state, body.simulation_state
-        searched = search(state, arm.description, target, choices, _reach(robot, arm) if reach else None)
+        searched = Grasps(_searched(_Query(robot, body, choices, reach), processes), friction)
         best = searched.distinct(proofs)
         rest = [grasp for grasp in searched if all(grasp is not chosen for chosen in best)]
         best = [proved(state, arm.description, target, grasp, choices.friction) for grasp in best]
     return Grasps([*best, *rest, *searched.rejected], choices.friction)
+
+
+class _Query(NamedTuple):
+    """A search for grasps by the active manipulator of a robot; ``reach``: whether the arm has to reach them."""
+
+    robot: Robot
+    body: KinBody
+    choices: Choices
+    reach: bool
+
+    def run(self, span: tuple[int, int] | None = None, progress: Callable[[int], object] | None = None) -> list[Grasp]:
+        """Try the candidates with some indices."""
+        arm, target = _active(self.robot), self.body.simulation_state
+        reach = _reach(self.robot, arm) if self.reach else None
+        state = self.robot.simulation_state
+        return search(state, arm.description, target, self.choices, reach, span=span, progress=progress)
+
+
+def _searched(query: _Query, processes: int) -> list[Grasp]:
+    """Return all candidates, tried in this process or in several."""
+    robot, target = query.robot.simulation_state, query.body.simulation_state
+    count = count_candidates(robot, _active(query.robot).description, target, query.choices)
+    with progress_bar("grasps", count) as show:
+        if processes == 1 or count <= _BLOCK:
+            return query.run(progress=show)
+        tried: list[Grasp] = []
+        for grasps in map_parts(_tried_part, pickle.dumps(query), blocks_of(0, count, _BLOCK), processes):
+            tried += grasps
+            show(len(tried))
+        return tried
+
+
+def _tried_part(content: bytes, span: tuple[int, int]) -> list[Grasp]:
+    """Try some candidates, in another process."""
+    query = _unpickled(content)
+    with query.robot.GetEnv():
+        return query.run(span)
+
+
+@lru_cache(maxsize=1)
+def _unpickled(content: bytes) -> _Query:
+    query: _Query = pickle.loads(content)
+    return query
 
 
 def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:

@@ -216,8 +216,19 @@ class IkParameterizationData(GoalValues):
             self._type, self._values = value._type, value._values.copy()
             self._custom = {name: numbers.copy() for name, numbers in value._custom.items()}
             self._id, self._name = value._id, value._name
+            self._check_type(type)
         elif type is not None:
             self._set(_Type(type), value)
+        elif value is not None:
+            message = (
+                "is given without its type; IkParameterization(value, IkParameterizationType.Transform6D) has both"
+            )
+            raise TypeError(f"IkParameterization: value: {message}")
+
+    def _check_type(self, type: IkParameterizationType | int | None) -> None:
+        """Check that the type given beside a goal is that of the goal."""
+        if type is not None and type != self._type:
+            raise ArgumentError(f"type: is {_Type(type).name}, and the goal is of type {self._type.name}")
 
     def GetType(self) -> IkParameterizationType:
         """Return the type."""

@@ -4,13 +4,13 @@ import copy
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from enum import IntEnum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats, Ints, pose_of
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ErrorCode, RavemjError
@@ -187,7 +187,7 @@ class TactileSensorData(SensorData):
     thickness: float = 0.0
 
 
-class _ActuatorState(IntEnum):
+class _ActuatorState(NamedInt):
     """Motion state of an actuator."""
 
     Undefined = 0

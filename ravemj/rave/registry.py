@@ -11,7 +11,7 @@ from ravemj.geometry_functions.ik_types import GOAL_TYPES
 from ravemj.model.scene import KinBody as SceneBody
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.collision import RaveCreateCollisionChecker
-from ravemj.rave.controllers import RaveCreateController
+from ravemj.rave.controllers import CONTROLLERS, RaveCreateController
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.iksolver import IkSolver
@@ -165,16 +165,14 @@ class ManageData(ApiObject):
 
 
 def RaveCreateSensorSystem(env: Environment, name: str) -> None:
-    """Return nothing: raise an error, since sensor systems are not supported.
+    """Return None, as for a name that OpenRAVE does not know, and log a warning: sensor systems are not supported.
 
     Args:
         env: The environment.
         name: Its name.
-
-    Raises:
-        UnsupportedError: always.
     """
-    raise UnsupportedError(f"sensor system '{name}'", SENSOR_SYSTEMS)
+    asked_for(env, name, "RaveCreateSensorSystem")
+    _LOG.warning("there is no sensor system '%s': ravemj has none", name)
 
 
 def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
@@ -198,8 +196,8 @@ def _viewer_names() -> list[str]:
 
 
 _MAKERS: dict[InterfaceType, tuple[Callable[["Environment", str], object], Sequence[str]]] = {
-    InterfaceType.collisionchecker: (RaveCreateCollisionChecker, ("ode", "bullet", "fcl_", "pqp")),
-    InterfaceType.controller: (RaveCreateController, ("IdealController", "IdealVelocityController", "odevelocity")),
+    InterfaceType.collisionchecker: (RaveCreateCollisionChecker, ("ode", "bullet", "fcl_", "pqp", "mujoco")),
+    InterfaceType.controller: (RaveCreateController, CONTROLLERS),
     InterfaceType.iksolver: (RaveCreateIkSolver, ("ikfast",)),
     InterfaceType.kinbody: (RaveCreateKinBody, ("",)),
     InterfaceType.module: (RaveCreateModule, MODULES),

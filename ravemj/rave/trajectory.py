@@ -81,11 +81,11 @@ class Trajectory(Interface):
         return self._certificate[1]
 
     def is_certified(self) -> bool:
-        """Certify the motion if it can be certified as a whole; return whether it was.
+        """Return whether the motion is certified; without a certificate, certify it if that is possible as a whole.
 
         If a part of it is undecided, there is no certificate: the first undecided part is found in less time than all.
         """
-        certificate = self._proved(whole=False)
+        certificate = self.certificate or self._proved(whole=False)
         self._certificate = None if certificate.undecided else (self.waypoints, certificate)
         return certificate.certified
 
@@ -121,9 +121,10 @@ class Trajectory(Interface):
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints
 
-    def set_waypoints(self, waypoints: Waypoints) -> None:
-        """Replace layout and waypoints."""
+    def set_waypoints(self, waypoints: Waypoints, certificate: Certificate | None = None) -> None:
+        """Replace layout and waypoints, and the certificate of the motion if there is one."""
         self._waypoints = waypoints
+        self._certificate = None if certificate is None else (waypoints, certificate)
 
     def GetConfigurationSpecification(self) -> ConfigurationSpecification:
         """Return the specification of the waypoints; a copy."""

@@ -8,9 +8,9 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ravemj.core.processes import Workers
 from ravemj.errors import RavemjError
 from ravemj.sweeps.folder import Failure, forget_failure, note_failure
-from ravemj.sweeps.pool import Workers
 from ravemj.sweeps.shards import shard_path
 from ravemj.sweeps.worker import ShardOutcome, ShardTask, ravemj_shard
 

@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.processes import Workers
 from ravemj.core.version import __version__
 from ravemj.engine.simulation.record import WorldRecord
 from ravemj.errors import ArgumentError
@@ -25,7 +26,6 @@ from ravemj.sweeps.driver import Driver, Here, Progress, Told
 from ravemj.sweeps.folder import FORMAT, Sweep, prepare, read_manifest
 from ravemj.sweeps.jobs import BLOCK, JOBS, Function, Job, Work, checked_items
 from ravemj.sweeps.pictures import check_options
-from ravemj.sweeps.pool import Workers
 from ravemj.sweeps.shards import PICTURES, is_sound, shard_path
 from ravemj.sweeps.worker import ShardTask, compute, state_restored
 
@@ -120,7 +120,8 @@ def sweep(  # noqa: PLR0913 - keyword arguments
     missing = [span for span in result.spans if not _is_done(shard_path(folder, what, *span), check=check)]
     tasks = (plan.task(*span, threads=executor is not None) for span in missing)
     if isinstance(executor, int):
-        with Workers(min(workers, max(1, len(missing)))) as pool:
+        needs_main = any(b"__main__" in content for content in (plan.first.content, pickle.dumps(job)))
+        with Workers(min(workers, max(1, len(missing))), needs_main=needs_main) as pool:
             driver = Driver(pool, folder, retries, timeout, progress, told)
             driver.run(tasks, len(missing), len(result.spans), min(workers, max(1, len(missing))))
     else:

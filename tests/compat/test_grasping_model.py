@@ -390,6 +390,17 @@ def test_a_killed_generation_goes_on(env, gmodel, database, tmp_path, processes)
     assert np.array_equal(gmodel.grasps, found.rows)
 
 
+def test_processes_do_not_repeat_the_script(tmp_path, gmodel):
+    """A script without a guard for processes runs once."""
+    script = tmp_path / "plain.py"
+    script.write_text(SCRIPT.replace('if __name__ == "__main__":\n    main()', 'print("begin", flush=True)\nmain()'))
+    out, log = run(script, 2).communicate(timeout=300)
+    assert out.split()[:1] == ["begin"]
+    assert out.count("begin") == 1
+    assert log == ""
+    assert read_grasps(gmodel.getfilename(True)).tried == 432
+
+
 def done(database):
     return max((Sweep.open(path.parent).done for path in database.rglob("manifest.json")), default=0)
 

@@ -97,6 +97,14 @@ def test_fastgrasping(env):
     assert any(env.CheckCollision(link, target) for link in gmodel.manip.GetChildLinks())
 
 
+def test_an_arm_keeps_grasps_with_noise(env):
+    """The base of an arm is far from the hand; noise of the target does not swing it."""
+    gmodel = databases.grasping.GraspingModel(env.GetRobots()[0], env.GetKinBody("mug"))
+    rays = gmodel.computeBoxApproachRays(delta=0.04)
+    gmodel.generate(preshapes=[[0.04]], standoffs=[0], approachrays=rays, graspingnoise=0.01)
+    assert len(gmodel.grasps) >= 10
+
+
 def test_graspplanning(env, gmodel):
     """Plan grasp and place together, go on to the target, close, lift it, and put it where it was planned."""
     robot, target = gmodel.robot, gmodel.target
@@ -133,6 +141,76 @@ def test_graspplanning(env, gmodel):
     basemanip.MoveToHandPosition(matrices=[goals[0].GetTransform6D()], seedik=10)
     robot.WaitForController(0)
     assert target.GetTransform() == pytest.approx(Tdest, abs=1e-3)
+
+
+@pytest.mark.parametrize("lacks", ["zeros", "columns"])
+def test_rows_without_a_pose_are_simulated(gmodel, lacks):
+    """The pose is that of the table, which was simulated in the same way."""
+    robot, target = gmodel.robot, gmodel.target
+    taskmanip = interfaces.TaskManipulation(robot)
+    valid, _ = gmodel.computeValidGrasps(returnnum=1)
+    past = valid[0].copy()  # flies past the target
+    past[list(gmodel.graspindices["igrasppos"])] += [0, 0, 1]
+    rows, columns = np.array([past, valid[0]]), dict(gmodel.graspindices)
+    for name in ("igrasptrans", "grasptrans_nocol"):
+        if lacks == "zeros":
+            rows[:, list(columns[name])] = 0
+        else:
+            del columns[name]
+    before = target.GetTransform(), robot.GetDOFValues()
+    _, index, _, traj = taskmanip.GraspPlanning(columns, rows, target, execute=False, outputtrajobj=True)
+    assert index == 1
+    assert np.array_equal(target.GetTransform(), before[0])
+    assert np.array_equal(robot.GetDOFValues(), before[1])
+    with robot:
+        robot.SetActiveDOFs(gmodel.manip.GetArmIndices())
+        robot.SetActiveDOFValues(traj.GetWaypoint(-1, robot.GetActiveConfigurationSpecification()))
+        T = gmodel.manip.GetTransform()
+    expected = gmodel.getGlobalGraspTransform(valid[0], collisionfree=True)
+    assert T[:3, :3] == pytest.approx(expected[:3, :3], abs=1e-6)
+    assert T[:3, 3] == pytest.approx(expected[:3, 3], abs=1.2e-3)  # OpenRAVE moves the hand back by steps of 1 mm
+
+
+def test_constraintplanning(env, gmodel):
+    """A mug that stands a little inside of the table when it is grabbed moves upright, and along one plane."""
+    robot, target = gmodel.robot, gmodel.target
+    T = target.GetTransform()
+    T[2, 3] = 0.245
+    target.SetTransform(T)
+    basemanip, taskmanip = interfaces.BaseManipulation(robot), interfaces.TaskManipulation(robot)
+    assert taskmanip.prob.SendCommand("SetMinimumGoalPaths 1") is not None
+    validgrasps, _ = gmodel.computeValidGrasps(returnnum=10)
+    values = robot.GetDOFValues()
+    values[gmodel.manip.GetGripperIndices()] = gmodel.getPreshape(validgrasps[-1])
+    robot.GetController().SetDesired(values)
+    robot.WaitForController(0)
+    basemanip.MoveToHandPosition(
+        matrices=[gmodel.getGlobalGraspTransform(validgrasps[-1], collisionfree=True)], seedik=10
+    )
+    robot.WaitForController(0)
+    taskmanip.CloseFingers()
+    robot.WaitForController(0)
+    robot.Grab(target)
+    assert env.CheckCollision(target)
+    before, Tgoal = target.GetTransform(), gmodel.manip.GetEndEffectorTransform()
+    Tgoal[2, 3] += 0.15
+    traj = basemanip.MoveToHandPosition(
+        matrices=[Tgoal],
+        constraintfreedoms=[1, 1, 0, 1, 0, 0],
+        constraintmatrix=np.eye(4),
+        constrainterrorthresh=0.005,
+        steplength=0.002,
+        execute=False,
+        outputtrajobj=True,
+    )
+    spec = robot.GetActiveConfigurationSpecification()
+    for time in np.linspace(0, traj.GetDuration(), 50):
+        with robot:
+            robot.SetActiveDOFValues(traj.Sample(time, spec))
+            change = target.GetTransform() @ np.linalg.inv(before)
+            assert abs(target.GetTransform()[0, 3] - before[0, 3]) < 0.006
+            assert change[2, 2] > np.cos(0.006)
+    assert target.GetTransform() == pytest.approx(before)
 
 
 def test_tutorial_on_one_grasp(gmodel):

@@ -47,6 +47,10 @@ def run(source: str, path: str = "old.py") -> dict[str, Any]:
         ("numpy.int64(7) / 2", 3),
         ("numpy.array([7, 8])[0] / 2", 3),
         ("Fraction(7) / 2", Fraction(7, 2)),
+        ("numpy.tile(3, numpy.floor(2.5))", [3, 3]),
+        ("numpy.tile([1], (2., 2)).tolist() + numpy.ones((1., 2)).tolist()", [[1, 1]] * 3),
+        ("numpy.reshape(numpy.repeat([1, 2], 2.), (2., -1))", [[1, 1], [2, 2]]),
+        ("numpy.zeros(shape=2.)", [0, 0]),
         ("0777 + 0x10L + 10L", 511 + 16 + 10),
         ("`7` + repr(u'a') + str(unicode('b'))", "7'a'b"),
         ("3 <> 4", True),
@@ -546,6 +550,11 @@ def test_run_without_the_option_names_it(folder):
     (folder / "new.py").write_text("import helper\n")
     done = ravemj_command(folder, "run", "new.py")
     assert done.stderr.splitlines()[-1].endswith("helper.py is Python 2; ravemj run --py2 new.py translates it")
+    (folder / "new.py").write_text("print(len(raw_input('')))\n")
+    done = ravemj_command(folder, "run", "new.py")
+    assert done.stderr.splitlines()[-1] == "ravemj: Python 2 has raw_input; ravemj run --py2 new.py knows its names"
+    (folder / "new.py").write_text("print(unknown)\n")
+    assert "--py2" not in ravemj_command(folder, "run", "new.py").stderr
     (folder / "wrong.py").write_text("def f(:\n")
     assert "--py2" not in ravemj_command(folder, "run", "wrong.py").stderr
 

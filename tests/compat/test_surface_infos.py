@@ -264,7 +264,7 @@ def test_interfaces_by_kind(env, robot):
     with pytest.raises(ravemj.openrave_exception, match="Clone: ref"):
         twin.Clone(ravemj.RaveCreateSensor(env, "BaseLaser2D"))
     with pytest.raises(NotImplementedError):
-        ravemj.RaveCreateSensorSystem(env, "mocap")
+        ravemj.SensorSystem(env)
 
 
 def test_random_samplers_repeat_and_stay_inside(env, robot):

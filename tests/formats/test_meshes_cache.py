@@ -210,6 +210,23 @@ def pickled() -> bytes:
     return file.getvalue()
 
 
+def test_a_valid_entry_under_the_name_of_another_is_not_taken(folder, mesh, reads, tmp_path, caplog):
+    caplog.set_level("DEBUG")
+    other = tmp_path / "other.obj"
+    other.write_text("v 5 0 0\nv 0.1 0 0\nv 0 1 0\nf 1 2 3\n")
+    right, _ = read_mesh(mesh), read_mesh(str(other))
+    first, second = entries(folder)
+    contents = first.read_bytes(), second.read_bytes()
+    for content in contents:
+        first.write_bytes(content)
+        second.write_bytes(content)
+        assert read_mesh(mesh) == right
+        assert read_mesh(str(other))[0].mesh.vertices[0].tolist() == [5, 0, 0]
+    assert len(reads) == 4
+    assert "cannot be used: it is a copy of the entry" in caplog.text
+    assert {first.read_bytes(), second.read_bytes()} == {*contents}
+
+
 @pytest.mark.parametrize("damage", [b"", b"garbage", b"PK\x03\x04" + bytes(50), pickled(), None])
 def test_a_damaged_entry_is_read_over_and_rewritten(folder, mesh, reads, damage):
     expected = read_mesh(mesh)

@@ -18,6 +18,7 @@ from websockets.sync.client import connect
 import ravemj
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
+from ravemj.rave.recording import animate
 
 SIDE = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 FAR = np.array([[0.0, 0, -1, 3], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
@@ -311,6 +312,14 @@ class TestInABrowser:
         before = page.evaluate("ravemj.view.distance")
         page.mouse.wheel(0, 100)
         await_that(lambda: page.evaluate("ravemj.view.distance") > before)
+
+    def test_notes_do_not_cover_a_phone(self, page, env, tmp_path):
+        animate(env, None, notes=["a line"]).save(tmp_path / "notes.html")
+        for width, is_open in ((1280, True), (390, False)):
+            page.set_viewport_size({"width": width, "height": 800})
+            page.goto(f"file://{tmp_path}/notes.html")
+            page.wait_for_function("window.ravemj")
+            assert page.evaluate("notes.open") is is_open
 
     def test_files_keep_names_that_the_model_refers_to(self, page, viewer, env):
         page.goto(viewer.url)

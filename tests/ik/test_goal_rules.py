@@ -169,6 +169,59 @@ def test_an_empty_goal_and_one_argument(name):
         np.testing.assert_array_equal(copy.GetValues(), one.GetValues())
 
 
+@pytest.mark.parametrize("value", [np.eye(4), [1, 2, 3], 3, 1.5, Type.Translation3D, Ray([0, 0, 0], [0, 0, 1]), {}])
+def test_a_value_alone_is_refused(value):
+    with pytest.raises(TypeError, match="IkParameterization: value: is given without its type"):
+        IkParameterization(value)
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_a_goal_beside_a_type_is_of_this_type(name):
+    one = goal(name, ravemj.matrixFromPose([1, 0, 0, 0, 0.1, 0.2, 0.3]))
+    for value in (one, str(one)):
+        np.testing.assert_array_equal(IkParameterization(value, one.GetType()).GetValues(), one.GetValues())
+        for other in set(TABLE) - {name}:
+            with pytest.raises(ravemj.openrave_exception, match=f"{other}, and the goal is of type {name}"):
+                IkParameterization(value, getattr(Type, other))
+
+
+WRONG = [None, "x y", [], [1], [1, 2], [[1, 2], [3, 4]], list(range(5)), np.eye(3), np.zeros((2, 3, 3)), {}, object()]
+
+
+@pytest.mark.parametrize("wrong", WRONG, ids=repr)
+@pytest.mark.parametrize("name", TABLE)
+def test_values_of_a_wrong_shape_are_refused(name, wrong):
+    if (name, repr(wrong)) == ("TranslationXY2D", "[1, 2]"):
+        return
+    one = goal(name, ravemj.matrixFromPose([1, 0, 0, 0, 0.1, 0.2, 0.3]))
+    with pytest.raises((ravemj.openrave_exception, ValueError, TypeError)):
+        IkParameterization(wrong, getattr(Type, name))
+    for operation in (lambda: one * wrong, lambda: wrong * one, lambda: one.Transform(wrong)):
+        before = one.GetValues()
+        with pytest.raises((ravemj.openrave_exception, ValueError, TypeError)):
+            operation()
+        np.testing.assert_array_equal(one.GetValues(), before)
+
+
+@pytest.mark.parametrize("number", [-1, 0, 3, 0x67000002, 10**12])
+def test_numbers_that_are_no_type_are_refused(number):
+    with pytest.raises((ravemj.openrave_exception, ValueError), match=r"IkParameterization|type: "):
+        IkParameterization([1, 2, 3], number)
+
+
+@pytest.mark.parametrize("name", [name for name in TABLE if name != "Ray4D"])
+@given(T=poses(), move=poses())
+def test_each_form_of_a_transform_moves_the_same(name, T, move):
+    one = goal(name, T)
+    pose = ravemj.poseFromMatrix(move)
+    left = [form * one for form in (move, move[:3], move.tolist(), pose, pose.tolist(), tuple(pose))]
+    right = [one * form for form in (move, move[:3], move.tolist(), pose, pose.tolist(), tuple(pose))]
+    one.MultiplyTransformRight(move)
+    for side, expected in ((left, goal(name, T).Transform(move)), (right, one)):
+        for moved in side:
+            np.testing.assert_allclose(moved.GetValues(), expected.GetValues(), atol=1e-9)
+
+
 ACTIONS = {
     "Success": 0, "Reject": 1, "Quit": 2, "QuitEndEffectorCollision": 0x82, "RejectKinematics": 0x11,
     "RejectSelfCollision": 0x21, "RejectEnvCollision": 0x41, "RejectJointLimits": 0x101,

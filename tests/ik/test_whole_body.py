@@ -87,8 +87,12 @@ class TestKnownNumbers:
         ik = WholeBodyIK(robot)
         ik.add_reach("the tip", np.add(start(robot), [0.01, -0.02, 0]))
         before = robot.GetDOFValues()
+        jacobian = robot.ComputeJacobianTranslation(3, tip(robot))[:2]
+        rest = np.linalg.solve(jacobian[:, 1:], [0.01, -0.02] + 0.005 * jacobian[:, 0])
         ik.step(1.0)
-        np.testing.assert_allclose(robot.GetDOFValues() - before, [-0.005, -0.0057328, -0.0421793], atol=1e-7)
+        step = robot.GetDOFValues() - before
+        np.testing.assert_allclose(step, [-0.005, *rest], atol=1e-8)
+        np.testing.assert_allclose(step, [-0.005, -0.0057328, -0.0421793], atol=1e-7)
 
     @pytest.mark.parametrize("elbow", [1, -1])
     def test_both_elbows_of_two_links(self, elbow):
@@ -108,8 +112,9 @@ class TestKnownNumbers:
         ik = WholeBodyIK(robot)
         reach = ik.add_reach("the tip", [2.0, 0, 0])
         result = ik.solve()
-        np.testing.assert_allclose(robot.GetDOFValues(), 0, atol=1e-6)
-        np.testing.assert_allclose(reach.residual, [0.8, 0, 0], atol=1e-6)
+        np.testing.assert_allclose(robot.GetDOFValues(), 0, atol=1e-7)
+        np.testing.assert_allclose(reach.residual, [0.8, 0, 0], atol=1e-7)
+        assert np.linalg.norm(reach.residual) == pytest.approx(0.8, abs=1e-12)
         assert not result
         assert result.reason == "stopped improving: the tip is 0.8 m away"
         assert result.residuals["the tip"] is not reach.residual
@@ -122,7 +127,7 @@ class TestKnownNumbers:
         ik.add_reach("the tip", [2.0, 0, 0])
         for _ in range(100):
             ik.step(dt)
-        np.testing.assert_allclose(robot.GetDOFValues(), 0, atol=1e-5)
+        np.testing.assert_allclose(robot.GetDOFValues(), 0, atol=1e-6)
 
     def test_a_limit_that_is_in_the_way_is_named(self):
         robot = planar_arm()
@@ -155,31 +160,9 @@ class TestWeightsAndPriorities:
         pytest.importorskip("daqp")
         weighted, feet = self.com_over_one_foot(1, 1e-2, 1e-2, 1e-5, priorities=(1, 1, 1, 1))
         strict, strict_feet = self.com_over_one_foot(1, 1e-2, 1e-2, 1e-5, priorities=(1, 2, 3, 4))
-        assert weighted > 1e-3
+        assert weighted == pytest.approx(0.0271506, abs=1e-5)
         assert strict < 1e-6
         assert max(feet, strict_feet) < 1e-8
-
-    @examples(20)
-    @given(st.integers(0, 2**32 - 1))
-    def test_a_lower_priority_takes_nothing(self, seed):
-        """Also with limits of velocities active, and with rows that depend on one another."""
-        pytest.importorskip("daqp")
-        rng = np.random.default_rng(seed)
-        offset = rng.uniform(-0.3, 0.3, 3)
-        moved = []
-        for second in (False, True):
-            robot = biped()
-            ik = WholeBodyIK(robot, base=True)
-            first = [ik.add_contact(name, priority=1) for name in FEET]
-            first.append(ik.add_reach("left_hand", [0.2, 0.25, 0.6], priority=1))
-            if second:
-                ik.add_reach("left_hand", np.array([0.2, 0.25, 0.6]) + offset, priority=2)
-                ik.add_com(np.array([0.2, 0.1, 0.5]) + offset, priority=3)
-                ik.add_posture(priority=4)
-            ik.exact_contacts = False
-            ik.step(0.004)
-            moved.append(np.concatenate([task.residual for task in first]))
-        np.testing.assert_allclose(np.linalg.norm(moved[0]), np.linalg.norm(moved[1]), atol=2e-5)
 
     def test_levels_hold_with_limits_active(self):
         """A level never fails, however many bounds are active: velocities that are too slow for a fast swing."""
@@ -335,7 +318,7 @@ class TestLimits:
             assert (robot.GetDOFValues() >= lower).all()
             assert (robot.GetDOFValues() <= upper).all()
 
-        ik.follow(5.0, update=swing)
+        ik.follow(10.0, update=swing)
 
     def test_self_collisions_end(self):
         """A hand in the torso comes out of it at each step, and a goal in there is not reached then."""
@@ -404,27 +387,6 @@ class TestLimits:
 
 
 class TestBase:
-    @examples(20)
-    @given(st.integers(0, 2**32 - 1))
-    def test_a_turned_world_changes_nothing(self, seed):
-        rng = np.random.default_rng(seed)
-        quaternion = rng.normal(size=4)
-        motion = ravemj.matrixFromPose([*(quaternion / np.linalg.norm(quaternion)), *rng.uniform(-2, 2, 3)])
-        found = []
-        for turn in (np.eye(4), motion):
-            robot = biped()
-            robot.SetTransform(turn @ robot.GetTransform())
-            ik = WholeBodyIK(robot, base=True)
-            for name in FEET:
-                ik.add_contact(name)
-            ik.add_com()
-            ik.add_reach("left_hand", (turn @ [0.3, 0.2, 0.6, 1])[:3])
-            ik.add_look_at("eyes", (turn @ [2, 1, 0.3, 1])[:3])
-            for _ in range(5):
-                ik.step(0.01)
-            found.append(robot.GetDOFValues())
-        np.testing.assert_allclose(found[0], found[1], atol=1e-7)  # quadratic programs are solved to a tolerance
-
     def test_a_base_that_lies_on_its_face_converges(self):
         robot = biped()
         robot.SetTransform(ravemj.matrixFromPose([math.sqrt(0.5), 0, math.sqrt(0.5), 0, 0.2, 0.1, 0.3]))

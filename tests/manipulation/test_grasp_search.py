@@ -1,9 +1,12 @@
 """Grasps of a robot: each reason for a rejection, invariance, arguments that are refused."""
 
+from contextlib import contextmanager
+
 import numpy as np
 import pytest
 
 import ravemj
+from ravemj.rave import grasping
 
 HAND = """<Robot name="tongs"><KinBody>
   <Body name="bar"/>
@@ -35,6 +38,32 @@ def add_box(env, name, numbers):
     body.InitFromBoxes([numbers], True)
     env.Add(body)
     return body
+
+
+@pytest.mark.parametrize("method", ["fly", "antipodal"])
+def test_processes_find_the_same(method):
+    robot, box = kitchen()
+    found, same = (ravemj.grasps(robot, box, method=method, processes=count) for count in (1, 2))
+    assert str(found) == str(same)
+    assert len(found) > 5
+    for one, two in zip([*found, *found.rejected], [*same, *same.rejected], strict=True):
+        for field in ("pose", "closed", "contacts", "arm", "quality", "limiting", "reason"):
+            np.testing.assert_array_equal(getattr(one, field), getattr(two, field))
+
+
+def test_a_terminal_shows_progress(monkeypatch):
+    robot, box = kitchen()
+    shown = []
+
+    @contextmanager
+    def bar(task, total, unit=""):
+        shown.append((task, total))
+        yield shown.append
+
+    monkeypatch.setattr(grasping, "progress_bar", bar)
+    found = ravemj.grasps(robot, box, reach=False)
+    total = len(found) + len(found.rejected)
+    assert shown == [("grasps", total), *range(1, total + 1)]
 
 
 @pytest.mark.parametrize("method", ["fly", "antipodal"])

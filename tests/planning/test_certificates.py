@@ -408,6 +408,10 @@ class TestPlanning:
             times = np.arange(0, traj.GetDuration(), 5e-4)
             rows = traj.SamplePoints2D(times, robot.GetActiveConfigurationSpecification())
             assert not robot.batch_collides(rows).any()
+            planned, afterwards = traj.certificate, traj.certify()
+            assert afterwards.certified
+            assert planned.smallest_gap == pytest.approx(afterwards.smallest_gap, abs=1e-3)
+            assert planned.exempt == afterwards.exempt
 
 
 def test_lines_are_proved_by_a_certifier():

@@ -11,7 +11,7 @@ from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
 from ravemj.planning.retiming.segments import OutsideLimitsError, PathLimits, RetimingError, retime
 from ravemj.planning.rrt import Budget, End, MoreRoots, connect, explore, single
-from ravemj.planning.shortcuts import faster, lines, shorten
+from ravemj.planning.shortcuts import ShortenedMotion, lines, shorten
 from ravemj.planning.space import Coordinates, Space
 from ravemj.planning.verification import Samples, flaw
 
@@ -302,22 +302,56 @@ def test_ramps_reach_their_end_within_all_limits(seed):
         assert greatest == pytest.approx(np.maximum(values.max(axis=0), 0), abs=1e-3)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_smoothed_motions_are_allowed_within_limits_and_faster(seed):
-    edges, bounds = Edges(space(), round_a_wall), limits(2, 1.0, 3.0)
-    slow = lines(found(round_a_wall, seed=seed).path, bounds)
-    quick = faster(edges, slow, bounds, 200, np.random.default_rng(seed))
-    assert sum(one.duration for one in quick) < sum(one.duration for one in slow)
-    samples = [(piece.duration * part, *piece.after(piece.duration * part)) for piece in quick for part in (0, 0.5)]
-    assert quick[0].values.tolist() == START.tolist()
-    assert quick[-1].after(quick[-1].duration)[0] == pytest.approx(GOAL)
-    for before, after in pairwise(quick):
+def shortened(seed):
+    """Return a motion around a wall along lines, and with shortcuts."""
+    slow, bounds = lines(found(round_a_wall, seed=seed).path, limits(2, 1.0, 3.0)), limits(2, 1.0, 3.0)
+    motion = ShortenedMotion(slow)
+    motion.shorten(Edges(space(), round_a_wall), bounds, 200, np.random.default_rng(seed))
+    return slow, motion
+
+
+def time_of(segments):
+    return sum(piece.duration for piece in segments)
+
+
+def assert_smooth(segments):
+    """Check that a motion keeps start, goal, limits and the wall, without jumps of values and velocities."""
+    samples = [(piece.duration * part, *piece.after(piece.duration * part)) for piece in segments for part in (0, 0.5)]
+    assert segments[0].values.tolist() == START.tolist()
+    assert segments[-1].after(segments[-1].duration)[0] == pytest.approx(GOAL)
+    for before, after in pairwise(segments):
         assert before.after(before.duration)[0] == pytest.approx(after.values)
         assert before.after(before.duration)[1] == pytest.approx(after.velocities)
     for _, values, velocities in samples:
         assert round_a_wall(values) or abs(values[0]) > 0.15 or values[1] > 1.45  # corners, by less than a step
         assert (np.abs(velocities) <= 1 + 1e-9).all()
-    assert all((np.abs(one.accelerations) <= 3 + 1e-9).all() for one in quick)
+    assert all((np.abs(piece.accelerations) <= 3 + 1e-9).all() for piece in segments)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_smoothed_motions_are_allowed_within_limits_and_faster(seed):
+    slow, motion = shortened(seed)
+    assert time_of(motion.segments) < time_of(slow)
+    assert_smooth(motion.segments)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_shortcuts_can_be_removed_one_by_one(seed):
+    slow, motion = shortened(seed)
+    random = np.random.default_rng(seed)
+    removed = 0
+    while True:
+        quick = time_of(motion.segments)
+        if not any(motion.remove_shortcut(time) for time in random.uniform(0, quick, 20)):
+            break
+        removed += 1
+        assert_smooth(motion.segments)
+        assert quick < time_of(motion.segments) <= time_of(slow) * (1 + 1e-9)
+    assert removed > 1
+    while any(motion.remove_shortcut(time) for time in np.linspace(0, time_of(motion.segments), 500)):
+        assert_smooth(motion.segments)
+    for piece, line in zip(motion.segments, slow, strict=True):
+        assert (piece.duration, piece.values.tolist()) == (line.duration, line.values.tolist())
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda one: type(one).__name__)

@@ -1,7 +1,15 @@
 """The module, the planner and the wrapper Grasper: answers that are known, other hands, turned worlds, wrong input."""
 
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
 import numpy as np
 import pytest
+from command_line import PACKAGE_ROOT
 
 import ravemj
 from ravemj import (
@@ -278,6 +286,59 @@ def test_candidates_come_in_the_order_of_their_indices():
     noisy = grasper.GraspThreaded(**parts, target=scene.thing, graspingnoise=(1e-4, 3), maxgrasps=1)[1]
     assert len(noisy) == 1  # of 24, and chance rejects a third
     np.testing.assert_array_equal(scene.robot.GetDOFValues(), [0, 0])
+
+
+def many_candidates(scene):
+    """Arguments of GraspThreaded with 288 candidates."""
+    scene.robot.SetActiveDOFs(scene.manip.GetGripperIndices(), DOFAffine.X | DOFAffine.Y | DOFAffine.Z)
+    rays = [[x, y, -0.1, 0, 0, 1] for x in np.linspace(-0.03, 0.03, 6) for y in np.linspace(-0.04, 0.04, 6)]
+    parts = {"standoffs": [0, 0.01], "preshapes": [[0, 0], [0.01, 0.01]], "rolls": [0, np.pi / 2]}
+    return {"approachrays": rays, **parts, "target": scene.thing, "forceclosurethreshold": 1e-9}
+
+
+def test_processes_find_the_same_grasps():
+    scene = Scene()
+    grasper, parts = interfaces.Grasper(scene.robot, 0.4), many_candidates(scene)
+    for some in ({}, {"maxgrasps": 5}, {"startindex": 100, "maxgrasps": 7}, {"startindex": 280}):
+        following, found = grasper.GraspThreaded(**parts, **some)
+        other, others = grasper.GraspThreaded(**parts, **some, numthreads=2)
+        assert (other, len(others)) == (following, len(found))
+        assert len(found) > 2 or following == 288
+        for one, two in zip(found, others, strict=True):
+            for number, same in zip(one, two, strict=True):
+                np.testing.assert_array_equal(number, same)
+    np.testing.assert_array_equal(scene.robot.GetDOFValues(), [0, 0])
+
+
+SLOW = f"""
+import sys
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+from test_grasper import Scene, interfaces, many_candidates
+
+if __name__ == "__main__":
+    scene = Scene()
+    parts = many_candidates(scene)
+    parts["approachrays"] = parts["approachrays"] * 200
+    print("begin", flush=True)
+    try:
+        interfaces.Grasper(scene.robot, 0.4).GraspThreaded(**parts, numthreads=int(sys.argv[1]))
+    except KeyboardInterrupt:
+        print("stopped", *scene.robot.GetDOFValues(), flush=True)
+"""
+
+
+@pytest.mark.parametrize("processes", ["1", "2"])
+def test_ctrl_c_cancels_it(tmp_path, processes):
+    script = tmp_path / "slow.py"
+    script.write_text(SLOW)
+    environment = {**os.environ, "PYTHONPATH": f"{PACKAGE_ROOT}:{Path(__file__).parents[1]}"}
+    command = [sys.executable, "-W", "ignore", str(script), processes]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as running:
+        assert running.stdout is not None
+        assert running.stdout.readline() == "begin\n"
+        time.sleep(3)  # processes begin
+        running.send_signal(signal.SIGINT)
+        assert running.communicate(timeout=20)[0] == "stopped 0.0 0.0\n"
 
 
 def test_commands_answer_in_numbers():

@@ -73,7 +73,7 @@ MISTAKES = {
     ),
     "constructor": (
         lambda env, robot: ravemj.IkParameterization(np.eye(4), "pose"),
-        "IkParameterization: type: is of type str, and should be a IkParameterizationType or a whole number",
+        "IkParameterization: type: is of type str, and should be an IkParameterizationType or a whole number",
     ),
     "half a dimension": (
         lambda env, robot: ravemj.RaveCreateSpaceSampler(env, "MT19937").SetSpaceDOF(1.5),

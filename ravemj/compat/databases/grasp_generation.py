@@ -4,7 +4,6 @@ import itertools
 import logging
 import pickle
 import shutil
-import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -17,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.compat.databases.grasp_use import GraspUse
+from ravemj.core.progress import progress_bar
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation.record import WorldRecord
-from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.geometry_functions.poses import poseFromMatrix
 from ravemj.manipulation.grasping.wrenches import epsilon
@@ -275,10 +274,11 @@ def generate(
             _LOG.warning("going on with %d of %d candidates that are tried already", done, len(rows))
         try:
             chosen.update()
-            with _bar(len(rows)) as told:
+            with progress_bar("grasps", len(rows)) as show:
 
                 def progress(done: int, total: int, failed: int) -> None:
-                    told(done, total, failed)
+                    del total, failed
+                    show(min(done * BLOCK, len(rows)))
                     chosen.update()
 
                 _run(env, rows, parts, options, job.processes, progress)
@@ -321,20 +321,10 @@ def _run(
     processes: int,
     told: Callable[[int, int, int], object],
 ) -> None:
-    def call(executor: int | None) -> None:
-        named: dict[str, Any] = {"block": BLOCK, "shard": BLOCK, "progress": told, "options": options}
-        sweep(env, try_candidates, rows, parts, executor=executor, check=True, **named)
-
     try:
-        try:
-            call(processes if processes > 1 else None)
-        except SweepError:
-            raise
-        except RavemjError as error:
-            if isinstance(error, ArgumentError) or "__main__" not in str(error):
-                raise
-            _LOG.warning("%s; generating without processes", error)
-            call(None)
+        named: dict[str, Any] = {"block": BLOCK, "shard": BLOCK, "progress": told, "options": options}
+        executor = processes if processes > 1 else None
+        sweep(env, try_candidates, rows, parts, executor=executor, check=True, **named)
     except KeyboardInterrupt:
         done = Sweep.open(parts).done if (parts / MANIFEST).exists() else 0
         _LOG.warning("stopped: %d of %d candidates are tried; the same call goes on from there", done, len(rows))
@@ -393,18 +383,3 @@ def _writable(parts: Path) -> Path:
         _LOG.warning("cannot write %s (%s); unfinished grasps are in %s", parts, error.strerror, other)
         return other
     return parts
-
-
-@contextmanager
-def _bar(total: int) -> Generator[Callable[[int, int, int], object]]:
-    """Show a progress bar if standard error is a terminal."""
-    if not sys.stderr.isatty():
-        yield lambda done, count, failed: None
-        return
-    from rich import progress as bars  # noqa: PLC0415 - slow to import
-    from rich.console import Console  # noqa: PLC0415
-
-    shown = (bars.TextColumn("grasps"), bars.BarColumn(), bars.MofNCompleteColumn(), bars.TimeRemainingColumn())
-    with bars.Progress(*shown, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("grasps", total=total)
-        yield lambda done, count, failed: bar.update(task, completed=min(done * BLOCK, total))

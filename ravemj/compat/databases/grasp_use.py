@@ -212,6 +212,9 @@ class GraspUse(ApproachRays):
     ) -> Run:
         """Simulate a grasp, and with noise again several times; ``mindist`` is 0 if the results differ too much.
 
+        They differ too much if the mean standard deviation of the robot's position along each axis, plus that of the
+        fingertips of each gripper joint, exceeds 0.7 of the noise.
+
         Args:
             graspingnoise: Random displacement of the target [m].
             Ngraspingtries: Number of runs with noise.
@@ -234,7 +237,7 @@ class GraspUse(ApproachRays):
         indices = list(self.manip.GetGripperIndices())
         places = np.array([T[:3, 3] for _, T in runs if T is not None])
         fingers = np.array([values[indices] for values, _ in runs])
-        deviation = float(places.std(axis=0).mean() + fingers.std(axis=0) @ self.jointmaxlengths)
+        deviation = float(places.std(axis=0).mean() + (fingers.std(axis=0) * self.jointmaxlengths).mean())
         return contacts, final, mindist if deviation <= 0.7 * graspingnoise else 0.0, volume
 
     @property

@@ -5,6 +5,7 @@ can be solved, and scripts with ``if not model.load(): model.autogenerate()`` wo
 """
 
 import logging
+import operator
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -165,7 +166,7 @@ class InverseKinematicsModel(SolvedJoints):
         if freejoints is not None:
             freeindices = self.getIndicesFromJointNames(freejoints)
         if freeindices is not None:
-            self.freeindices = [int(index) for index in freeindices]
+            self.freeindices = [*map(operator.index, freeindices)]
         try:
             self._solve(keep=False)
         except (InverseKinematicsError, UnsupportedError) as error:
@@ -237,9 +238,15 @@ class InverseKinematicsModel(SolvedJoints):
 
         Returns:
             The fraction of solved poses, and the fraction of poses with wrong solutions.
+
+        Raises:
+            ValueError: ``iktests`` is not a whole number above 0.
         """
         del jacobianthreshold
-        goals = self._random_goals(int(iktests))
+        count = int(iktests)
+        if count < 1:
+            raise ValueError(f"testik: iktests: is {count}, and should be 1 or more")
+        goals = self._random_goals(count)
         reached = wrong = 0
         with self.robot:
             for goal in goals:

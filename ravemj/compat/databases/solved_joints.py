@@ -1,5 +1,6 @@
 """Solved and free joints of an arm's IK solver, and the solver's name."""
 
+import operator
 import platform
 from collections.abc import Sequence
 from typing import Any
@@ -62,7 +63,7 @@ class SolvedJoints(DatabaseGenerator):
             raise InverseKinematicsError(f"'{owner.GetName()}' has no manipulator; AddManipulator gives it one")
         self.manip = arm
         self.iktype: IkParameterizationType | None = None if iktype is None else IkParameterizationType(iktype)
-        self.freeindices: list[int] | None = None if freeindices is None else [int(index) for index in freeindices]
+        self.freeindices: list[int] | None = None if freeindices is None else [*map(operator.index, freeindices)]
         if freejoints is not None:
             self.freeindices = self.getIndicesFromJointNames(freejoints)
         self.solveindices: list[int] | None = None
@@ -113,10 +114,13 @@ class SolvedJoints(DatabaseGenerator):
         """
         indices: list[int] = []
         for name in freejoints:
-            joint = self.robot.GetJoint(name) if isinstance(name, str) else None
-            if isinstance(name, str) and joint is None:
+            if not isinstance(name, str):
+                indices.append(operator.index(name))
+                continue
+            joint = self.robot.GetJoint(name)
+            if joint is None:
                 raise LookupError(f"'{self.robot.GetName()}' has no joint '{name}'")
-            indices.append(int(name) if joint is None else joint.GetDOFIndex())
+            indices.append(joint.GetDOFIndex())
         return indices
 
     def GetDefaultIndices(self, avoidPrismaticAsFree: bool = False) -> tuple[list[int], list[int]]:
@@ -143,6 +147,8 @@ class SolvedJoints(DatabaseGenerator):
         if outside:
             message = f"freeindices {outside} are outside of the arm '{self.manip.GetName()}', which has {arm}"
             raise InverseKinematicsError(message)
+        if len(set(free)) < len(free):
+            raise InverseKinematicsError(f"freeindices {list(free)} name a joint twice; name each once")
         return [index for index in arm if index not in free]
 
     def getDefaultFreeIncrements(self, freeincrot: float, freeinctrans: float) -> list[float]:

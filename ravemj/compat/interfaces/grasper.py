@@ -119,7 +119,7 @@ class Grasper(Helper):
             transformrobot: Whether the hand is placed and moves to the target; otherwise only the fingers move.
             onlycontacttarget: Whether contact with another body is a failure.
             tightgrasp: Not used, as in OpenRAVE.
-            graspingnoise: Largest random error of a surface point of the target [m]: the target itself does not move.
+            graspingnoise: Largest random error of the target along each axis [m]: the target itself does not move.
             execute: Whether the controller moves the joints to those of the grasp; None: it does.
             translationstepmult: Factor of the steps for sliders and the flight [m/rad]; None: 0.1.
             outputfinal: Whether to return the last configuration.
@@ -195,7 +195,7 @@ class Grasper(Helper):
         maxgrasps: int | None = None,
         finestep: float | None = None,
     ) -> tuple[int, list[tuple[Any, ...]]]:
-        """Simulate all combinations of rays, rolls, preshapes, standoffs and directions, one after the other.
+        """Simulate all combinations of rays, rolls, preshapes, standoffs and directions. Ctrl-C cancels it.
 
         The index of a candidate is standoff + preshape S + roll S P + ray S P R + direction S P R N: standoffs change
         first. Grasps are returned in the order of their indices.
@@ -215,7 +215,7 @@ class Grasper(Helper):
             forceclosurethreshold: Least ``mindist`` of a grasp; None: grasps need not be in force closure.
             collisionchecker: Not used.
             translationstepmult: As in ``Grasp``.
-            numthreads: Not used: candidates are simulated in one thread.
+            numthreads: Number of processes that simulate candidates; the grasps are the same. None: 1.
             startindex: Index of the first candidate.
             maxgrasps: Maximum number of grasps; None means any.
             finestep: As in ``Grasp``.
@@ -224,7 +224,7 @@ class Grasper(Helper):
             The index of the next candidate; and for each grasp position, direction, roll, standoff,
             manipulatordirection, mindist, volume, preshape, ``T_world_robot``, joint values and contacts.
         """
-        del tightgrasp, collisionchecker, numthreads
+        del tightgrasp, collisionchecker
         steps = given(finestep=finestep, translationstepmult=translationstepmult)
         noise, tries = graspingnoise if isinstance(graspingnoise, tuple) else (graspingnoise or 0.0, _TRIES)
         directions = (
@@ -249,7 +249,7 @@ class Grasper(Helper):
             parameters=parameters, friction=self.friction, forceclosure=forceclosurethreshold is not None
         )
         sweep = Sweep(startindex or 0, maxgrasps or 0, forceclosurethreshold, tries)
-        following, grasps = self._grasper.sweep(candidates_of(self._grasper, parts), request, sweep)
+        following, grasps = self._grasper.sweep(candidates_of(self._grasper, parts), request, sweep, numthreads or 1)
         return following, [_result(grasp) for grasp in grasps]
 
     def ConvexHull(

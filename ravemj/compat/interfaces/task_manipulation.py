@@ -199,14 +199,14 @@ class TaskManipulation(Helper):
         The gripper moves to the preshape of the grasp. A grasp is valid if the arm reaches it without collisions, the
         hand can approach the target in a straight line, and it can move the target to one of ``destposes``.
 
-        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``. ``grasptranslationstepmult``,
-        ``graspfinestep`` and ``releasegil`` are not used.
+        The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``; ``releasegil`` is not used.
 
         Args:
             graspindices: The columns of what a grasp has, or the first of them: ``igrasptrans``, the pose of the tool
                 in the target, 12 numbers by columns (``grasptrans_nocol`` counts more); ``igraspdir``, in the target,
                 or ``imanipulatordirection``, in the tool: where the hand comes from, None: the tool's direction;
-                ``igrasppreshape``, values of the gripper.
+                ``igrasppreshape``, values of the gripper. A row without a pose is simulated as ``Grasper.Grasp`` does,
+                from ``igraspdir``, ``igrasppos``, ``igrasproll``, ``igraspstandoff`` and ``ichuckingdirection``.
             grasps: The grasps, shape (n, m).
             target: The body to grasp.
             approachoffset: Distance from the grasp at which the motion ends [m].
@@ -217,6 +217,8 @@ class TaskManipulation(Helper):
             maxiter: Maximum number of iterations; by default 4000.
             randomgrasps: Whether to try grasps in random order; by default True.
             randomdests: Whether to try destinations in random order; by default True.
+            grasptranslationstepmult: As ``translationstepmult`` of ``Grasper.Grasp``, for simulated grasps.
+            graspfinestep: As ``finestep`` of ``Grasper.Grasp``, for simulated grasps.
             gmodel: Supplies ``graspindices``, ``grasps`` and ``target`` if they are not given.
             paddedgeometryinfo: Not supported.
             steplength: The step of the planner's trees, a weighted distance of configurations; by default 0.04.
@@ -233,7 +235,7 @@ class TaskManipulation(Helper):
             >>> goals, index, seconds, trajectory = taskmanip.GraspPlanning(
             ...     graspindices={"igrasptrans": 0}, grasps=grasps, target=box, approachoffset=0.05)
         """
-        del grasptranslationstepmult, graspfinestep, releasegil
+        del releasegil
         if paddedgeometryinfo is not None:
             raise UnsupportedError("GraspPlanning with paddedgeometryinfo", _PADDING)
         rows = np.atleast_2d(np.asarray(gmodel.grasps if grasps is None and gmodel else grasps, dtype=float))
@@ -241,6 +243,7 @@ class TaskManipulation(Helper):
         columns = _first_columns(graspindices or getattr(gmodel, "graspindices", {}))
         options = given(seedgrasps=seedgrasps, seeddests=seeddests, seedik=seedik, maxiter=maxiter)
         options |= given(randomgrasps=randomgrasps, randomdests=randomdests, steplength=steplength)
+        options |= given(grasptranslationstepmult=grasptranslationstepmult, graspfinestep=graspfinestep)
         options |= {"approachoffset": approachoffset}
         places = [checked_transform(pose, "destposes") for pose in (() if destposes is None else destposes)]
         plan = self._task.plan_grasp(GraspQuery(body, GraspTable(rows, columns), places, chosen(GraspMotion, options)))

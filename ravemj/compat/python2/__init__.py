@@ -7,9 +7,10 @@ fissix converts the syntax (``translation``); then constructs with another meani
 
 from pathlib import Path
 
+from ravemj.compat.python2.builtin import OLD_NAMES
 from ravemj.compat.python2.finder import execute, install_finder, is_python2
 
-__all__ = ["FILES", "execute", "install_finder", "is_python2"]
+__all__ = ["FILES", "OLD_NAMES", "execute", "install_finder", "is_python2"]
 
 FILES = {str(path) for path in Path(__file__).parent.glob("*.py")}
 """Files whose frames are hidden in tracebacks."""

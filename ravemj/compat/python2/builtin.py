@@ -147,6 +147,9 @@ _OLD = {
     "__import__": import_,
     "__openravepy_build_doc__": False,
 }
+OLD_NAMES = frozenset(_OLD) - frozenset(vars(builtins))
+"""Built-in names that Python 3 does not have."""
+
 BUILTIN = ModuleType("__builtin__")
 """Module ``__builtin__`` of scripts."""
 vars(BUILTIN).update({**vars(builtins), **_OLD, **_FOR_TRANSLATIONS})

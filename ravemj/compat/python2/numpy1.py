@@ -35,6 +35,15 @@ unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """
 """Names that only later versions export by ``from numpy import *``; they would hide those of Python and ``math``."""
 
+_OF_ARRAYS = ("repeat", "reshape", "resize", "tile")
+"""Functions whose second argument is a size."""
+
+_SIZED = ("empty", "eye", "identity", "ones", "zeros", *_OF_ARRAYS)
+"""Functions with a size as the first argument, and those of ``_OF_ARRAYS``."""
+
+_SIZES = {"M", "N", "n", "newshape", "repeats", "reps", "shape"}
+"""Names of arguments that are sizes."""
+
 _WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
 
 
@@ -86,6 +95,26 @@ def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
+def _with_sizes(name: str) -> Callable[..., Any]:
+    """Return a function that truncates a size that is a float, as NumPy did up to 1.11."""
+    function, first = getattr(np, name), int(name in _OF_ARRAYS)
+
+    @functools.wraps(function)
+    def call(*args: Any, **options: Any) -> Any:
+        sizes = [_whole(value) for value in args[first : first + 1]]
+        options |= {name: _whole(options[name]) for name in _SIZES & options.keys()}
+        return function(*args[:first], *sizes, *args[first + 1 :], **options)
+
+    return call
+
+
+def _whole(size: Any) -> Any:
+    """Return a size with integers in place of floats."""
+    if isinstance(size, float):
+        return int(size)
+    return type(size)(map(_whole, size)) if isinstance(size, list | tuple) else size
+
+
 def _fromstring(string: Any, dtype: Any = float, count: int = -1, sep: str = "") -> Any:
     return np.fromstring(string, dtype, count, sep=sep) if sep else np.frombuffer(as_bytes(string), dtype, count).copy()
 
@@ -110,6 +139,7 @@ def _names() -> dict[str, object]:
     names |= {"math": "math", "NINF": -np.inf, "NZERO": -0.0, "PZERO": 0.0}
     own = (_alen, _array, _asfarray, _asscalar, _divide, _find_common_type, _fromstring, _in1d, _msort, _sum)
     names |= {function.__name__[1:]: function for function in own}
+    names |= {name: _with_sizes(name) for name in _SIZED}
     names |= {function.__name__: _as_floats(function) for function in (np.ceil, np.fix, np.floor, np.trunc)}
     star = ({*np.__all__} - {*_ADDED.split()}) | {*names}
     types = {kind.__name__: kind for kind in (bool, complex, float, int, object, str)}

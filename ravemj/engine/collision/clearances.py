@@ -27,7 +27,7 @@ SLACK = 1e-7
 """Distance [m] below which nothing is proven, because of rounding errors."""
 
 _FAR = 1e10  # m
-_ONCE = 64  # configurations
+_ONCE = 128  # configurations
 
 _GEOM = mujoco.mjtGeom
 _SPHERE, _CAPSULE, _CYLINDER = int(_GEOM.mjGEOM_SPHERE), int(_GEOM.mjGEOM_CAPSULE), int(_GEOM.mjGEOM_CYLINDER)

@@ -21,7 +21,7 @@ from ravemj.model.scene import Bounds, KinBody
 
 
 class MovedBy(NamedTuple):
-    """Links that some DOFs move, or pairs of links that these move relative to each other."""
+    """Filter of links moved by DOFs, or of pairs of links moved relative to each other by DOFs."""
 
     dofs: tuple[int, ...]
 

@@ -106,14 +106,15 @@ def _by_content(
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
     for entry in (alone, at_home):
-        loaded = _loaded(f"{folder}/{entry}")
+        loaded = _loaded(folder, entry)
         if loaded:
             parts, digests = loaded
             if all(permits(path) and digest_of(path) == digest for path, digest in digests.items()):
                 return parts, ReferencedFiles(digests)
     parts, references = read(content)
     if references.refused is None:
-        _store(folder / (at_home if references.digests else alone), pack_entry(parts, references.digests))
+        entry = at_home if references.digests else alone
+        _store(folder / entry, pack_entry(entry, parts, references.digests))
     return parts, references
 
 
@@ -144,13 +145,14 @@ def reader_sources() -> list[str]:
     return [*(name for name in names if name.endswith(".py")), mesh.__file__, file_access.__file__]
 
 
-def _loaded(file: str) -> tuple[Parts, dict[str, str]] | None:
-    """Return the content of an entry, or None if it is missing or damaged."""
+def _loaded(folder: Path, entry: str) -> tuple[Parts, dict[str, str]] | None:
+    """Return the content of an entry, or None if it is missing, damaged, or a copy of another."""
+    file = f"{folder}/{entry}"
     try:
         descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time
         try:
             status = os.fstat(descriptor)
-            unpacked = unpack_entry(os.read(descriptor, status.st_size))
+            unpacked = unpack_entry(entry, os.read(descriptor, status.st_size))
         finally:
             os.close(descriptor)
     except FileNotFoundError:

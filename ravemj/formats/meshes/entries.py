@@ -2,8 +2,8 @@
 
 NumPy's own format would take several times as long to load, and pickles can run code.
 
-An entry contains the parts of a mesh and derived data that are slow to compute. It begins with ``_MAGIC`` and the
-CRC-32 of the rest.
+An entry contains the parts of a mesh, derived data that are slow to compute, and the entry's name, which reveals
+renamed copies. It begins with ``_MAGIC`` and the CRC-32 of the rest.
 """
 
 import json
@@ -23,8 +23,8 @@ _ARRAYS = 8  # at multiples of this
 _SINGLE, _DOUBLE, _TRIANGLE = np.dtype("<f4"), np.dtype("<f8"), np.dtype("<i4")
 
 
-def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
-    """Return the content of an entry: parts, and the digests of other files, as in ``ReferencedFiles``."""
+def pack_entry(name: str, parts: Parts, digests: dict[str, str]) -> bytes:
+    """Return the content of an entry: its name, parts, and the digests of other files as in ``ReferencedFiles``."""
     about: list[object] = []
     arrays: list[bytes] = []
     for part in parts:
@@ -36,20 +36,22 @@ def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
         about.append((counts, part.diffuse, part.ambient, part.transparency, collision_form(mesh), mesh.digest))
         arrays += [points.tobytes() if is_single else mesh.vertices.astype(_DOUBLE).tobytes()]
         arrays += [mesh.triangles.astype(_TRIANGLE).tobytes()]
-    header = json.dumps((digests, about)).encode()
+    header = json.dumps((name, digests, about)).encode()
     header += b" " * (-(_START + 4 + len(header)) % _ARRAYS)
     return _sealed(b"".join([len(header).to_bytes(4, "little"), header, *arrays]))
 
 
-def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
-    """Return the arguments of ``pack_entry`` for a content.
+def unpack_entry(name: str, content: bytes) -> tuple[Parts, dict[str, str]]:
+    """Return the parts and digests in the content of an entry.
 
     Raises:
-        ValueError: The content is damaged.
+        ValueError: The content is damaged, or belongs to an entry with another name.
     """
     _check(content)
     position = _START + 4 + int.from_bytes(content[_START : _START + 4], "little")
-    digests, about = json.loads(content[_START + 4 : position].decode())
+    own_name, digests, about = json.loads(content[_START + 4 : position].decode())
+    if own_name != name:
+        raise ValueError(f"it is a copy of the entry {own_name}")
     parts: list[MeshPart] = []
     for (vertices, triangles, is_single), diffuse, ambient, transparency, form, digest in about:
         kind = _SINGLE if is_single else _DOUBLE

@@ -36,12 +36,12 @@ def uncomputable(element: Element) -> SourceError:
 
 
 class Context:
-    """The context of reading one file and the files that it includes.
+    """Context of reading one file and the files that it includes.
 
     Attributes:
-        access: The files that may be read, and those that were read.
+        access: Controls which files may be read, and records those read.
         diagnostics: Receives diagnostics.
-        documents: The COLLADA documents of the model, and the budget of all its documents.
+        documents: COLLADA documents of the model, and the size limit of all its XML documents.
     """
 
     def __init__(self, access: FileAccess) -> None:

@@ -160,7 +160,7 @@ def _add_parts(
 
 
 def _add_groups(links: Mapping[str, LinkBuilder], elements: Mapping[str, Element], shapes: UrdfShapeReader) -> None:
-    """Add or_urdf's groups of shapes to all links; a link without shapes of a group has it empty."""
+    """Add or_urdf's groups of shapes to all links, empty where a link has no shapes of the group."""
     groups = {name: read_groups(element, shapes) for name, element in elements.items()}
     for group in dict.fromkeys(group for own_groups in groups.values() for group in own_groups):
         for name, link in links.items():

@@ -119,7 +119,7 @@ class OnePose:
         return constants, factors
 
     def _middle(self, tip: Vector) -> tuple[Turn, Turn]:
-        """Return both turns of the wrist's middle joint; see ``Wrist``."""
+        """Return both solutions of the wrist's middle joint, as in ``Wrist``."""
         less, more = _minus(self._wrist[0], tip), _plus(self._wrist[0], tip)
         below = max(_dot(less, less) / 2 - self._gaps[0], 0.0)
         above = max(_dot(more, more) / 2 - self._gaps[1], 0.0)

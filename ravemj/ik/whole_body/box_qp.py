@@ -24,8 +24,8 @@ class BoxProblem:
 
     def __init__(self, hessian: Floats, lower: Floats, upper: Floats) -> None:
         """Store a symmetric positive semidefinite matrix (n, n), which is regularized in place, and bounds (n,)."""
-        bounds = np.stack((lower, upper))
-        bounds[np.abs(bounds) < _SNAP] = 0.0
+        bounds = np.array((lower, upper))
+        bounds *= np.abs(bounds) >= _SNAP
         lower, upper = bounds
         room = upper - lower
         self._has_fixed = len(room) > 0 and float(room.min()) <= _SNAP

@@ -221,16 +221,18 @@ def tool_start(approach: Approach) -> Floats:
 def displaced(target: Target, noise: float, random: np.random.Generator) -> Target:
     """Return a target with a random error of its pose, OpenRAVE's ``graspingnoise``.
 
-    One random number divides the noise between a translation and a rotation about the centre of the sphere.
+    One random number divides the noise between a translation and a rotation about the centre of the sphere. The angle
+    [rad] is multiplied by the radius [m], as in OpenRAVE; divided by it, the base of a long arm would move by far more
+    than the noise.
 
     Args:
         target: The target.
-        noise: Largest displacement of a surface point [m].
+        noise: Largest translation along each axis [m].
         random: Source of random numbers.
     """
     share = random.random()
     axis = random.normal(size=3)
-    angle = random.random() * noise * share / max(target.ball.radius, 1e-9)
+    angle = random.random() * noise * share * target.ball.radius
     motion = np.eye(4)
     motion[:3, :3] = rotationMatrixFromAxisAngle(_unit(axis), angle)
     motion[:3, 3] = target.ball.center - motion[:3, :3] @ target.ball.center

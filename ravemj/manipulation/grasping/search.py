@@ -4,8 +4,10 @@ Whether the arm reaches a grasp is asked of a function, so that users' filters a
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal, NamedTuple, overload
 
 import numpy as np
@@ -178,9 +180,26 @@ Reach = Callable[[Floats], Floats | str]
 """Returns for ``T_world_tool`` the joint values of the arm, or the reason why there are none; the gripper is open."""
 
 
+def count_candidates(robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> int:
+    """Return the number of candidates of a search; the caller holds the lock.
+
+    Raises:
+        ArgumentError: as `search`.
+    """
+    with _opened(robot, arm):
+        return len(_CandidateSearch(robot, arm, target, choices).candidates())
+
+
 def search(
-    robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices, reach: Reach | None = None
-) -> Grasps:
+    robot: BodyState,
+    arm: Manipulator,
+    target: BodyState,
+    choices: Choices,
+    reach: Reach | None = None,
+    *,
+    span: tuple[int, int] | None = None,
+    progress: Callable[[int], object] | None = None,
+) -> list[Grasp]:
     """Return the grasps of an object, and the rejected candidates; robot and object are as before afterwards.
 
     Args:
@@ -189,17 +208,16 @@ def search(
         target: The object.
         choices: How candidates are made.
         reach: Whether the arm reaches a pose; None: the hand alone counts.
+        span: First and one past the last index of the candidates to try; None: all.
+        progress: Called with the number of candidates that were tried.
 
     Raises:
         ArgumentError: the manipulator has no gripper joints that close, no effector, or no parallel jaws that
             ``antipodal`` needs; or the object has no shapes.
     """
-    saved = robot.configuration()
-    try:
-        _open(robot, arm)
-        return Grasps(_CandidateSearch(robot, arm, target, choices).run(reach), choices.friction)
-    finally:
-        robot.restore(saved)
+    with _opened(robot, arm):
+        candidates = _CandidateSearch(robot, arm, target, choices)
+        return candidates.run(candidates.candidates()[slice(*(span or (None,)))], reach, progress)
 
 
 def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, friction: float) -> Grasp:
@@ -219,8 +237,18 @@ def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, 
         robot.restore(saved)
 
 
+@contextmanager
+def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
+    """Open the gripper as far as its limits go, and restore the robot afterwards."""
+    saved = robot.configuration()
+    try:
+        _open(robot, arm)
+        yield
+    finally:
+        robot.restore(saved)
+
+
 def _open(robot: BodyState, arm: Manipulator) -> None:
-    """Open the gripper as far as its limits go."""
     if not any(arm.chucking_direction):
         message = f"manipulator '{arm.name}' has no gripper joints that close"
         raise ArgumentError(f"{message}; name them in <joints>, and their signs in <closingdirection>")
@@ -239,6 +267,10 @@ class _Candidate(NamedTuple):
     approach: Floats
     closed: Closed | None
     reason: str
+
+
+_Make = Callable[[HandTests], _Candidate]
+"""A candidate that is not tried yet."""
 
 
 class _CandidateSearch:
@@ -271,12 +303,19 @@ class _CandidateSearch:
         center = masses @ centers / masses.sum() if masses.sum() > 0 else (self._low + self._high) / 2
         return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
 
-    def run(self, reach: Reach | None) -> list[Grasp]:
+    def candidates(self) -> list[_Make]:
+        """Return the candidates, which are not tried yet."""
+        return list((self._flown if self._choices.method == "fly" else self._jawed)(self._surface()))
+
+    def run(
+        self, candidates: Sequence[_Make], reach: Reach | None, progress: Callable[[int], object] | None
+    ) -> list[Grasp]:
         judged: list[Grasp] = []
-        surface = self._surface()
         with hand_tests(self._world, self._robot, self._target) as tests:
-            make = self._flown if self._choices.method == "fly" else self._jawed
-            judged = [self._judged(candidate, tests) for candidate in make(surface, tests)]
+            for number, make in enumerate(candidates, 1):
+                judged.append(self._judged(make(tests), tests))
+                if progress is not None:
+                    progress(number)
         if reach is not None:
             judged = [grasp if grasp.reason else self._reached(grasp, reach) for grasp in judged]
         return judged
@@ -294,35 +333,43 @@ class _CandidateSearch:
         hit, rows = self._world.rays.first_hits(in_world, self._geoms)
         return hit, np.hstack([(rows[:, :3] - origin) @ R, rows[:, 3:] @ R])
 
-    def _flown(self, surface: Floats, tests: HandTests) -> Iterator[_Candidate]:
-        """Fly against each point of the surface, with each roll and standoff."""
+    def _flown(self, surface: Floats) -> Iterator[_Make]:
+        """Yield flights against each point of the surface, with each roll and standoff."""
         tool_direction = np.array(self._arm.direction)
         for row in surface:
             for roll in 2 * np.pi * np.arange(self._choices.rolls) / self._choices.rolls:
                 for standoff in _STANDOFFS:
-                    approach = Approach(-row[3:], tool_direction, row[:3], float(roll), standoff)
-                    closed = close(self._hand, self._placed, approach, tests)
-                    reason = "" if closed.reason is None else str(closed.reason)
-                    yield _Candidate(closed.T_world_base, -row[3:], closed, reason)
+                    yield partial(self._fly, Approach(-row[3:], tool_direction, row[:3], float(roll), standoff))
 
-    def _jawed(self, surface: Floats, tests: HandTests) -> Iterator[_Candidate]:
-        """Place the jaws at each pair of opposite points, and close them."""
+    def _fly(self, approach: Approach, tests: HandTests) -> _Candidate:
+        closed = close(self._hand, self._placed, approach, tests)
+        reason = "" if closed.reason is None else str(closed.reason)
+        return _Candidate(closed.T_world_base, approach.direction, closed, reason)
+
+    def _jawed(self, surface: Floats) -> Iterator[_Make]:
+        """Yield poses of the jaws at each pair of opposite points."""
         jaws = jaws_of(self._robot, self._arm)
-        T_tool_base = inverse(self._hand.T_base_tool)
         for pair in antipodal.pairs(surface, self._cast, self._choices.friction, jaws.width - _CLEARANCE):
             if pair.reason:
-                yield _Candidate(self._T_world_target @ T_tool_base, np.zeros(3), None, pair.reason)
+                yield partial(self._unplaced, pair.reason)
                 continue
             for T_target_tool in antipodal.tool_poses(pair, jaws, self._choices.rolls):
-                T_world_base = self._T_world_target @ T_target_tool @ T_tool_base
-                along = T_target_tool[:3, :3] @ jaws.approach
-                hits = self._approach(T_world_base, self._T_world_target[:3, :3] @ along, tests)
-                if hits:
-                    yield _Candidate(T_world_base, along, None, f"in collision with '{hits}'")
-                    continue
-                approach = Approach(along, jaws.approach, flies=False)
-                closed = close(replace(self._hand, T_world_base=T_world_base), None, approach, tests)
-                yield _Candidate(T_world_base, along, closed, "" if closed.reason is None else str(closed.reason))
+                yield partial(self._close_jaws, T_target_tool, jaws.approach)
+
+    def _unplaced(self, reason: str, tests: HandTests) -> _Candidate:
+        del tests
+        return _Candidate(self._T_world_target @ inverse(self._hand.T_base_tool), np.zeros(3), None, reason)
+
+    def _close_jaws(self, T_target_tool: Floats, tool_direction: Floats, tests: HandTests) -> _Candidate:
+        """Move the jaws to a pose along a straight line, and close them."""
+        T_world_base = self._T_world_target @ T_target_tool @ inverse(self._hand.T_base_tool)
+        along = T_target_tool[:3, :3] @ tool_direction
+        hits = self._approach(T_world_base, self._T_world_target[:3, :3] @ along, tests)
+        if hits:
+            return _Candidate(T_world_base, along, None, f"in collision with '{hits}'")
+        approach = Approach(along, tool_direction, flies=False)
+        closed = close(replace(self._hand, T_world_base=T_world_base), None, approach, tests)
+        return _Candidate(T_world_base, along, closed, "" if closed.reason is None else str(closed.reason))
 
     def _approach(self, T_world_base: Floats, along: Floats, tests: HandTests) -> str | None:
         """Return what the open hand touches at the grasp or on the straight line to it."""

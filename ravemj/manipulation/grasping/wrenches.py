@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import Floats
 from ravemj.core.transforms import cross_rows
-from ravemj.manipulation.grasping.hulls import hull, missing_direction, nearest_facet
+from ravemj.manipulation.grasping.hulls import hull_volume, missing_direction, nearest_facet
 
 EDGES = 8
 """The number of edges of a friction cone in OpenRAVE."""
@@ -145,8 +145,7 @@ def volume(positions: ArrayLike, normals: ArrayLike, friction: float, edges: int
         friction: Friction coefficient.
         edges: Number of edges of a friction cone.
     """
-    convex_hull = hull(_points(positions, normals, friction, edges))
-    return 0.0 if convex_hull is None else convex_hull.volume
+    return hull_volume(_points(positions, normals, friction, edges))
 
 
 def _points(positions: ArrayLike, normals: ArrayLike, friction: float, edges: int) -> Floats:

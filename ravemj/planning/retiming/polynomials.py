@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
+from ravemj.planning.ramps import Ramps, fit_from_rest, fit_matched_ramps, fit_ramps, shortest_ramps
 from ravemj.planning.retiming.segments import LONGER, MOST_ATTEMPTS, PathLimits, Segment, SegmentRows
 
 _SLACK = 1e-12
@@ -224,15 +224,36 @@ class Parabolic:
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
         """Return the rows of a segment: each change of acceleration, and the end."""
-        bounds = duration, limits.velocity, limits.acceleration
         if segment.is_from_rest_to_rest:
-            ramps = fit_from_rest(segment.step, *bounds)
+            ramps = self._fit_from_rest(segment.step, duration, limits)
         else:
-            ramps = fit_ramps(segment.step, segment.start_velocity, segment.end_velocity, *bounds)
+            ends = segment.start_velocity, segment.end_velocity
+            ramps = fit_ramps(segment.step, *ends, duration, limits.velocity, limits.acceleration)
         if ramps is None:
             return None
         times = ramps.changes(_SAME_TIME) if self._with_changes else np.array([duration])
         return SegmentRows(times, ramps.states(times))
+
+    def _fit_from_rest(self, step: Floats, duration: float, limits: PathLimits) -> Ramps | None:
+        return fit_from_rest(step, duration, limits.velocity, limits.acceleration)
+
+
+class MatchedRamps(Parabolic):
+    """Parabolic retimer whose joints all change their accelerations at the same times.
+
+    Its duration grows in steps of 5 % from that of the slowest joint until the limits hold.
+    """
+
+    def shortest(self, segment: Segment, limits: PathLimits) -> float:
+        """Return the duration of a segment [s]."""
+        duration = super().shortest(segment, limits)
+        if segment.is_from_rest_to_rest and np.isfinite(duration):
+            while duration > 0 and self._fit_from_rest(segment.step, duration, limits) is None:
+                duration *= LONGER
+        return duration
+
+    def _fit_from_rest(self, step: Floats, duration: float, limits: PathLimits) -> Ramps | None:
+        return fit_matched_ramps(step, duration, limits.velocity, limits.acceleration)
 
 
 _SIGNS = (1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0)

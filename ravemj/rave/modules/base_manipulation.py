@@ -155,7 +155,7 @@ class Manipulation:
         """
         if not options.steplength > 0:
             raise ArgumentError(f"steplength: is {options.steplength:g}, and should be more than 0")
-        values, jitter = self.stated(dofs), options.jitter
+        values = self.stated(dofs)
         _check(goals, starts, count(values.groups))
         if not (len(goals) or sets.goals):
             raise PlanningError("there is no goal: goal, goals, matrices and the like are all empty")
@@ -165,8 +165,6 @@ class Manipulation:
         values.numbers["_fsteplength"] = options.steplength
         values.certify = options.certify
         sets.state(values, lambda: hand_of(self.env, values, gripper=True), sampled)
-        if values.conditions.manifold is not None:
-            jitter = 0.0
         values.postprocessing = postprocessing or values.postprocessing
         space, conditions = values.space(), values.conditions
         self._warn_of_limits(conditions, space, goals)
@@ -174,7 +172,7 @@ class Manipulation:
             [space.clamp(configuration) for configuration in some]
             for some in (starts or [values.vectors["_vinitialconfig"]], goals)
         ]
-        moved = [jittered(conditions, space, some, jitter) for some in wanted]
+        moved = [jittered(conditions, space, some, options.jitter) for some in wanted]
         values.vectors |= {"_vinitialconfig": np.array(moved[0]).ravel(), "_vgoalconfig": np.array(moved[1]).ravel()}
         status = PlannerStatus("no attempt was allowed; give at least one try")
         for attempt in range(options.maxtries):

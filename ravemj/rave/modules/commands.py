@@ -1,5 +1,6 @@
 """Text commands of the modules, and the parsing of their arguments."""
 
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import wraps
@@ -22,6 +23,7 @@ from ravemj.manipulation.options import (
     chosen,
 )
 from ravemj.rave.interface import Command, Module
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules.base_manipulation import (
     BaseManipulation,
     Manipulation,
@@ -38,6 +40,8 @@ from ravemj.trajectories.serialization import AS_TEXT
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+
+_LOG = logging.getLogger("ravemj")
 
 
 class Tokens:
@@ -121,7 +125,7 @@ def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
     while tokens:
         name = tokens.next().lower()
         if name not in readers:
-            raise ArgumentError(f"the command has no argument '{name}'; it takes {', '.join(readers)}")
+            raise ArgumentError(f"the command has no argument '{name}'; it takes {', '.join(readers) or 'none'}")
         try:
             values[name] = readers[name](tokens)
         except ArgumentError as error:
@@ -224,6 +228,37 @@ def _set_robot(manipulation: Manipulation, arguments: str) -> str | None:
     return "" if manipulation.choose(arguments.strip()) else None
 
 
+def _named_body(manipulation: Manipulation, name: str) -> KinBody | None:
+    """Return a body of the environment by name; log a warning if there is none."""
+    body = manipulation.env.GetKinBody(name)
+    if body is None:
+        known = ", ".join(f"'{one.GetName()}'" for one in manipulation.env.GetBodies())
+        _LOG.warning("there is no body '%s', only %s", name, known)
+    return body
+
+
+def _grab_body(manipulation: Manipulation, arguments: str) -> str | None:
+    """Grab a body with the active manipulator: ``GrabBody name B``."""
+    options = read_options(arguments, {"name": text})
+    if "name" not in options:
+        raise ArgumentError("GrabBody: give the body: GrabBody name B")
+    body = _named_body(manipulation, options["name"])
+    return "" if body is not None and manipulation.robot.Grab(body) else None
+
+
+def _release_all(manipulation: Manipulation, arguments: str) -> str:
+    """Release all bodies that the robot grabs."""
+    read_options(arguments, {})
+    manipulation.robot.ReleaseAllGrabbed()
+    return ""
+
+
+_GRABBING: Mapping[str, Callable[[Manipulation, str], str | None]] = {
+    "GrabBody": _grab_body,
+    "ReleaseAll": _release_all,
+}
+
+
 def _move_active_joints(base: BaseManipulation, arguments: str) -> str:
     """Move the active DOFs to one of several goals without collisions."""
     dof = base.robot.GetActiveDOF()
@@ -283,9 +318,9 @@ def _jitter_active(base: BaseManipulation, arguments: str) -> str:
     return _final_and_reply(base, base.jitter_active(chosen(JitterMotion, options)), options)
 
 
-def _set_minimum_goal_paths(base: BaseManipulation, arguments: str) -> str:
+def _set_minimum_goal_paths(module: BaseManipulation | TaskManipulation, arguments: str) -> str:
     """Set the minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
-    del base
+    del module
     Tokens(arguments).count()
     return ""
 
@@ -298,6 +333,7 @@ BASE_COMMANDS: Mapping[str, Callable[[BaseManipulation, str], str | None]] = {
     "MoveUnsyncJoints": _move_unsync_joints,
     "JitterActive": _jitter_active,
     "SetMinimumGoalPaths": _set_minimum_goal_paths,
+    **_GRABBING,
     "SetRobot": _set_robot,
 }
 """The commands of ``BaseManipulation``."""
@@ -322,7 +358,7 @@ def _close_fingers(task: TaskManipulation, arguments: str) -> str:
 def _release_fingers(task: TaskManipulation, arguments: str) -> str:
     """Open the gripper and release a body."""
     options = _gripper_options(task, arguments)
-    target = task.env.GetKinBody(options["target"]) if "target" in options else None
+    target = _named_body(task, options["target"]) if "target" in options else None
     motion = task.release_fingers(options.get("movingdir"), target, finger_steps(options))
     return _final_and_reply(task, motion, options)
 
@@ -366,6 +402,8 @@ TASK_COMMANDS: Mapping[str, Callable[[TaskManipulation, str], str | None]] = {
     "ReleaseActive": _release_active,
     "GraspPlanning": _grasp_planning,
     "EvaluateConstraints": _evaluate_constraints,
+    **_GRABBING,
+    "SetMinimumGoalPaths": _set_minimum_goal_paths,
     "SetRobot": _set_robot,
 }
 """The commands of ``TaskManipulation``."""
@@ -425,13 +463,12 @@ _CONSTRAINT: Mapping[str, Reader] = {
 
 GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),
-    *("igrasppos", "igrasproll", "igraspstandoff"),
+    *("igrasppos", "igrasproll", "igraspstandoff", "ichuckingdirection"),
 )
-"""Column names of a grasp table; the last three are for programs that close the hand, and have no effect."""
+"""Column names of a grasp table; the last four are for rows without a pose, which are simulated."""
 
 _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),
     **readers_of(GraspMotion),
-    **dict.fromkeys(("grasptranslationstepmult", "graspfinestep"), Tokens.number),
     **{"grasps": _table, "target": text, "posedests": _several(_pose), "matdests": _several(Tokens.matrix)},
 }

@@ -1,13 +1,18 @@
 """Grasps of the active manipulator: the module ``Grasper``."""
 
+import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import pickle
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
+from ravemj.core.processes import blocks_of, map_parts
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.hand import hand_tests
 from ravemj.engine.collision.moving import kept_in_place
@@ -22,6 +27,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.base_manipulation import Manipulation
 from ravemj.rave.planning.grasper import GraspParameters, motion_of, simulate
 from ravemj.rave.planning.planner import PlanningError
+from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 
 _RANDOM = np.random.default_rng()
@@ -32,6 +38,9 @@ _MOST = 16
 
 _CLOSED = 1e-9
 """Distance to the wrench hull from which the first test counts; OpenRAVE's."""
+
+_BLOCK = 32
+"""Number of candidates that a process gets at a time."""
 
 _CHECKED = int(IkFilterOptions.CheckEnvCollisions)
 
@@ -46,6 +55,7 @@ class GraspRequest:
         friction: Friction coefficient.
         forceclosure: Whether to compute the distance and the volume of the wrench hull.
         stablecontacts: Whether only contacts count that the fingers press against the target.
+        least: Least distance to the wrench hull that a grasp needs; below, its volume is 0.
     """
 
     parameters: GraspParameters = field(default_factory=GraspParameters)
@@ -53,6 +63,7 @@ class GraspRequest:
     friction: float = 0.0
     forceclosure: bool = False
     stablecontacts: bool = False
+    least: float = 0.0
 
 
 class GraspAnswer(NamedTuple):
@@ -151,37 +162,62 @@ class GraspSimulation(Manipulation):
         if request.stablecontacts:
             kept = self._is_stable(grasped, request)
             contacts, links = contacts[kept], links[kept]
-        distance, size = force_closure(contacts, request.friction) if request.forceclosure else (None, None)
+        distance, size = None, None
+        if request.forceclosure:
+            distance, size = force_closure(contacts, request.friction, request.least)
         return GraspAnswer(contacts, links, grasped.closed.end, distance, size, grasped.closed.path)
 
-    def sweep(self, candidates: Candidates, request: GraspRequest, sweep: Sweep) -> tuple[int, list[Found]]:
-        """Simulate candidates one after the other, and keep those that are good enough.
+    def sweep(
+        self, candidates: Candidates, request: GraspRequest, sweep: Sweep, processes: int = 1
+    ) -> tuple[int, list[Found]]:
+        """Simulate candidates, and keep those that are good enough.
+
+        Args:
+            candidates: The candidates.
+            request: How hands come, and what is computed.
+            sweep: Which candidates, and which grasps.
+            processes: Number of processes; few candidates are simulated in this one. The grasps are the same.
 
         Returns:
             The index of the next candidate, and the grasps in the order of their indices.
         """
-        grasps: list[Found] = []
+        self._manipulator()
+        spans, grasps = blocks_of(sweep.start, len(candidates), _BLOCK), list[Found]()
+        if processes > 1 and len(spans) > 1:
+            content = pickle.dumps((self.robot, candidates, request, sweep))
+            parts = map_parts(_sweep_part, content, spans, processes)
+        else:
+            parts = ([found] for found in self.good_ones(candidates, request, sweep, (sweep.start, len(candidates))))
+        with closing(parts):
+            for number, found in itertools.chain.from_iterable(parts):
+                mine = replace(found.parameters, target=request.parameters.target)
+                grasps.append(found._replace(parameters=mine))
+                if len(grasps) == sweep.most:
+                    return number + 1, grasps
+        return max(len(candidates), sweep.start), grasps
+
+    def good_ones(
+        self, candidates: Candidates, request: GraspRequest, sweep: Sweep, span: tuple[int, int]
+    ) -> Generator[tuple[int, Found]]:
+        """Yield the index of each candidate within a span that is good enough, and its grasp."""
         manip, state = self._manipulator(), self.robot.simulation_state
-        gripper, number = manip.GetGripperIndices(), 0
+        gripper = manip.GetGripperIndices()
         with state.simulation.lock, kept_in_place(state):
-            for number, (parameters, preshape) in enumerate(candidates.all(request.parameters)):
-                if number < sweep.start:
-                    continue
-                if sweep.most and len(grasps) >= sweep.most:
-                    return number, grasps
+            chosen = itertools.islice(enumerate(candidates.all(request.parameters)), *span)
+            for number, (parameters, preshape) in chosen:
                 self.robot.SetDOFValues(preshape, gripper)
                 answer = self._good(replace(request, parameters=parameters), sweep, manip)
                 if answer is not None:
-                    grasps.append(Found(parameters, preshape, answer))
-        return max(len(candidates), sweep.start), grasps
+                    yield number, Found(parameters, preshape, answer)
 
     def _good(self, request: GraspRequest, sweep: Sweep, manip: Manipulator) -> GraspAnswer | None:
-        noise = request.parameters.graspingnoise
+        noise, noisy = request.parameters.graspingnoise, replace(request, forceclosure=False)
         try:
-            answer = self.grasp(replace(request, parameters=replace(request.parameters, graspingnoise=0.0)))
+            exact = replace(request.parameters, graspingnoise=0.0)
+            answer = self.grasp(replace(request, parameters=exact, least=sweep.threshold or 0.0))
             if sweep.threshold is not None and (answer.mindist or 0.0) < sweep.threshold:
                 return None
-            if noise > 0 and not self._is_robust([self.grasp(request) for _ in range(sweep.tries)], noise):
+            if noise > 0 and not self._is_robust([self.grasp(noisy) for _ in range(sweep.tries)], noise):
                 return None
         except PlanningError:
             return None
@@ -279,16 +315,32 @@ class GraspSimulation(Manipulation):
         return kept
 
 
-def force_closure(contacts: Floats, friction: float) -> tuple[float, float]:
+def _sweep_part(content: bytes, span: tuple[int, int]) -> list[tuple[int, Found]]:
+    """Return the good candidates within a span, without their target, in another process."""
+    robot, candidates, request, sweep = _unpickled(content)
+    simulation = GraspSimulation(robot.GetEnv())
+    simulation.choose(robot.GetName())
+    good_ones = simulation.good_ones(candidates, request, sweep, span)
+    return [(number, found._replace(parameters=replace(found.parameters, target=None))) for number, found in good_ones]
+
+
+@lru_cache(maxsize=1)
+def _unpickled(content: bytes) -> tuple[Robot, Candidates, GraspRequest, Sweep]:
+    parts: tuple[Robot, Candidates, GraspRequest, Sweep] = pickle.loads(content)
+    return parts
+
+
+def force_closure(contacts: Floats, friction: float, least: float = 0.0) -> tuple[float, float]:
     """Return OpenRAVE's ``mindist`` and ``volume`` of the wrenches about the origin of the world.
 
     Args:
         contacts: Contact points and normals, shape (n, 6).
         friction: Friction coefficient.
+        least: ``mindist`` below which the volume is 0, since computing it takes a hundred times as long.
     """
     some = contacts[np.arange(_MOST) * len(contacts) // _MOST] if len(contacts) > _MOST else contacts
     distance = epsilon(some[:, :3], some[:, 3:], friction)
     if distance <= _CLOSED and len(some) < len(contacts):
         some = contacts
         distance = epsilon(some[:, :3], some[:, 3:], friction)
-    return distance, volume(some[:, :3], some[:, 3:], friction)
+    return distance, 0.0 if distance < least else volume(some[:, :3], some[:, 3:], friction)

@@ -103,7 +103,7 @@ def _grasp_threaded(grasper: GraspSimulation, arguments: str) -> str:
         tries,
         options.get("checkik", False),
     )
-    following, grasps = grasper.sweep(candidates, request, sweep)
+    following, grasps = grasper.sweep(candidates, request, sweep, options.get("numthreads", 1))
     return f"{following} {len(grasps)} " + "".join(map(_found_text, grasps))
 
 

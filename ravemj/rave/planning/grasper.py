@@ -65,7 +65,7 @@ class GraspParameters:
         avoidcontact: Whether fingers stop before contact.
         leavescontact: Whether fingers that start in contact may leave it, if they avoid contact.
         avoidlinks: Indices of links that must touch nothing.
-        graspingnoise: Largest random displacement of a surface point of the target [m].
+        graspingnoise: Largest random displacement of the target along each axis [m].
         coarsestep: Step of fingers until contact [rad].
         finestep: Step from which the tolerance of contacts follows [rad].
         translationstepmult: Factor of both steps for sliders and for the flight [m/rad].

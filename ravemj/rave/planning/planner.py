@@ -111,7 +111,7 @@ class PlannerStatus(ApiObject):
     def __hash__(self) -> int:
         return hash(self.statusCode)
 
-    def __and__(self, other: Any) -> PlannerStatusCode:  # noqa: ANN401 - a status, a code or a number
+    def __and__(self, other: Any) -> int:  # noqa: ANN401 - a status, a code or a number
         return self.statusCode & (other.statusCode if isinstance(other, PlannerStatus) else int(other))
 
     __rand__ = __and__

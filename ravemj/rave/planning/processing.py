@@ -10,6 +10,7 @@ import numpy as np
 
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.manipulation.processing import RETIMERS, SMOOTHERS, SPLINE, Processor, profile_of
+from ravemj.planning.certificates import Certificate
 from ravemj.planning.retiming.segments import OutsideLimitsError, RetimingError
 from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.values import CHAIN, Values
@@ -33,8 +34,8 @@ TIMING: Mapping[str, str] = {
 }
 """Common parameters of OpenRAVE's retimers and smoothers, with its defaults.
 
-Of these, only ``interpolation``, ``hastimestamps``, ``hasvelocities``, ``outputaccelchanges`` and ``verifyinitialpath``
-have an effect.
+Of these, only ``interpolation``, ``hastimestamps``, ``hasvelocities``, ``outputaccelchanges``, ``multidofinterp`` 2
+(all joints change their accelerations at the same times) and ``verifyinitialpath`` have an effect.
 """
 
 _CONSTRAINTS: Mapping[str, str] = {
@@ -70,10 +71,10 @@ class Retimer(Planner):
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Process a trajectory in place."""
         try:
-            path = _processed(self._env, self._xmlid, values, traj.waypoints, self._proceed)
+            path, certificate = _processed(self._env, self._xmlid, values, traj.waypoints, self._proceed)
         except RetimingError as error:
             return self._failed(str(error))
-        traj.set_waypoints(path)
+        traj.set_waypoints(path, certificate)
         return self._solved(f"{len(path)} waypoints in {path.duration():.6g} s")
 
 
@@ -95,8 +96,8 @@ TRAJECTORY_PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
 
 def _processed(
     env: "Environment", name: str, values: Values, path: Waypoints, proceed: Callable[[int], bool]
-) -> Waypoints:
-    """Run a retimer or smoother on a path.
+) -> tuple[Waypoints, Certificate | None]:
+    """Run a retimer or smoother on a path; return also the certificate of ``Processor.process``.
 
     Raises:
         RetimingError: the path cannot be retimed.
@@ -114,6 +115,7 @@ def _processed(
                 int(numbers["_nmaxiterations"]),
                 values.random(),
                 lambda points: values.conditions.straight_edges(values.space(), [points[0], points[-1]]),
+                bool(values.certify),
                 proceed,
             )
             return processor.process(path, env.simulation.body)
@@ -133,15 +135,17 @@ def _chain(values: Values) -> Iterator[tuple[str, Values]]:
         name, text = own.postprocessing
 
 
-def _curved(run: Callable[[str], Waypoints], values: Values, find_body: FindBody) -> Waypoints:
+def _curved(
+    run: Callable[[str], tuple[Waypoints, Certificate | None]], values: Values, find_body: FindBody
+) -> tuple[Waypoints, Certificate | None]:
     """Return a smooth motion through a path on a constraint; with corners if a smooth one would leave the constraint.
 
     ``run`` retimes the path with the retimer of a name.
     """
     try:
-        curve = run(SPLINE)
+        curve, _ = run(SPLINE)
         if _is_allowed(curve, values, find_body):
-            return curve
+            return curve, None
     except RetimingError:
         pass  # there are too few waypoints, or a base moves
     return run("LinearTrajectoryRetimer")
@@ -159,7 +163,7 @@ def _is_allowed(curve: Waypoints, values: Values, find_body: FindBody) -> bool:
 
 def post_process(env: "Environment", values: Values, traj: Trajectory) -> PlannerStatus | None:
     """Run the configured post-processing on a path in place; return the status of the first failure, or None."""
-    path = traj.waypoints
+    path, certificate = traj.waypoints, None
     if values.postprocessing[0] and len(path) == 1:
         values = replace(values, postprocessing=("LinearTrajectoryRetimer", ""))  # nothing to smooth
     for name, own in _chain(values):
@@ -167,8 +171,9 @@ def post_process(env: "Environment", values: Values, traj: Trajectory) -> Planne
             return PlannerStatus(f"there is no planner '{name}' to process the path", errorOrigin=name)
         try:
             run = partial(_processed, env, values=own, path=path, proceed=lambda attempt: True)
-            path = _curved(run, own, env.simulation.body) if name.lower() == SPLINE else run(name)
+            is_spline = name.lower() == SPLINE
+            path, certificate = _curved(run, own, env.simulation.body) if is_spline else run(name)
         except RetimingError as error:
             return PlannerStatus(str(error), errorOrigin=name)
-    traj.set_waypoints(path)
+    traj.set_waypoints(path, certificate)
     return None

@@ -12,6 +12,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, inverse
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool
+from ravemj.geometry_functions.regions import PoseSet
 from ravemj.manipulation.refusals import Cause
 from ravemj.manipulation.region_errors import at_values, region_error
 from ravemj.manipulation.roots import PoseSolutions, RegionRoots, Sampler
@@ -93,7 +94,13 @@ def region_roots(values: Values, hand: Hand, regions: Sequence[Region], holding:
     errors = [at_values(bodies, region_error(poses_of_tool, tool, None)) for poses_of_tool in sets]
     solver = _PoseSolver(hand, values.space(), errors, [_at_start(hand, region) for region in regions])
     solve = solver.solve if solver.solves_poses else solver.search
-    return RegionRoots(sets, names, solve, lambda region, row: _repaired(values, errors[region], row))
+    return RegionRoots(
+        sets,
+        names,
+        solve,
+        lambda region, row: _repaired(values, errors[region], row),
+        lambda region, pose: solver.shortfall(region, sets[region], pose),
+    )
 
 
 def preshaped_dofs(manip: Manipulator, regions: Sequence[Region]) -> list[int]:
@@ -189,6 +196,21 @@ class _PoseSolver:
         if asked and len(solver.solve_one(goal, limits=True)):
             return Cause.FILTER
         return Cause.LIMITS if shortfall(solver, goal)[1] else Cause.REACH
+
+    def shortfall(self, region: int, poses: PoseSet, T_world_tool: Floats) -> str:
+        """Describe how far the arm stays from a region: a local minimum, from the configuration nearest to one pose."""
+        solver, base = self._manip.ik_solver(_Type.Transform6D), self._manip.GetBase()
+        T_world_base = np.eye(4) if base is None else base.GetTransform()
+        near = solver.nearest_reachable(inverse(T_world_base) @ T_world_tool, self._manip.GetArmDOFValues())
+        values = self._starts[region].copy()
+        values[self._columns] = near.values
+        _, nearer = project(values, self._errors[region], self._space, TOLERANCE, _STEPS)
+        away = [
+            poses.displacement(T_world_base @ T)
+            for T in solver.chain.forward(np.array([values, nearer])[:, self._columns])
+        ]
+        distance, angle = np.linalg.norm(min(away, key=np.linalg.norm).reshape(2, 3), axis=1).tolist()
+        return str(replace(near, distance=distance, angle=angle))
 
     def search(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
         """Return configurations in a region, projected from random ones; the sampled pose is not used."""

@@ -240,6 +240,7 @@ unpacked(Uint8Array.from(atob(document.getElementById("scene").textContent), (le
   .then((scene) => {
     const player = new Player(document.getElementById("view"), scene);
     connectControls(player);
+    document.getElementById("notes").open = innerWidth >= 600;  // on a phone they would cover the picture
     window.ravemj = player;  // for scripts of pages that hold this one
   })
   .catch((error) => {

@@ -3,16 +3,19 @@
 import contextlib
 import os
 import signal
+import sys
 import threading
 import warnings
-from collections.abc import Callable, Generator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context, parent_process
+from types import ModuleType
 from typing import Any, TypeVar
 
 from ravemj.errors import RavemjError, RavemjWarning
 
+_Part = TypeVar("_Part")
 _Result = TypeVar("_Result")
 
 _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -33,11 +36,13 @@ def _end_with_driver() -> None:
 
 
 class _Worker:
-    """A process in its own pool."""
+    """A process in its own pool; it runs the main module of the script only if ``needs_main``."""
 
-    def __init__(self) -> None:
-        self.pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_begin)
-        self.process = self.pool.submit(os.getpid)
+    def __init__(self, needs_main: bool) -> None:
+        self.needs_main = needs_main
+        with contextlib.nullcontext() if needs_main else _other_main():
+            self.pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_begin)
+            self.process = self.pool.submit(os.getpid)
 
     def kill(self) -> None:
         """Kill the process immediately."""
@@ -54,11 +59,12 @@ class Workers(Executor):
 
     Args:
         count: Number of processes.
+        needs_main: Whether calls use functions or classes of the script, which each process imports then.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, *, needs_main: bool = True) -> None:
         with _one_thread():
-            self._idle = [_Worker() for _ in range(count)]
+            self._idle = [_Worker(needs_main) for _ in range(count)]
             self._busy: dict[Future[Any], _Worker] = {}
             try:
                 for worker in self._idle:
@@ -103,7 +109,21 @@ class Workers(Executor):
 def _restarted(worker: _Worker) -> _Worker:
     worker.pool.shutdown(wait=False)
     with _one_thread():
-        return _Worker()
+        return _Worker(worker.needs_main)
+
+
+@contextlib.contextmanager
+def _other_main() -> Generator[None]:
+    """Have processes that start within the block not import the main module.
+
+    Importing it would repeat what a script does without ``if __name__ == "__main__":``, and fails for Python 2.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
 
 
 @contextlib.contextmanager
@@ -119,3 +139,43 @@ def _one_thread() -> Generator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+def map_parts(
+    function: Callable[[bytes, _Part], _Result], content: bytes, parts: Sequence[_Part], count: int
+) -> Generator[_Result]:
+    """Yield the results of a function for each part of some work, in the order of the parts, from several processes.
+
+    Ctrl-C, or closing the generator, kills the processes.
+
+    Args:
+        function: A function of a module, called with ``content`` and a part.
+        content: What all parts need, pickled.
+        parts: The parts.
+        count: Number of processes.
+
+    Raises:
+        RavemjError: a process died.
+    """
+    results, running, following = dict[int, _Result](), dict[Future[_Result], int](), 0
+    missing = iter(enumerate(parts))
+    with Workers(min(count, len(parts)), needs_main=b"__main__" in content) as pool:
+        while following < len(parts):
+            while len(running) < min(count, len(parts)) and (task := next(missing, None)) is not None:
+                running[pool.submit(function, content, task[1])] = task[0]
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                pool.release(future)
+                try:
+                    results[running.pop(future)] = future.result()
+                except BrokenProcessPool:
+                    raise RavemjError(
+                        "a worker process died, perhaps for lack of memory; use fewer processes"
+                    ) from None
+            while following in results:
+                yield results.pop(following)
+                following += 1
+
+
+def blocks_of(start: int, stop: int, size: int) -> list[tuple[int, int]]:
+    """Return first and one past the last index of consecutive blocks."""
+    return [(first, min(first + size, stop)) for first in range(start, stop, size)]
