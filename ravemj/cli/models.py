@@ -84,7 +84,7 @@ def named_robot(env: Environment, name: str | None) -> Robot | None:
 
 
 def chosen_robots(env: Environment, name: str | None) -> list[Robot]:
-    """Return the robot of ``--robot``, by default all robots; errors as for ``named_robot``."""
+    """Return the robot of ``--robot``, by default all robots; raises what ``named_robot`` raises."""
     robot = named_robot(env, name)
     return env.GetRobots() if robot is None else [robot]
 

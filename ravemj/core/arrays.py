@@ -210,7 +210,7 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
 
 
 def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
-    """Return rigid transforms, shape (n, 4, 4); inputs and errors as for ``checked_transform``."""
+    """Return rigid transforms, shape (n, 4, 4); accepts and raises for each what ``checked_transform`` does."""
     try:
         given = np.array(transforms, dtype=np.float64)
     except (TypeError, ValueError):

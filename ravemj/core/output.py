@@ -37,7 +37,7 @@ def check_file(path: AnyPath) -> None:
 def check_folder(path: AnyPath, *patterns: str) -> None:
     """Check that a folder of files can be written, without touching anything.
 
-    An existing folder may only contain files of these patterns, such as ``frame_*.png``.
+    An existing folder may only contain files that match ``patterns``, such as ``frame_*.png``.
 
     Raises:
         OutputError: The folder around it is missing or cannot be written, or something else is there.
@@ -62,7 +62,7 @@ def new_file(path: AnyPath) -> Generator[Path]:
     """Create a file: write it at the yielded temporary path, which the end of the block renames.
 
     Raises:
-        OutputError: As for ``check_file``, or the temporary file cannot be created or renamed.
+        OutputError: ``check_file`` fails, or the temporary file cannot be created or renamed.
     """
     check_file(path)
     with _temporary(path) as temporary:
@@ -79,7 +79,7 @@ def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
     """Create a folder of files: write them into the yielded temporary folder, which the end of the block renames.
 
     Raises:
-        OutputError: As for ``check_folder``, or the temporary folder cannot be created or renamed.
+        OutputError: ``check_folder`` fails, or the temporary folder cannot be created or renamed.
     """
     check_folder(path, *patterns)
     with _temporary(path) as temporary:

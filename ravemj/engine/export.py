@@ -65,7 +65,10 @@ def write(path: AnyPath, model: AnyPath, translation: Translation, read: Collect
 def write_folder(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str], scene: str) -> Path:
     """Write a folder with the MJCF file, a scene and meshes atomically; return the path of the MJCF file.
 
-    Arguments and errors as for ``write``; ``scene`` is the document that puts the model on a floor.
+    Arguments as for ``write``; ``scene`` is the document that puts the model on a floor.
+
+    Raises:
+        OutputError: the folder cannot be written, is of another kind, or contains a file that was read.
     """
     name = f"{Path(model).stem}.xml"
     for file in (name, scene_file.NAME):

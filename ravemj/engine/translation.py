@@ -148,10 +148,10 @@ def translated(
     model: AnyPath,
     sensors: tuple[AttachedSensor, ...] = (),
 ) -> Translation:
-    """Translate the bodies of a simulation in their present state; arguments and errors as for ``translate``.
+    """Translate the bodies of a simulation in their present state; raises what ``translate`` raises.
 
     ``model`` is the file that they were read from. ``sensors`` are sensors without a robot, which are stored only for
-    reading the document again.
+    reading the document again. Other arguments as for ``translate``.
     """
     with simulation.lock:
         scene = Scene(tuple(map(snapshot, simulation.bodies)), simulation.view, simulation.gravity, sensors)

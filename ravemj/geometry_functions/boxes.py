@@ -118,11 +118,11 @@ def _listed(numbers: Iterable[float], separator: str = ",") -> str:
 
 
 def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
-    """Return an axis-aligned box transformed to an oriented one by a 4x4 matrix or a pose of 7 numbers.
+    """Transform an axis-aligned box; return an oriented one.
 
     Args:
         aabb: The box.
-        transform: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
+        transform: A matrix 4x4 or 3x4, or a pose [w, x, y, z, tx, ty, tz].
     """
     x, y, z = aabb.pos().tolist()
     moved = arguments.pose(transform, "transform") @ Pose((x, y, z))

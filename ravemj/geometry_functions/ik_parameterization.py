@@ -40,13 +40,13 @@ _UNIT = 0.01
 
 
 def goal_transform(value: ArrayLike, name: str) -> Floats:
-    """Return the pose of a goal like ``checked_transform``, shape (4, 4); warn if its rotation is scaled.
+    """Return the pose of a goal, shape (4, 4), as ``checked_transform`` does; warn if its rotation is scaled.
 
     As in OpenRAVE, scaling a matrix changes its rotation.
 
     Raises:
-        ValueError: as for ``checked_transform``.
-        ArgumentError: as for ``checked_transform``.
+        ValueError: it has another shape.
+        ArgumentError: a number is not finite, or the rotation matrix is not orthonormal up to a scale.
     """
     matrix = checked_transform(value, name)
     given = np.asarray(value, dtype=np.float64)

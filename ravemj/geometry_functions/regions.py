@@ -151,7 +151,7 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of ``D`` nearest to the bounds, and by how much they exceed these."""
+        """Return the coordinates of ``D`` nearest to the bounds, and by how much they exceed the bounds."""
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf

@@ -89,7 +89,7 @@ def axisAngleFromRotationMatrix(rotation: ArrayLike) -> Floats:
 
 
 def axisAngleFromQuat(quat: ArrayLike) -> Floats:
-    """Return the axis times the angle [rad], up to pi, of the quaternion ``quat`` of any length, shape (3,)."""
+    """Return the rotation vector (axis times angle, 0 to pi [rad]), shape (3,), of ``quat``, of any length."""
     return _axis_angle(arguments.wxyz(quat, "quat"))
 
 

@@ -86,7 +86,7 @@ def branch_names(solver: ArmSolutions, count: int) -> list[str]:
 def everything(
     solver: ArmSolutions, goal: Floats, *, free: Floats | None = None, limits: bool = True, fine: bool = True
 ) -> Iterator[Floats]:
-    """Yield all solutions of ``solve_one``, shape (K, n), then further batches for callers that rejected these.
+    """Yield all solutions of ``solve_one``, shape (K, n), then more batches for callers that rejected all of them.
 
     The arguments are those of ``nearest_first``.
     """

@@ -17,7 +17,7 @@ SAMPLES = 64
 """Number of configurations in a validation."""
 _FEW = 8
 _SOLVED = (Task.TRANSFORM, Task.PLACE, Task.PLACE_XY, Task.PLANAR)
-"""Tasks that families solve; ``reductions`` reduces other tasks to these."""
+"""Tasks that families solve; ``reductions`` reduces all others to them."""
 _TRIED = 32
 """Maximum number of families tried for one choice of locked joints."""
 

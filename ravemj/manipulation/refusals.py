@@ -41,7 +41,7 @@ class Tally:
         names: The names of the regions.
 
     Attributes:
-        shortfall: Describes how far the arm stays from a region that is out of reach; None if none is.
+        shortfall: Returns a description of how far the arm stays from an unreachable region; None if there is none.
     """
 
     def __init__(self, names: Sequence[str]) -> None:

@@ -134,7 +134,7 @@ def _squared(vector: Floats) -> float:
 
 
 def at_values(bodies: Bodies, lacking: Lacking) -> Error:
-    """Return the error as a function of configurations, which moves the bodies."""
+    """Return a function that moves the bodies to a configuration and returns the error and Jacobian there."""
 
     def error(values: Floats) -> tuple[Floats, Floats]:
         bodies.move(values)

@@ -89,7 +89,7 @@ class PoseSolutions(NamedTuple):
 
     Attributes:
         rows: The solutions within the limits, the nearest turns of each IK branch first, shape (K, n).
-        cause: The cause if there is no solution.
+        cause: The cause of rejection if there is no solution.
     """
 
     rows: Floats

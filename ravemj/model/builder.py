@@ -212,7 +212,10 @@ class BodyBuilder:
         return replace(body, manipulators=manipulators) if manipulators else body
 
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
-        """Return the manipulators. An invalid one has no gripper, and those after it have no links."""
+        """Return the manipulators, incomplete from the first one with a joint that does not move its effector.
+
+        That one has no gripper, and those after it have neither links nor gripper, as in OpenRAVE.
+        """
         frozen: list[scene.Manipulator] = []
         names: set[str] = set()
         for built in self.manipulators:

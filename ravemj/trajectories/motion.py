@@ -77,7 +77,7 @@ class Motion:
     def sample(self, t: float) -> Floats:
         """Return the (dof,) joint values at time t [s], clamped to the start and the end of the motion.
 
-        Values between two rows never leave the range of these rows, so they stay within limits that the rows keep.
+        Interpolated values stay between those of the two adjacent rows, so they stay within limits that the rows keep.
         """
         if math.isnan(t):
             raise ArgumentError("expected a time in seconds, found nan")

@@ -60,7 +60,7 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
-    """Return ``motion``, (4, 4), for each link beyond an arm and of bodies that these hold, as input of ``moved``."""
+    """Return ``motion``, (4, 4), for each link beyond an arm and each body held there, as input of ``moved``."""
     end = set(links_beyond(body.scene, arm))
     held = [held_body for grab in body.grabs if grab.link in end for held_body in held_with(grab.body)]
     links = [(held_body, link) for held_body in held for link in range(len(held_body.scene.links))]

@@ -196,7 +196,7 @@ class BodyKinematics:
         self._are_multiples = len(self._multiples) == len(self.mimic.joints)
 
     def _touch(self) -> None:
-        """Note a write of more than joint values."""
+        """Update both stamps after a change of more than joint values."""
         self.stamp += 1
         self.pose_stamp = self.stamp
 
@@ -418,7 +418,7 @@ def _others(count: int, first: list[int], width: int) -> slice | Ints:
 def fixed_view(numbers: Floats, indices: Ints) -> tuple[Floats, EllipsisType | Ints]:
     """Return an array and an index into it, for frequent writes to some elements.
 
-    If the indices are consecutive, these are a view and ``...``, which is fastest.
+    For consecutive indices they are a view and ``...``, which is fastest.
     """
     some = _index_range(indices)
     return (numbers[some], ...) if isinstance(some, slice) else (numbers, some)

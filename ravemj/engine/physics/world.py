@@ -131,7 +131,7 @@ class Physics:
         return pairs.difference(tested_pairs(self._simulation.collisions(), state)) if self.self_collisions else pairs
 
     def joint_wrench(self, state: BodyState, child: int, anchor: Floats) -> tuple[Floats, Floats]:
-        """Return the force on a link from its parent [N], and the torque about a point [N m], in world axes."""
+        """Return the force on a link from its parent [N], and the torque about ``anchor`` [N m], in world axes."""
         body_id = self._body_id(state, child)
         if body_id is None:
             return np.zeros(3), np.zeros(3)

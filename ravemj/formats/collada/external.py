@@ -1,4 +1,4 @@
-"""Bodies in other COLLADA files to which a document refers: the names of their parts in those files."""
+"""Names of the parts of bodies in other COLLADA files to which a document refers."""
 
 import os
 from collections.abc import Iterator

@@ -91,7 +91,7 @@ class Renderer(Protocol):
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
         """Render the geom ids at pixel centres; drawings are ignored.
 
-        Arguments and errors as for ``render``.
+        Takes the arguments of ``render``, and raises the same errors.
 
         Returns:
             A new array of geom ids, shape (height, width), -1 for the background. Transparent geoms count.
@@ -104,7 +104,7 @@ class Renderer(Protocol):
     def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
         """Render the depths at pixel centres; drawings are ignored.
 
-        Arguments and errors as for ``render``.
+        Takes the arguments of ``render``, and raises the same errors.
 
         Returns:
             A new array of depths along the viewing direction [m], shape (height, width), infinite for the background.
