@@ -1,6 +1,6 @@
-"""The page of ``grasp``: hands side by side that approach their target and close, with the contacts.
+"""Page of ``grasp``: hands side by side approach their targets and close; contacts are drawn.
 
-If the arm reaches the grasps, the whole robot shows the best one behind them.
+If the arm reaches the grasps, a copy of the whole robot behind them shows the best one.
 """
 
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ _LEGEND = (
 
 
 class _DrawnHand(NamedTuple):
-    """A copy of the robot, and its grasp."""
+    """Copy of the robot that shows a grasp by its hand."""
 
     robot: Robot
     gripper: list[int]
@@ -50,7 +50,7 @@ class _DrawnHand(NamedTuple):
 
 
 class _DrawnArm(NamedTuple):
-    """A copy of the robot that reaches its grasp; ``rows``: values of the arm on the way back from there."""
+    """Copy of the robot that shows a grasp; ``rows`` are values of the arm from the grasp back along the approach."""
 
     robot: Robot
     joints: list[int]
@@ -60,7 +60,7 @@ class _DrawnArm(NamedTuple):
 
 
 def write_grasps(path: str, arm: Manipulator, target: KinBody, grasps: Sequence[Grasp], notes: Sequence[str]) -> None:
-    """Write a page with a hand for each grasp, from left to right; the second row is in front."""
+    """Write a page with a hand for each grasp, from left to right; the second row is nearer to the camera."""
     env = Environment()
     env.SetViewer("offscreen")  # which keeps drawings
     spacing, rows = 1.3 * _reach(arm, target), -(-len(grasps) // _COLUMNS)
@@ -145,7 +145,7 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
 
 
 def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, grasp: Grasp) -> _DrawnArm:
-    """Add a copy of the robot, which stands to a copy of the target as the robot to the target, with its approach."""
+    """Add a copy of the robot with its approach; it has the robot's pose relative to ``body``, a copy of the target."""
     T_world_target = body.GetTransform()
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)

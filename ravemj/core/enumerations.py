@@ -32,12 +32,12 @@ class NamedInt(IntEnum, metaclass=_Listed):
 class NamedFlag(NamedInt):
     """Flags: ``|``, ``&``, ``^`` and ``~`` give whole numbers, as in OpenRAVE, and any whole number makes a flag.
 
-    ``str`` gives class and name, or the number if the flag is none of the members.
+    ``str`` gives class and name of a member, and the number of other flags.
     """
 
     @classmethod
     def _missing_(cls, value: object) -> Enum | None:
-        """Return a flag that is no member, such as the combination of two; its name lists its parts."""
+        """Return a flag that is not a member, such as a combination of two; its name lists its parts."""
         if not isinstance(value, int):
             return None
         parts = [member for member in cls if member and member & value == member]

@@ -22,7 +22,7 @@ _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VE
 
 
 def _begin() -> None:
-    """Initialize a worker: the driver handles Ctrl-C, and has already shown warnings."""
+    """Initialize a worker: it ignores Ctrl-C, which the driver handles, and warnings, which the driver has shown."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RavemjWarning)
     threading.Thread(target=_end_with_driver, daemon=True).start()
@@ -114,7 +114,7 @@ def _restarted(worker: _Worker) -> _Worker:
 
 @contextlib.contextmanager
 def _other_main() -> Generator[None]:
-    """Have processes that start within the block not import the main module.
+    """Prevent processes that start within the block from importing the main module.
 
     Importing it would repeat what a script does without ``if __name__ == "__main__":``, and fails for Python 2.
     """
@@ -150,7 +150,7 @@ def map_parts(
 
     Args:
         function: A function of a module, called with ``content`` and a part.
-        content: What all parts need, pickled.
+        content: Pickled data that all parts need.
         parts: The parts.
         count: Number of processes.
 
@@ -177,5 +177,5 @@ def map_parts(
 
 
 def blocks_of(start: int, stop: int, size: int) -> list[tuple[int, int]]:
-    """Return first and one past the last index of consecutive blocks."""
+    """Split a range into blocks of ``size``; return the first index of each, and the one after its last."""
     return [(first, min(first + size, stop)) for first in range(start, stop, size)]

@@ -378,7 +378,7 @@ class Conditions:
         return Edges(space, self.allowed(), proof=certifier and certifier.proves, certify=certify)
 
     def certifier(self, ends: Sequence[Floats]) -> "Certifier | None":
-        """Return what certifies motions between starts and goals within ``kept``; None if that is impossible."""
+        """Return the certifier of motions with given starts and goals, for use within ``kept``; None if impossible."""
         from ravemj.manipulation.certification import Certifier, UncertifiableError  # noqa: PLC0415 - rarely wanted
 
         try:

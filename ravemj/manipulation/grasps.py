@@ -85,7 +85,7 @@ class GraspTable(NamedTuple):
         return None if numbers is None else np.vstack([numbers.reshape(4, 3).T, [0.0, 0.0, 0.0, 1.0]])
 
     def approach(self, grasp: int, tool_direction: Sequence[float]) -> Approach | None:
-        """Return how the hand flies to the target; None if the row does not say it.
+        """Return the approach of a row's hand to the target; None if the row has no direction.
 
         Args:
             grasp: The row.
@@ -191,7 +191,7 @@ class GraspSearch:
     def _pose(self, number: int) -> Floats | None:
         """Return ``T_target_tool`` of a row, simulated if the row has none; None if the simulation fails.
 
-        From the simulated grasp, the open hand is moved back until it is free of the target.
+        After the simulation, the open hand is moved back until it does not touch the target.
         """
         given = self._table.pose(number)
         approach = self._table.approach(number, self._hand.arm.direction) if given is None else None

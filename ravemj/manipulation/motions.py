@@ -51,9 +51,10 @@ def _spaced(space: Space, path: Floats, spacing: float) -> Floats:
 
 
 def jittered(conditions: Conditions, space: Space, configurations: Sequence[Floats], jitter: float) -> list[Floats]:
-    """Replace each configuration in collision by a free one nearby, if one is found.
+    """Replace each configuration in collision by an allowed one nearby, if one is found.
 
-    Each value changes by at most ``jitter`` [rad or m]. On a constraint, the line to the new configuration keeps it.
+    Each value changes by at most ``jitter`` [rad or m]; the straight line between both satisfies the constraint, if
+    any.
     """
     random, tries = np.random.default_rng(0), _JITTER_TRIES
     with conditions.kept():
@@ -75,7 +76,7 @@ def _jittered_on(
     jitter: float,
     random: np.random.Generator,
 ) -> Floats | None:
-    """Return a free configuration near one on a constraint; None if there is none, or it is not on the constraint."""
+    """Return an allowed configuration near one on a constraint; None if there is none, or that one violates it."""
     if not manifold.has(configuration):
         return None
 

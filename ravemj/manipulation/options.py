@@ -112,9 +112,9 @@ class GraspMotion:
     steplength: float = STEP_LENGTH
     """Length of a step of the planner's trees, a weighted distance of configurations."""
     grasptranslationstepmult: float = 0.1
-    """Factor of the steps for sliders and the flight of a grasp that is simulated [m/rad]."""
+    """Ratio of translational to rotational steps in simulated grasps, for sliders and the approach [m/rad]."""
     graspfinestep: float = 0.001
-    """Step from which the tolerance of contacts of a grasp that is simulated follows [rad]."""
+    """Step of revolute joints from which the contact tolerance of simulated grasps is computed [rad]."""
 
 
 Kind = TypeVar("Kind", JointMotion, ToolMotion, StraightMotion, UnsyncMotion, JitterMotion, GraspMotion)

@@ -29,7 +29,7 @@ Proof = Callable[[Sequence[Curve]], bool]
 """Proof that a motion is free of collisions at all times."""
 
 Certify = Callable[[Sequence[Curve]], Certificate | None]
-"""Returns the certificate of a motion, up to its first undecided span, or None if there can be none."""
+"""Returns the certificate of a motion, up to its first undecided span; None if it cannot be certified."""
 
 
 class Growth(NamedTuple):

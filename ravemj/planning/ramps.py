@@ -113,7 +113,7 @@ def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: F
 
 
 def fit_matched_ramps(steps: Floats, duration: float, speed: Floats, acceleration: Floats) -> Ramps | None:
-    """Return motions from rest to rest whose accelerations all change at the same times; None if there are none.
+    """Return motions from rest to rest with common times of acceleration changes; None if there are none.
 
     The ramps are as short as the limits allow. Arguments are as for ``shortest_ramps``.
     """

@@ -188,7 +188,8 @@ class ShortenedMotion:
     ) -> None:
         """Add shortcuts between random times; start and end stay.
 
-        There are at most ``tries`` attempts; ``proceed``, called with the number of the attempt, stops them by False.
+        There are at most ``tries`` attempts. ``proceed`` is called before each with its number; returning False stops
+        them.
         """
         source = len(self._straight)
         for attempt in range(tries):

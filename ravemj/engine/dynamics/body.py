@@ -174,12 +174,12 @@ class BodyDynamics:
         return with_base_columns(jacobians, points - kinematics.position(0)) if base else jacobians
 
     def whole_body_rows(self, count: int, dofs: Ints, *, base: bool) -> WholeBodyRows | None:
-        """Return a buffer for Jacobians of points and of the centre of mass; None if joints are coupled, or roots many.
+        """Return a buffer for Jacobians of points and of the centre of mass; None for coupled joints or several roots.
 
         Args:
             count: Number of points.
             dofs: DOFs of the first columns.
-            base: Whether columns of a base twist follow, see ``with_base_columns``.
+            base: Whether columns of a base twist follow, as in ``with_base_columns``.
         """
         columns = self._columns_of_dofs
         if columns is None or self._kinematics.roots != [0]:

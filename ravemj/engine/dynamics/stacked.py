@@ -41,17 +41,17 @@ def with_base_columns(jacobians: Floats, arms: Floats) -> Floats:
 class WholeBodyRows:
     """Jacobians of several points and of the centre of mass, by joints and a base twist, in one array.
 
-    A buffer holds MuJoCo's rows, a zero, a one, and the arms of the points with both signs. So one ``take`` chooses the
-    columns of the joints and composes those of the base.
+    A buffer contains MuJoCo's Jacobians, a zero, a one, and the points relative to the base with both signs. So one
+    ``take`` selects the columns of the joints and composes those of the base.
     """
 
     def __init__(self, kinematics: BodyKinematics, count: int, columns: Ints, *, base: bool) -> None:
-        """Allocate for a body with one root.
+        """Allocate the buffer for a body with one root.
 
         Args:
             kinematics: The body.
             count: Number of points.
-            columns: MuJoCo's velocity of each joint variable, ``nv`` if none.
+            columns: Index of each joint variable in MuJoCo's velocities; ``nv`` for none.
             base: Whether there are columns of a base twist.
         """
         nv, rows = kinematics.model.nv, _BASE * count + 3
@@ -74,7 +74,7 @@ class WholeBodyRows:
         self._places = np.hstack([joints, twists[:rows]]) if base else joints
 
     def filled(self, body_ids: Sequence[int], points: Floats) -> Floats:
-        """Return six rows for each world point (k, 3) fixed to a body, then three of the centre of mass."""
+        """Return six rows for each of the world points (k, 3) fixed to bodies, then three of the centre of mass."""
         self._kinematics.place_coms()
         model, data = self._kinematics.model, self._kinematics.data
         for (moving, turning), point, body_id in zip(self._views, points, body_ids, strict=True):

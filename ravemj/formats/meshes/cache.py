@@ -146,7 +146,7 @@ def reader_sources() -> list[str]:
 
 
 def _loaded(folder: Path, entry: str) -> tuple[Parts, dict[str, str]] | None:
-    """Return the content of an entry, or None if it is missing, damaged, or a copy of another."""
+    """Return the content of an entry; None if it is missing, damaged, or a renamed copy of another entry."""
     file = f"{folder}/{entry}"
     try:
         descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time

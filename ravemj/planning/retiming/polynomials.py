@@ -239,13 +239,13 @@ class Parabolic:
 
 
 class MatchedRamps(Parabolic):
-    """Parabolic retimer whose joints all change their accelerations at the same times.
+    """Parabolic retimer with acceleration changes of all joints at the same times.
 
-    Its duration grows in steps of 5 % from that of the slowest joint until the limits hold.
+    The duration is that of the slowest joint, increased by 5 % until the limits hold.
     """
 
     def shortest(self, segment: Segment, limits: PathLimits) -> float:
-        """Return the duration of a segment [s]."""
+        """Return the minimum duration of a segment [s], rounded up to a step of 5 %."""
         duration = super().shortest(segment, limits)
         if segment.is_from_rest_to_rest and np.isfinite(duration):
             while duration > 0 and self._fit_from_rest(segment.step, duration, limits) is None:
