@@ -188,7 +188,7 @@ def test_a_goal_beside_a_type_is_of_this_type(name):
 WRONG = [None, "x y", [], [1], [1, 2], [[1, 2], [3, 4]], list(range(5)), np.eye(3), np.zeros((2, 3, 3)), {}, object()]
 
 
-@pytest.mark.parametrize("wrong", WRONG, ids=repr)
+@pytest.mark.parametrize("wrong", WRONG)
 @pytest.mark.parametrize("name", TABLE)
 def test_values_of_a_wrong_shape_are_refused(name, wrong):
     if (name, repr(wrong)) == ("TranslationXY2D", "[1, 2]"):
