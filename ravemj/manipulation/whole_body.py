@@ -11,6 +11,7 @@ from ravemj.core.transforms import Floats, Ints, Pose, Vec3, multiply, normalize
 from ravemj.engine.affine import translation_columns
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.dynamics.stacked import WholeBodyRows
 from ravemj.engine.simulation import BodyState
 from ravemj.geometry_functions.affine import DOFAffine
 from ravemj.ik.whole_body import Inequality, MotionLimits
@@ -58,9 +59,12 @@ class Moving:
         self._frames: list[tuple[int, Floats]] = []
         self._rotations, self._offsets = np.zeros((0, 3, 3)), np.zeros((0, 3))
         self._ids: Ints = np.zeros(0, dtype=int)
+        self._body_ids: list[int] = []
         self._poses, self._jacobians = np.zeros((0, 4, 4)), np.zeros((0, 6, self.count))
+        self._rows = self._new_rows()
         self._stamp = self._com_stamp = -1
         self._com, self._com_jacobian = np.zeros(3), np.zeros((3, self.count))
+        self._robot_com_jacobian = self._com_jacobian
         self.keepers: list[Keeper] = []
         self.edges: list[tuple[Floats, Floats]] = []
 
@@ -70,9 +74,18 @@ class Moving:
         self._rotations = np.array([frame[:3, :3] for _, frame in self._frames])
         self._offsets = np.array([frame[:3, 3] for _, frame in self._frames])
         self._ids = self._kinematics.body_ids[[placed_link for placed_link, _ in self._frames]]
+        self._body_ids = self._ids.tolist()
         self._poses = np.tile(np.eye(4), (len(self._frames), 1, 1))
-        self._stamp = -1
+        self._rows = self._new_rows()
+        self._stamp = self._com_stamp = -1
         return len(self._frames) - 1
+
+    def _new_rows(self) -> WholeBodyRows | None:
+        """Return the buffer for all Jacobians at once; None if only parts of the base move, or joints are coupled."""
+        has_base = self._base.shape[1] > 0
+        if has_base and not self._is_free:
+            return None
+        return self._dynamics.whole_body_rows(len(self._frames), self.dofs, base=has_base)
 
     def frame(self, number: int) -> tuple[Floats, Floats]:
         """Return ``T_world_frame`` (4, 4) and the Jacobian (6, n): linear, then angular velocity."""
@@ -88,7 +101,11 @@ class Moving:
         self._poses[:, :3, :3] = rotations @ self._rotations
         places = data.xpos.take(self._ids, 0) + (rotations @ self._offsets[:, :, None])[:, :, 0]
         self._poses[:, :3, 3] = places
-        self._jacobians = self.jacobians([link for link, _ in self._frames], places)
+        if self._rows is None:
+            self._jacobians = self.jacobians([link for link, _ in self._frames], places)
+        else:
+            rows = self._rows.filled(self._body_ids, places)
+            self._jacobians, self._robot_com_jacobian = rows[:-3].reshape(len(places), 6, self.count), rows[-3:]
         self._stamp = kinematics.stamp
 
     def jacobians(self, links: Sequence[int], points: Floats) -> Floats:
@@ -108,14 +125,12 @@ class Moving:
         return self._com, self._com_jacobian
 
     def _weighed(self) -> tuple[Floats, Floats]:
-        jacobian = self._dynamics.com_jacobian()
-        com = self._kinematics.data.subtree_com[0].copy()
-        if self._all_dofs is not None:
-            jacobian = jacobian.take(self._all_dofs, 1)
-        if self._base.shape[1]:
-            x, y, z = (com - self._kinematics.position(0)).tolist()
-            turning = np.array(((1.0, 0, 0, 0, z, -y), (0, 1.0, 0, -z, 0, x), (0, 0, 1.0, y, -x, 0)))
-            jacobian = np.concatenate((jacobian, turning if self._is_free else turning @ self._base), axis=1)
+        if self._rows is None:
+            com, jacobian = self._of_robot()
+        else:
+            if self._stamp != self._kinematics.stamp:
+                self._follow_frames()
+            com, jacobian = self._kinematics.data.subtree_com[0].copy(), self._robot_com_jacobian
         if not self.body.grabs:
             return com, jacobian
         mass = float(self.body.inertias.masses.sum())
@@ -125,6 +140,18 @@ class Moving:
         moved = self.jacobians([link for link, _, _ in held], points)[:, :3]
         shares = np.array([held_mass for _, held_mass, _ in held]) / total
         return com * mass / total + shares @ points, jacobian * mass / total + np.tensordot(shares, moved, 1)
+
+    def _of_robot(self) -> tuple[Floats, Floats]:
+        """Return the centre of mass of the robot alone and its Jacobian, if they are not among the rows."""
+        jacobian = self._dynamics.com_jacobian()
+        com = self._kinematics.data.subtree_com[0].copy()
+        if self._all_dofs is not None:
+            jacobian = jacobian.take(self._all_dofs, 1)
+        if self._base.shape[1]:
+            x, y, z = (com - self._kinematics.position(0)).tolist()
+            turning = np.array(((1.0, 0, 0, 0, z, -y), (0, 1.0, 0, -z, 0, x), (0, 0, 1.0, y, -x, 0)))
+            jacobian = np.concatenate((jacobian, turning @ self._base), axis=1)
+        return com, jacobian
 
     def limits(
         self, *, values: bool, velocities: bool, accelerations: bool, base_velocity: float | None

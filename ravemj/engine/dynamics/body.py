@@ -10,7 +10,7 @@ import numpy as np
 from ravemj.core.transforms import ZERO, Floats, Ints, Vec3, cross_rows
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap
 from ravemj.engine.dynamics.joint_velocities import JointVelocities
-from ravemj.engine.dynamics.stacked import StackedJacobians, with_base_columns
+from ravemj.engine.dynamics.stacked import StackedJacobians, WholeBodyRows, with_base_columns
 from ravemj.engine.dynamics.tree import CoordinateTree
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.scene import Joint
@@ -172,6 +172,19 @@ class BodyDynamics:
         if dofs is not None:
             jacobians = jacobians.take(dofs, 2)
         return with_base_columns(jacobians, points - kinematics.position(0)) if base else jacobians
+
+    def whole_body_rows(self, count: int, dofs: Ints, *, base: bool) -> WholeBodyRows | None:
+        """Return a buffer for Jacobians of points and of the centre of mass; None if joints are coupled, or roots many.
+
+        Args:
+            count: Number of points.
+            dofs: DOFs of the first columns.
+            base: Whether columns of a base twist follow, see ``with_base_columns``.
+        """
+        columns = self._columns_of_dofs
+        if columns is None or self._kinematics.roots != [0]:
+            return None
+        return WholeBodyRows(self._kinematics, count, columns.take(dofs), base=base)
 
     def hessian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
         """Return the derivatives of ``translation_jacobian`` and ``rotation_jacobian`` by the DOF values.

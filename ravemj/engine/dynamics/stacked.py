@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.kinematics import BodyKinematics
 
 if TYPE_CHECKING:
@@ -36,6 +36,59 @@ def with_base_columns(jacobians: Floats, arms: Floats) -> Floats:
     columns[:] = _STILL
     columns[:, _PLACES] = arms.take(_COMPONENTS, 1) * _SIGNS
     return np.concatenate((jacobians, columns.reshape(-1, _BASE, _BASE)), axis=2)
+
+
+class WholeBodyRows:
+    """Jacobians of several points and of the centre of mass, by joints and a base twist, in one array.
+
+    A buffer holds MuJoCo's rows, a zero, a one, and the arms of the points with both signs. So one ``take`` chooses the
+    columns of the joints and composes those of the base.
+    """
+
+    def __init__(self, kinematics: BodyKinematics, count: int, columns: Ints, *, base: bool) -> None:
+        """Allocate for a body with one root.
+
+        Args:
+            kinematics: The body.
+            count: Number of points.
+            columns: MuJoCo's velocity of each joint variable, ``nv`` if none.
+            base: Whether there are columns of a base twist.
+        """
+        nv, rows = kinematics.model.nv, _BASE * count + 3
+        zero = rows * nv
+        self._kinematics = kinematics
+        self._numbers = np.zeros(zero + 2 + _BASE * (count + 1))
+        self._numbers[zero + 1] = 1.0
+        matrix = self._numbers[:zero].reshape(rows, nv)
+        blocks = matrix[:-3].reshape(count, _BASE, nv)
+        self._views, self._com_rows = [(block[:3], block[3:]) for block in blocks], matrix[-3:]
+        arms = self._numbers[zero + 2 :].reshape(count + 1, 2, 3)
+        self._arms, self._negative_arms, self._point_arms, self._com_arm = (
+            arms[:, 0],
+            arms[:, 1],
+            arms[:-1, 0],
+            arms[-1, 0],
+        )
+        self._root = int(kinematics.body_ids[kinematics.roots[0]])
+        joints = np.where(columns < nv, nv * np.arange(rows)[:, None] + columns, zero)
+        twists = zero + np.tile(_STILL.reshape(_BASE, _BASE).astype(int), (count + 1, 1))
+        signed = _COMPONENTS + 3 * (_SIGNS < 0)
+        for point in range(count + 1):
+            twists[_BASE * point : _BASE * (point + 1)].put(_PLACES, zero + 2 + _BASE * point + signed)
+        self._places = np.hstack([joints, twists[:rows]]) if base else joints
+
+    def filled(self, body_ids: Sequence[int], points: Floats) -> Floats:
+        """Return six rows for each world point (k, 3) fixed to a body, then three of the centre of mass."""
+        self._kinematics.place_coms()
+        model, data = self._kinematics.model, self._kinematics.data
+        for (moving, turning), point, body_id in zip(self._views, points, body_ids, strict=True):
+            mujoco.mj_jac(model, data, moving, turning, point, body_id)
+        mujoco.mj_jacSubtreeCom(model, data, self._com_rows, self._root)
+        origin = data.xpos[self._root]
+        np.subtract(points, origin, self._point_arms)
+        np.subtract(data.subtree_com[0], origin, self._com_arm)
+        np.negative(self._arms, self._negative_arms)
+        return self._numbers.take(self._places)
 
 
 class StackedJacobians:

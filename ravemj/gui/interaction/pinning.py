@@ -78,7 +78,7 @@ class PinnedReach(Reach):
         start = moving.values()[: self.body.dof]
 
         def measure() -> TaskRows:
-            return TaskRows(start - moving.values()[: self.body.dof], identity)
+            return TaskRows(start - moving.values()[: self.body.dof], identity, is_identity=True)
 
         return WeightedTask("posture", measure, str, _STAY, tolerance=np.inf)
 

@@ -10,15 +10,17 @@ import math
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import groupby
 from typing import NamedTuple, Protocol
 
+import mujoco
 import numpy as np
 
 from ravemj.ik.vectors import Floats
 from ravemj.ik.whole_body.bounds import MotionLimits
 from ravemj.ik.whole_body.box_qp import BoxProblem
-from ravemj.ik.whole_body.levels import daqp, minimise_levels, squared
+from ravemj.ik.whole_body.levels import daqp, minimise_levels
 from ravemj.ik.whole_body.tasks import Inequality, TaskRows, WeightedTask
 
 EXACT = 1e-9
@@ -188,20 +190,27 @@ class Descent:
 
     def _displacement(self, state: _State, damping: float, lower: Floats, upper: Floats) -> Floats:
         measured, inequalities = state
-        levels = {task.priority for task, _ in measured}
-        if inequalities or len(levels) > 1:
+        if inequalities or len({task.priority for task, _ in measured}) > 1:
             daqp()
             return minimise_levels(self._levels(measured), damping, lower, upper, inequalities)
-        kept = self.exact_contacts
-        ordered = sorted(measured, key=lambda task: not task[0].is_contact) if kept else measured
-        jacobian, error = _weighted(ordered, len(lower))
-        hessian = jacobian.T.dot(jacobian)
-        hessian.ravel()[:: len(lower) + 1] += damping * squared(error)
+        contacts = [pair for pair in measured if pair[0].is_contact] if self.exact_contacts else []
+        others = [pair for pair in measured if not pair[0].is_contact] if contacts else measured
+        jacobian, error = _weighted([*contacts, *(pair for pair in others if not pair[1].is_identity)], len(lower))
+        hessian, gradient = jacobian.T.dot(jacobian), -error.dot(jacobian)
+        diagonal, square = hessian.ravel()[:: len(lower) + 1], float(error.dot(error))
+        for task, rows in others:
+            if rows.is_identity:
+                size, pull = len(rows.error), task.weight * task.gain * rows.error
+                diagonal[:size] += task.weight
+                gradient[:size] -= pull
+                square += task.gain * float(pull.dot(rows.error))
+        diagonal += damping * min(square, 1.0)
         problem = BoxProblem(hessian, lower, upper)
-        gradient = -error.dot(jacobian)
         x = problem.minimise(gradient)
-        first = sum(len(rows.error) for task, rows in ordered if task.is_contact) if kept else 0
-        return _on_equalities(problem, gradient, x, jacobian[:first], error[:first]) if first else x
+        if not contacts:
+            return x
+        first = sum(len(rows.error) for _, rows in contacts)
+        return _on_equalities(problem, gradient, x, jacobian[:first], error[:first])
 
     def _levels(self, measured: Sequence[tuple[WeightedTask, TaskRows]]) -> list[TaskRows]:
         """Return the weighted rows of each priority; exact contacts come first within their priority."""
@@ -223,7 +232,7 @@ class Descent:
             left = _length(error)
             if not EXACT < left < _DRIFT:
                 break
-            jacobian = np.vstack([rows.jacobian for _, rows in measured])
+            jacobian = np.concatenate([rows.jacobian for _, rows in measured])
             back = _shortest(jacobian, error, lower - x, upper - x)
             self._mechanism.move(back)
             x = x + back
@@ -280,20 +289,32 @@ def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> 
 
 def _least_norm(jacobian: Floats, error: Floats) -> Floats:
     """Return the shortest x with ``jacobian @ x = error``, slightly damped for dependent rows."""
-    square = jacobian.dot(jacobian.T)
-    square.ravel()[:: len(error) + 1] += 1e-9 * np.trace(square) / len(error)
-    return np.asarray(np.linalg.solve(square, error), dtype=float).dot(jacobian)
+    square, multipliers = jacobian.dot(jacobian.T), np.empty(len(error))
+    diagonal = square.ravel()[:: len(error) + 1]
+    diagonal += 1e-9 * float(diagonal.sum()) / len(error) + 1e-300
+    mujoco.mju_cholFactor(square, 0.0)
+    mujoco.mju_cholSolve(multipliers, square, error)
+    return multipliers.dot(jacobian)
 
 
 def _weighted(measured: Sequence[tuple[WeightedTask, TaskRows]], count: int) -> tuple[Floats, Floats]:
     """Return the stacked Jacobian and error of tasks, scaled by the square roots of their weights."""
-    size = sum(len(rows.error) for _, rows in measured)
-    jacobian, error, end = np.empty((size, count)), np.empty(size), 0
-    for task, rows in measured:
-        start, end, root = end, end + len(rows.error), math.sqrt(task.weight)
-        np.multiply(rows.jacobian, root, out=jacobian[start:end])
-        np.multiply(rows.error, root * task.gain, out=error[start:end])
+    if not measured:
+        return np.zeros((0, count)), np.zeros(0)
+    jacobian = np.concatenate([rows.jacobian for _, rows in measured])
+    error = np.concatenate([rows.error for _, rows in measured])
+    roots, gains = _factors(tuple([(task.weight, task.gain, len(rows.error)) for task, rows in measured]))
+    jacobian *= roots
+    error *= gains
     return jacobian, error
+
+
+@lru_cache(maxsize=64)
+def _factors(tasks: tuple[tuple[float, float, int], ...]) -> tuple[Floats, Floats]:
+    """Return the factors of the rows, shape (m, 1), and of the errors, (m,), for weight, gain and size of each task."""
+    sizes = [size for _, _, size in tasks]
+    roots = np.repeat([math.sqrt(weight) for weight, _, _ in tasks], sizes)
+    return roots[:, None], roots * np.repeat([gain for _, gain, _ in tasks], sizes)
 
 
 def _cost(measured: Sequence[tuple[WeightedTask, TaskRows]]) -> float:

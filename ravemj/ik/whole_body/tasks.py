@@ -20,10 +20,12 @@ class TaskRows(NamedTuple):
     Attributes:
         error: Goal minus present value, shape (m,).
         jacobian: Change of the value with displacements, shape (m, n).
+        is_identity: Whether the Jacobian is the identity, for the first m variables.
     """
 
     error: Floats
     jacobian: Floats
+    is_identity: bool = False
 
 
 class Inequality(NamedTuple):

@@ -400,7 +400,7 @@ class WholeBodyIK(ApiObject):
         identity = np.eye(joints, width)
 
         def measure() -> TaskRows:
-            return TaskRows(wanted - self._moving.values()[:joints], identity)
+            return TaskRows(wanted - self._moving.values()[:joints], identity, is_identity=True)
 
         def retarget(target: ArrayLike) -> None:
             nonlocal wanted
