@@ -502,7 +502,7 @@ def test_ik_of_a_whole_body_says_what_is_missed(folder):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--reach", "hand=1,2,3"), "'Biped' has no manipulator or link 'hand'; its manipulators: left_foot"),
+        (("--reach", "hand=1,2,3"), "'Biped' has no manipulator or link 'hand'; did you mean 'left_hand'? Its"),
         (("--reach", "left_hand=1,2"), "--reach: found 2 values for 'left_hand', expected x,y,z"),
         (("--reach", "left_hand"), "'left_hand' is not NAME=x,y,z"),
         (("--reach", "left_hand=1,2,x"), "'x' is not a finite number"),

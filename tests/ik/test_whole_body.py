@@ -610,7 +610,7 @@ class TestErrors:
             ("add_reach", ("the tip", [0, math.nan, 0]), "target"),
             ("add_reach", ("the tip", [1, 2]), "target"),
             ("add_contact", ("the tip", [1, 2, 3]), "a contact needs a pose"),
-            ("add_reach", ("the tipp", [0, 0, 0]), "; did you mean 'the tip'\\?; its manipulators: the tip"),
+            ("add_reach", ("the tipp", [0, 0, 0]), "; did you mean 'the tip'\\? Its manipulators: the tip"),
             ("add_joint_coupling", ({},), "coefficients: are empty, and should name at least one active joint"),
             ("add_com", ([0, 0], "xyzz"), "."),
             ("add_com", ([0, 0],), "target"),

@@ -64,10 +64,11 @@ def _named(robot: Robot, name: str, argument: str) -> Manipulator | Link:
         if thing.GetName() == name:
             return thing
     arms = [arm.GetName() for arm in robot.GetManipulators()]
-    close = get_close_matches(name, [*arms, *(link.GetName() for link in robot.GetLinks())], 1)
+    links = [link.GetName() for link in robot.GetLinks()]
+    close = get_close_matches(name, arms, 1) or get_close_matches(name, links, 1)
     text = f"{argument}: '{robot.GetName()}' has no manipulator or link '{name}'"
-    text += f"; did you mean '{close[0]}'?" if close else ""
-    text += f"; its manipulators: {', '.join(arms) or 'none'}"
+    text += f"; did you mean '{close[0]}'? Its" if close else "; its"
+    text += f" manipulators: {', '.join(arms) or 'none'}"
     raise ArgumentError(text)
 
 
