@@ -62,21 +62,6 @@ class WholeBodyLimits:
     accelerations: bool = False
     base_velocity: float | None = None
 
-    def of(self, moving: Moving) -> MotionLimits:
-        """Return the limits of variables.
-
-        Raises:
-            ArgumentError: the velocity of the base is negative or no finite number.
-        """
-        if self.base_velocity is not None:
-            checked_number(self.base_velocity, "limits.base_velocity", 0.0, " m/s")
-        return moving.limits(
-            values=self.values,
-            velocities=self.velocities,
-            accelerations=self.accelerations,
-            base_velocity=self.base_velocity,
-        )
-
 
 @dataclass(frozen=True)
 class WholeBodyResult:
@@ -215,7 +200,7 @@ class WholeBodyIK(ApiObject):
             self._moving = Moving(self._state, robot.GetActiveDOFIndices(), self._affine, self._axis)
         self.limits = WholeBodyLimits()
         self._limits_for: object = None
-        self._descent = Descent(self._moving, self.limits.of(self._moving))
+        self._descent = Descent(self._moving, _limits_of(self._moving, self.limits))
         self._tasks: list[WholeBodyTask] = []
 
     @property
@@ -635,7 +620,7 @@ class WholeBodyIK(ApiObject):
         limits = self.limits
         now = self._state.scene, limits.values, limits.velocities, limits.accelerations, limits.base_velocity
         if self._limits_for != now:
-            self._descent.limits = limits.of(self._moving)
+            self._descent.limits = _limits_of(self._moving, limits)
             self._limits_for = now
 
     def _added(self, task: WeightedTask, target: object, retarget: Callable[..., None]) -> WholeBodyTask:
@@ -705,6 +690,17 @@ def _subject(thing: KinBody | Link) -> BodyState | tuple[BodyState, int]:
     if isinstance(thing, Link):
         return thing.GetParent().simulation_state, thing.GetIndex()
     return thing.simulation_state
+
+
+def _limits_of(moving: Moving, limits: WholeBodyLimits) -> MotionLimits:
+    if limits.base_velocity is not None:
+        checked_number(limits.base_velocity, "limits.base_velocity", 0.0, " m/s")
+    return moving.limits(
+        values=limits.values,
+        velocities=limits.velocities,
+        accelerations=limits.accelerations,
+        base_velocity=limits.base_velocity,
+    )
 
 
 def _checked_weight(weight: float) -> float:
