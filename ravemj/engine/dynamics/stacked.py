@@ -63,12 +63,8 @@ class WholeBodyRows:
         blocks = matrix[:-3].reshape(count, _BASE, nv)
         self._views, self._com_rows = [(block[:3], block[3:]) for block in blocks], matrix[-3:]
         arms = self._numbers[zero + 2 :].reshape(count + 1, 2, 3)
-        self._arms, self._negative_arms, self._point_arms, self._com_arm = (
-            arms[:, 0],
-            arms[:, 1],
-            arms[:-1, 0],
-            arms[-1, 0],
-        )
+        self._arms, self._negative_arms = arms[:, 0], arms[:, 1]
+        self._point_arms, self._com_arm = arms[:-1, 0], arms[-1, 0]
         self._root = int(kinematics.body_ids[kinematics.roots[0]])
         joints = np.where(columns < nv, nv * np.arange(rows)[:, None] + columns, zero)
         twists = zero + np.tile(_STILL.reshape(_BASE, _BASE).astype(int), (count + 1, 1))

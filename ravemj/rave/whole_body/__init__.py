@@ -18,7 +18,7 @@ from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values
 from ravemj.ik.tasks import Task as Goal
-from ravemj.ik.whole_body import Descent, MotionLimits, TaskRows, WeightedTask
+from ravemj.ik.whole_body import Descent, TaskRows, WeightedTask
 from ravemj.ik.whole_body.levels import daqp
 from ravemj.manipulation.whole_body import Keeper, Moving, polygon_edges
 from ravemj.rave.kinbody import KinBody
@@ -27,6 +27,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
+from ravemj.rave.whole_body.limits import WholeBodyLimits, limits_of
 from ravemj.rave.whole_body.targets import (
     Target,
     described,
@@ -44,23 +45,6 @@ _CONTACT_TOLERANCE = 1e-6
 _TOUCHED = 1e-4  # tolerance of distances and supports [m]
 _PRESSING = 1e-9
 _AT_LIMIT = 1e-7
-
-
-@dataclass(slots=True)
-class WholeBodyLimits:
-    """Limits of every step.
-
-    Attributes:
-        values: Whether to keep joint limits.
-        velocities: Whether ``step`` and ``follow`` keep joint velocity limits.
-        accelerations: Whether they keep joint acceleration limits, and brake before joint limits.
-        base_velocity: Maximum of each component of the base's twist [m/s and rad/s]; None means no limit.
-    """
-
-    values: bool = True
-    velocities: bool = True
-    accelerations: bool = False
-    base_velocity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -200,7 +184,7 @@ class WholeBodyIK(ApiObject):
             self._moving = Moving(self._state, robot.GetActiveDOFIndices(), self._affine, self._axis)
         self.limits = WholeBodyLimits()
         self._limits_for: object = None
-        self._descent = Descent(self._moving, _limits_of(self._moving, self.limits))
+        self._descent = Descent(self._moving, limits_of(self._moving, self.limits))
         self._tasks: list[WholeBodyTask] = []
 
     @property
@@ -620,7 +604,7 @@ class WholeBodyIK(ApiObject):
         limits = self.limits
         now = self._state.scene, limits.values, limits.velocities, limits.accelerations, limits.base_velocity
         if self._limits_for != now:
-            self._descent.limits = _limits_of(self._moving, limits)
+            self._descent.limits = limits_of(self._moving, limits)
             self._limits_for = now
 
     def _added(self, task: WeightedTask, target: object, retarget: Callable[..., None]) -> WholeBodyTask:
@@ -690,17 +674,6 @@ def _subject(thing: KinBody | Link) -> BodyState | tuple[BodyState, int]:
     if isinstance(thing, Link):
         return thing.GetParent().simulation_state, thing.GetIndex()
     return thing.simulation_state
-
-
-def _limits_of(moving: Moving, limits: WholeBodyLimits) -> MotionLimits:
-    if limits.base_velocity is not None:
-        checked_number(limits.base_velocity, "limits.base_velocity", 0.0, " m/s")
-    return moving.limits(
-        values=limits.values,
-        velocities=limits.velocities,
-        accelerations=limits.accelerations,
-        base_velocity=limits.base_velocity,
-    )
 
 
 def _checked_weight(weight: float) -> float:
