@@ -11,6 +11,7 @@ import numpy as np
 import ravemj
 from benchmarks.measure import ROOT, Row, take_turns
 from ravemj.core.transforms import Floats
+from ravemj.ik.whole_body.box_qp import is_optimal
 
 _LIMBS = ("LFoot", "RFoot", "LHand", "RHand")
 _STEPS, _DT = 100, 0.01
@@ -26,14 +27,14 @@ _FINGER = (
 
 def rows() -> list[Row]:
     """Measure a step with four contacts, the centre of mass on a circle and a posture, of 38 variables."""
-    steps = [_ours(exact=False), _bare(), _ours(exact=True), *_mink()]
-    measured = take_turns([_timed(step) for step in steps], 9)
+    steps = [_timed(_ours()), _timed(_bare()), _followed(), *map(_timed, _mink())]
+    measured = take_turns(steps, 15)
     found = [
-        Row("whole body: a step, weights alone", "µs", measured[0], measured[1], 4.0, note="floor: bare MuJoCo, a QP"),
-        Row("whole body: a step, exact contacts", "µs", measured[2], measured[0], 2.0, note="floor: weights alone"),
+        Row("whole body: a step, weights alone", "µs", measured[0], measured[1], 1.2, note="floor: bare MuJoCo, a QP"),
+        Row("whole body: follow, a step", "µs", measured[2], measured[0], 2.0, note="exact contacts; floor: weights"),
     ]
     if len(measured) > 3:
-        found.append(Row("whole body: a step, weights alone", "µs", measured[0], measured[3], 1.1, note="floor: mink"))
+        found.append(Row("whole body: a step, weights alone", "µs", measured[0], measured[3], 1.0, note="floor: mink"))
     return found
 
 
@@ -67,7 +68,8 @@ def _circle(com: Floats, t: float) -> Floats:
     return com + 0.01 * np.array([np.cos(t) - 1, np.sin(t), 0])
 
 
-def _ours(*, exact: bool) -> Callable[[float], None]:
+def _tasks(*, exact: bool) -> tuple[ravemj.WholeBodyIK, Callable[[float], None]]:
+    """Return the tasks, and a function that moves the target of the centre of mass."""
     ik = ravemj.WholeBodyIK(_robot(), base=True)
     ik.exact_contacts = exact
     for name in _LIMBS:
@@ -76,11 +78,35 @@ def _ours(*, exact: bool) -> Callable[[float], None]:
     ik.add_posture(weight=_WEIGHTS[2])
     start = np.array(com.target)
 
-    def step(t: float) -> None:
+    def retarget(t: float) -> None:
         com.target = _circle(start, t)
+
+    return ik, retarget
+
+
+def _ours() -> Callable[[float], None]:
+    """Return a step with weighted contacts."""
+    ik, retarget = _tasks(exact=False)
+
+    def step(t: float) -> None:
+        retarget(t)
         ik.step(_DT)
 
     return step
+
+
+def _followed() -> Callable[[], float]:
+    """Return a function that measures a step of ``follow`` with exact contacts [µs of the processor]."""
+    ik, retarget = _tasks(exact=True)
+    past = [0.0]
+
+    def measure() -> float:
+        start, begin = past[0], time.process_time()
+        ik.follow(_STEPS * _DT, _DT, lambda t: retarget(start + t))
+        past[0] += _STEPS * _DT
+        return (time.process_time() - begin) / _STEPS * 1e6
+
+    return measure
 
 
 def _free_model() -> tuple[mujoco.MjModel, mujoco.MjData]:
@@ -96,15 +122,19 @@ def _free_model() -> tuple[mujoco.MjModel, mujoco.MjData]:
 
 
 def _bare() -> Callable[[float], None]:
-    """Return the same step by calls of MuJoCo and numpy: Jacobians, normal equations, box QP, integration."""
+    """Return the same step by calls of MuJoCo and numpy: Jacobians, normal equations, box QP, integration.
+
+    The program is scaled, snapped and checked as ours, without which its answers are wrong now and then.
+    """
     model, data = _free_model()
     count = model.nv
     bodies = [model.body(name).id for name in _LIMBS]
     goals = [(data.xpos[body].copy(), data.xquat[body].copy()) for body in bodies]
     start, posture = data.subtree_com[0].copy(), data.qpos.copy()
-    roots = np.sqrt(np.repeat(_WEIGHTS, [24, 3, count - 6]))
-    jacobian, error = np.zeros((27 + count - 6, count)), np.zeros(27 + count - 6)
-    jacobian[27:, 6:] = np.eye(count - 6)
+    roots = np.sqrt(np.repeat(_WEIGHTS[:2], [24, 3]))
+    jacobian, error = np.zeros((27, count)), np.zeros(27)
+    diagonal = np.full(count, 1e-8)
+    diagonal[6:] += _WEIGHTS[2]
     factor, turn = np.zeros((count, count + 7)), np.zeros(3)
     fastest = np.append(np.full(6, np.inf), np.full(count - 6, 6.0)) * _DT
     lowest, highest = (
@@ -124,14 +154,18 @@ def _bare() -> Callable[[float], None]:
             error[row + 3 : row + 6] = data.xmat[body].reshape(3, 3) @ turn
         mujoco.mj_jacSubtreeCom(model, data, jacobian[24:27], 1)
         error[24:27] = _circle(start, t) - data.subtree_com[0]
-        error[27:] = posture[7:] - data.qpos[7:]
         rows, wanted = jacobian * roots[:, None], error * roots
-        hessian = rows.T @ rows + 1e-8 * np.eye(count)
-        gradient = -(wanted @ rows)
+        hessian, gradient = rows.T @ rows, -(wanted @ rows)
+        hessian.ravel()[:: count + 1] += diagonal
         values[6:] = data.qpos[7:]
-        scale, x = 1e6 / np.abs(gradient).max(), np.zeros(count)
+        gradient[6:] -= _WEIGHTS[2] * (posture[7:] - values[6:])
+        scale, x = 1e6 / np.linalg.norm(gradient), np.zeros(count)
         lower, upper = np.maximum(lowest - values, -fastest), np.minimum(highest - values, fastest)
-        mujoco.mju_boxQP(x, factor, None, hessian * scale, gradient * scale, lower, upper)
+        lower[np.abs(lower) < 1e-9] = 0.0
+        upper[np.abs(upper) < 1e-9] = 0.0
+        hessian, gradient = hessian * scale, gradient * scale
+        mujoco.mju_boxQP(x, factor, None, hessian, gradient, lower, upper)
+        assert is_optimal(hessian, gradient, lower, upper, x)
         mujoco.mj_integratePos(model, data.qpos, x, 1.0)
 
     return step

@@ -490,11 +490,23 @@ def test_ik_reaches_with_a_whole_body(folder):
     assert np.allclose(robot.GetManipulator("left_hand").GetTransform()[:3, 3], [0.35, 0.2, 0.5], atol=1e-4)
 
 
+def test_ik_reaches_with_the_whole_body_of_a_urdf(folder):
+    """A robot of a user's own, which stands at the origin and stretched, since a URDF says no more."""
+    ravemj_command(folder, "convert", "biped", "-o", "own.urdf")
+    words = ("ik", "own.urdf", "--reach", "left_hand=0.4,0.1,0.2", *FEET, "--json")
+    done = ravemj_command(folder, *words)
+    found = json.loads(done.stdout)
+    assert (done.returncode, found["reason"]) == (0, "met")
+    assert found["base"][:3] != [0, 0, 0]
+    assert max(np.abs(found["residuals"][foot]).max() for foot in ("left_foot", "right_foot")) < 1e-6
+
+
 def test_ik_of_a_whole_body_says_what_is_missed(folder):
     words = ("ik", "biped", "--reach", "left_hand=2,0,1", "--reach", "right_hand=0.2,-0.2,0.6,1,0,0,0", *FEET)
     done = ravemj_command(folder, *words)
     assert (done.returncode, done.stderr) == (1, "")
     assert "left_hand is" in done.stdout.splitlines()[-1]
+    assert "right_hand is" in done.stdout.splitlines()[-1], "each task that is not met has its reason"
     fixed = json.loads(said(ravemj_command(folder, "ik", "panda", "--reach", "arm=0.3,0.1,0.5", "--json")))
     assert fixed["base"] == [0, 0, 0, 1, 0, 0, 0], "without --keep the base stays"
 
@@ -502,7 +514,7 @@ def test_ik_of_a_whole_body_says_what_is_missed(folder):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--reach", "hand=1,2,3"), "'Biped' has no manipulator or link 'hand'; its manipulators: left_foot"),
+        (("--reach", "hand=1,2,3"), "'Biped' has no manipulator or link 'hand'; did you mean 'left_hand'? Its"),
         (("--reach", "left_hand=1,2"), "--reach: found 2 values for 'left_hand', expected x,y,z"),
         (("--reach", "left_hand"), "'left_hand' is not NAME=x,y,z"),
         (("--reach", "left_hand=1,2,x"), "'x' is not a finite number"),

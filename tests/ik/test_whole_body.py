@@ -610,6 +610,8 @@ class TestErrors:
             ("add_reach", ("the tip", [0, math.nan, 0]), "target"),
             ("add_reach", ("the tip", [1, 2]), "target"),
             ("add_contact", ("the tip", [1, 2, 3]), "a contact needs a pose"),
+            ("add_reach", ("the tipp", [0, 0, 0]), "; did you mean 'the tip'\\? Its manipulators: the tip"),
+            ("add_joint_coupling", ({},), "coefficients: are empty, and should name at least one active joint"),
             ("add_com", ([0, 0], "xyzz"), "."),
             ("add_com", ([0, 0],), "target"),
             ("add_posture", ([0, 0],), "values"),
@@ -639,6 +641,36 @@ class TestErrors:
             task.weight = -1
         with pytest.raises(ravemj.ArgumentError, match="gain"):
             task.gain = 2
+
+    @pytest.mark.parametrize("priority", [1.5, "high", None])
+    def test_priorities_are_whole_numbers(self, priority):
+        ik = WholeBodyIK(planar_arm())
+        with pytest.raises(ravemj.ArgumentError, match="priority"):
+            ik.add_posture(priority=priority)
+        task = ik.add_posture()
+        with pytest.raises(ravemj.ArgumentError, match="priority"):
+            task.priority = priority
+        assert task.priority == 1
+        assert ik.tasks == [task]
+
+    @pytest.mark.parametrize("speed", [-1.0, math.nan, math.inf, "fast"])
+    def test_velocities_of_the_base_are_numbers(self, speed):
+        robot = planar_arm()
+        ik = WholeBodyIK(robot, base=True)
+        before = start(robot)
+        ik.add_reach("the tip", [0.9, 0.3, 0])
+        ik.limits.base_velocity = speed
+        for call in (ik.solve, lambda: ik.step(0.01)):
+            with pytest.raises(ravemj.ArgumentError, match=r"limits\.base_velocity"):
+                call()
+        np.testing.assert_array_equal(tip(robot), before)
+        ik.limits.base_velocity = 0
+        ik.step(0.01)
+        np.testing.assert_array_equal(robot.GetTransform(), np.eye(4))
+
+    def test_misspelt_limits_are_refused(self):
+        with pytest.raises(AttributeError, match="velocity"):
+            WholeBodyIK(planar_arm()).limits.velocity = False
 
     def test_a_frame_of_its_own_is_no_target(self):
         robot = planar_arm()

@@ -5,13 +5,15 @@ scaled; it stalls beside bounds that almost touch its start, so these are snappe
 optimality conditions of W. Karush, H. Kuhn and A. Tucker are checked.
 """
 
+import math
+
 import mujoco
 import numpy as np
 
 from ravemj.ik.vectors import Bools, Floats
 
 _SCALE = 1e6
-"""Largest component of the scaled gradient: the solver stops when its norm is below 1e-8."""
+"""Length of the scaled gradient: the solver stops when that of the free variables is below 1e-8."""
 _SNAP = 1e-9
 _ACCURATE = 1e-9
 """Relative gradient that counts as zero."""
@@ -55,25 +57,25 @@ class BoxProblem:
     def _minimise_free(self, gradient: Floats) -> Floats:
         lower, upper = self._lower, self._upper
         x = np.minimum(np.maximum(lower, 0.0), upper)
-        greatest = float(np.abs(gradient).max(initial=0.0))
-        if not greatest:
+        length = math.sqrt(float(gradient.dot(gradient)))
+        if not length:
             return x
-        scale = _SCALE / greatest
+        scale = _SCALE / length
         hessian, scaled = self._hessian * scale, gradient * scale
-        if mujoco.mju_boxQP(x, self._factor, None, hessian, scaled, lower, upper) >= 0:
-            x = np.minimum(np.maximum(x, lower), upper)
-            if is_optimal(hessian, scaled, lower, upper, x):
-                return x
+        solved = mujoco.mju_boxQP(x, self._factor, None, hessian, scaled, lower, upper) >= 0
+        if solved and is_optimal(hessian, scaled, lower, upper, x):
+            return x
         return active_set(hessian, scaled, lower, upper)
 
 
 def is_optimal(hessian: Floats, gradient: Floats, lower: Floats, upper: Floats, x: Floats) -> bool:
     """Return whether the gradient at x is zero for free variables, and points out of the box for those at a bound."""
     slope = hessian.dot(x)
-    most = _ACCURATE * float(np.abs(gradient).max()) + 1e-13 * float(np.abs(slope).max())
     slope += gradient
-    if float(np.abs(slope).max()) <= most:
+    most = _ACCURATE * math.sqrt(float(gradient.dot(gradient)))
+    if slope.dot(slope) <= most * most:
         return True
+    most += 1e-13 * float(np.abs(slope - gradient).max())  # rounding of the product
     inward = np.minimum(slope, 0.0) * (x < upper), np.maximum(slope, 0.0) * (x > lower)
     return max(float(inward[1].max()), -float(inward[0].min())) <= most
 

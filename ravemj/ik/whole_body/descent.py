@@ -14,6 +14,7 @@ from functools import lru_cache
 from itertools import groupby
 from typing import NamedTuple, Protocol
 
+import mujoco
 import numpy as np
 
 from ravemj.ik.vectors import Floats
@@ -231,7 +232,7 @@ class Descent:
             left = _length(error)
             if not EXACT < left < _DRIFT:
                 break
-            jacobian = np.vstack([rows.jacobian for _, rows in measured])
+            jacobian = np.concatenate([rows.jacobian for _, rows in measured])
             back = _shortest(jacobian, error, lower - x, upper - x)
             self._mechanism.move(back)
             x = x + back
@@ -288,9 +289,12 @@ def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> 
 
 def _least_norm(jacobian: Floats, error: Floats) -> Floats:
     """Return the shortest x with ``jacobian @ x = error``, slightly damped for dependent rows."""
-    square = jacobian.dot(jacobian.T)
-    square.ravel()[:: len(error) + 1] += 1e-9 * np.trace(square) / len(error)
-    return np.asarray(np.linalg.solve(square, error), dtype=float).dot(jacobian)
+    square, multipliers = jacobian.dot(jacobian.T), np.empty(len(error))
+    diagonal = square.ravel()[:: len(error) + 1]
+    diagonal += 1e-9 * float(diagonal.sum()) / len(error) + 1e-300
+    mujoco.mju_cholFactor(square, 0.0)
+    mujoco.mju_cholSolve(multipliers, square, error)
+    return multipliers.dot(jacobian)
 
 
 def _weighted(measured: Sequence[tuple[WeightedTask, TaskRows]], count: int) -> tuple[Floats, Floats]:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_number, checked_rows, checked_vector
+from ravemj.core.arrays import checked_number, checked_rows, checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision import queries
 from ravemj.engine.collision.pairs import Pairs
@@ -27,6 +27,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 from ravemj.rave.trajectory import Trajectory
+from ravemj.rave.whole_body.limits import WholeBodyLimits, limits_of
 from ravemj.rave.whole_body.targets import (
     Target,
     described,
@@ -44,23 +45,6 @@ _CONTACT_TOLERANCE = 1e-6
 _TOUCHED = 1e-4  # tolerance of distances and supports [m]
 _PRESSING = 1e-9
 _AT_LIMIT = 1e-7
-
-
-@dataclass
-class WholeBodyLimits:
-    """Limits of every step.
-
-    Attributes:
-        values: Whether to keep joint limits.
-        velocities: Whether ``step`` and ``follow`` keep joint velocity limits.
-        accelerations: Whether they keep joint acceleration limits, and brake before joint limits.
-        base_velocity: Maximum of each component of the base's twist [m/s and rad/s]; None means no limit.
-    """
-
-    values: bool = True
-    velocities: bool = True
-    accelerations: bool = False
-    base_velocity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -129,7 +113,7 @@ class WholeBodyTask(ApiObject):
 
     @priority.setter
     def priority(self, priority: int) -> None:
-        self.task.priority = int(priority)
+        self.task.priority = _checked_priority(priority)
 
     @property
     def enabled(self) -> bool:
@@ -200,7 +184,7 @@ class WholeBodyIK(ApiObject):
             self._moving = Moving(self._state, robot.GetActiveDOFIndices(), self._affine, self._axis)
         self.limits = WholeBodyLimits()
         self._limits_for: object = None
-        self._descent = Descent(self._moving, self._moving.limits(**vars(self.limits)))
+        self._descent = Descent(self._moving, limits_of(self._moving, self.limits))
         self._tasks: list[WholeBodyTask] = []
 
     @property
@@ -333,7 +317,7 @@ class WholeBodyIK(ApiObject):
         task = WeightedTask(
             name, measure, lambda error: f"{name} {described(current.goal, error)}", _checked_weight(weight)
         )
-        task.priority, task.gain, task.is_contact = int(priority), _checked_gain(gain), is_contact
+        task.priority, task.gain, task.is_contact = _checked_priority(priority), _checked_gain(gain), is_contact
         task.tolerance = _CONTACT_TOLERANCE if is_contact else task.tolerance
         return self._added(task, given, retarget)
 
@@ -428,12 +412,14 @@ class WholeBodyIK(ApiObject):
             The task, whose target and weight can be changed.
 
         Raises:
-            ArgumentError: a joint is not active.
+            ArgumentError: a joint is not active, or there is none.
 
         Example:
             >>> ik.add_joint_coupling({"L_KNEE": 1.0, "R_KNEE": -1.0})  # both knees bend alike
             <WholeBodyTask 'L_KNEE and R_KNEE': weight 1, priority 1>
         """
+        if not coefficients:
+            raise ArgumentError("coefficients: are empty, and should name at least one active joint")
         row = np.zeros((1, self._moving.count))
         names = self._variable_names()
         for joint, coefficient in coefficients.items():
@@ -561,7 +547,7 @@ class WholeBodyIK(ApiObject):
         """Step for a duration, and return the motion.
 
         Args:
-            duration: The duration [s].
+            duration: The duration [s], rounded to whole steps.
             dt: The time step [s].
             update: Called before each step with the time at its end [s], to set targets.
 
@@ -610,14 +596,16 @@ class WholeBodyIK(ApiObject):
 
         Raises:
             RavemjError: the joints of the robot have changed.
+            ArgumentError: a limit is invalid.
         """
         if not self._moving.is_current():
             text = f"'{self._state.scene.name}' has changed since WholeBodyIK was made; make it anew"
             raise RavemjError(text, ErrorCode.InvalidState)
-        now = (self._state.scene, *vars(self.limits).values())
+        limits = self.limits
+        now = self._state.scene, limits.values, limits.velocities, limits.accelerations, limits.base_velocity
         if self._limits_for != now:
+            self._descent.limits = limits_of(self._moving, limits)
             self._limits_for = now
-            self._descent.limits = self._moving.limits(**vars(self.limits))
 
     def _added(self, task: WeightedTask, target: object, retarget: Callable[..., None]) -> WholeBodyTask:
         with self._state.simulation.lock:
@@ -637,7 +625,7 @@ class WholeBodyIK(ApiObject):
     ) -> WholeBodyTask:
         name, (weight, priority) = self._new_name(name), counts
         task = WeightedTask(name, measure, lambda error: f"{name} {describe(error)}", _checked_weight(weight))
-        task.priority = int(priority)
+        task.priority = _checked_priority(priority)
         return self._added(task, target, retarget)
 
     def _new_name(self, name: str) -> str:
@@ -690,6 +678,11 @@ def _subject(thing: KinBody | Link) -> BodyState | tuple[BodyState, int]:
 
 def _checked_weight(weight: float) -> float:
     return checked_number(weight, "weight", 0.0)
+
+
+def _checked_priority(priority: int) -> int:
+    (number,) = checked_whole_numbers([priority], "priority").tolist()
+    return number
 
 
 def _checked_gain(gain: float) -> float:

@@ -1,6 +1,7 @@
 """Frames and targets of whole-body tasks in the API, and their error rows."""
 
 from collections.abc import Callable
+from difflib import get_close_matches
 from typing import NamedTuple
 
 import numpy as np
@@ -62,8 +63,12 @@ def _named(robot: Robot, name: str, argument: str) -> Manipulator | Link:
     for thing in (*robot.GetManipulators(), *robot.GetLinks()):
         if thing.GetName() == name:
             return thing
-    known = ", ".join(arm.GetName() for arm in robot.GetManipulators()) or "none"
-    text = f"{argument}: '{robot.GetName()}' has no manipulator or link '{name}'; its manipulators: {known}"
+    arms = [arm.GetName() for arm in robot.GetManipulators()]
+    links = [link.GetName() for link in robot.GetLinks()]
+    close = get_close_matches(name, arms, 1) or get_close_matches(name, links, 1)
+    text = f"{argument}: '{robot.GetName()}' has no manipulator or link '{name}'"
+    text += f"; did you mean '{close[0]}'? Its" if close else "; its"
+    text += f" manipulators: {', '.join(arms) or 'none'}"
     raise ArgumentError(text)
 
 
