@@ -252,6 +252,7 @@ def test_functions_and_helpers_of_submodules_name_an_argument(wrong, tmp_path, m
 
 NAMES_OF_OLD = sorted({*legacy.NAMES} - {"RaveGlobalState", "VoidPointer"})
 ERRORS = ["SourceError", "CompileError", "OutputError", "UnsupportedError", "PlanningError", "SweepError"]
+ERRORS += ["CollisionPairInfo"]
 
 
 @pytest.mark.parametrize("name", [*NAMES_OF_OLD, *ERRORS])
