@@ -62,15 +62,18 @@ def test_every_type_divides_the_joints_and_solves(arm, kind):
 
 @pytest.mark.parametrize("joint", range(7))
 @pytest.mark.parametrize("by_name", [False, True])
-def test_each_free_joint_of_seven(panda, joint, by_name):
+def test_each_free_joint_of_seven(panda, joint, by_name, caplog):
     robot, index = panda.GetRobot(), int(panda.GetArmIndices()[joint])
     named = {"freejoints": [robot.GetJointFromDOFIndex(index).GetName()]} if by_name else {"freeindices": [index]}
     model = InverseKinematicsModel(robot, iktype=Type.Transform6D, **named)
     assert model.freeindices == [index]
     assert model.load(freeinc=[0.2])
-    if model.freeindices == [index]:  # else no six of the joints could be solved, and all seven are searched
+    if model.freeindices == [index]:
         assert model.freeinc == [0.2]
         assert model.iksolver.GetNumFreeParameters() == 1
+        assert not caplog.text
+    else:
+        assert f"no solver samples the joints [{index}]" in caplog.text
     assert model.testik(FEW)[1] == 0
 
 
