@@ -100,6 +100,9 @@ __all__ = [
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__  # pyright: ignore[reportUnsupportedDunderAll] - it takes all that is imported above
 
+for _error in (ArgumentError, CompileError, OutputError, RavemjError, RenderingError, SourceError, UnsupportedError):
+    _published(_error, __name__)
+
 _LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
     "Certificate": "ravemj.planning.certificates",
     "CertifiedSpan": "ravemj.planning.certificates",

@@ -8,6 +8,7 @@ from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
 import ravemj
+from ravemj.core.api_object import published
 from ravemj.errors import ArgumentError
 from ravemj.rave import IkParameterizationType, RaveDestroy
 
@@ -96,7 +97,11 @@ def with_destroy(fn: Callable[_Parameters, _Result]) -> Callable[_Parameters, _R
 
 NAMES: dict[str, object] = {
     **{old: getattr(ravemj, new) for old, new in re.findall(r"(\S+)=(\S+)", _RENAMED)},
-    **{name: own for name, own in globals().items() if name[0] != "_" and getattr(own, "__module__", "") == __name__},
+    **{
+        name: published(own, __name__)
+        for name, own in globals().items()
+        if name[0] != "_" and getattr(own, "__module__", "") == __name__
+    },
 }
 """Names that this module provides for ``openravepy``."""
 globals().update(NAMES, __all__=list(NAMES))

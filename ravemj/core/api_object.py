@@ -56,7 +56,7 @@ def published(thing: Thing, module: str) -> Thing:
         thing.__module__ = module  # where pickle finds it
     elif isinstance(thing, type):
         kind = cast("type[object]", thing)
-        if not issubclass(kind, Enum | Exception | ApiObject):
+        if not issubclass(kind, Enum | ApiObject):
             explain_methods(kind)
     show_as_written(thing)
     return cast("Thing", thing)

@@ -24,7 +24,7 @@ class _Listed(EnumMeta):
 
 
 class NamedInt(IntEnum, metaclass=_Listed):
-    """Enumeration of numbers; ``str`` gives class and name, ``format`` the number."""
+    """An enumeration of numbers; ``str`` gives class and name."""
 
     __str__ = Enum.__str__
 

@@ -22,6 +22,8 @@ class Handle(ApiObject):
 
         ``release`` must be safe in any thread at any time, since garbage collection may call it.
         """
+        if not callable(release):
+            raise TypeError(f"{type(self).__name__}: release: is {release!r}, and should be a function")
         self._release = weakref.finalize(self, release, *args, **kwargs)
         self._release.atexit = False
 

@@ -298,6 +298,8 @@ class IdealController(Controller):
             path = self._prepared(traj)
             if path.moves_base:  # raises for poses that are none
                 traj.GetConfigurationSpecification().ExtractTransform(None, start, self._robot)
+            if path.grabs:  # grabs need the world's model; compiled in a step it would delay simulation time
+                self._env.simulation.collisions()
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
             self._last_timestep, self._has_problem = 0.0, False

@@ -52,8 +52,6 @@ class CollisionPairInfo(ApiObject):
         collides: Whether the links collide; False for the nearest links.
     """
 
-    _often_called = ("__init__",)
-
     __slots__ = ("collides", "contacts", "first", "second")  # slots show on the class, as OpenRAVE's properties do
 
     def __init__(

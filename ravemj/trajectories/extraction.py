@@ -111,5 +111,5 @@ def used_indices(groups: Sequence[Group], body: str) -> tuple[list[int], list[in
 
 def rotation_columns(group: Group) -> tuple[DOFAffine, slice]:
     """Return the rotation type of an affine group (0: none), and the slice of its values."""
-    kind = DOFAffine(affine_parts(group)[0] & int(DOFAffine.RotationMask))
+    kind = DOFAffine(affine_parts(group)[0] & DOFAffine.RotationMask)
     return kind, slice(group.dof - RaveGetAffineDOF(kind), group.dof)

@@ -5,11 +5,13 @@ import pytest
 
 import ravemj
 from ravemj import IkParameterizationType as Type
+from ravemj import IkReturnAction
 from ravemj.compat.databases.inversekinematics import InverseKinematicsError, InverseKinematicsModel
 
 TYPES = [kind for kind in Type if kind.name != "none" and not kind.name.endswith("Velocity")]
 TYPES = [kind for kind in TYPES if kind.name not in {"VelocityDataBit", "CustomDataBit", "UniqueIdMask"}]
 FEW = "6"
+CONFIGURATION = [0.3, 0.2, -0.9, 0.4, -0.5, 0.6]
 
 
 @pytest.fixture(params=["panda", "puma560"])
@@ -23,6 +25,19 @@ def arm(request):
 def panda():
     env = ravemj.load(ravemj.model_path("panda"))
     yield env.GetRobots()[0].GetActiveManipulator()
+    env.Destroy()
+
+
+@pytest.fixture(scope="module")
+def puma():
+    env = ravemj.load(ravemj.model_path("puma560"))
+    box = ravemj.RaveCreateKinBody(env, "")
+    box.InitFromBoxes(np.array([[0, 0, 0, 0.1, 0.1, 0.1]]), True)
+    box.SetName("box")
+    env.Add(box)
+    arm = env.GetRobots()[0].GetActiveManipulator()
+    assert InverseKinematicsModel(env.GetRobots()[0], iktype=Type.Transform6D).load()
+    yield arm
     env.Destroy()
 
 
@@ -47,15 +62,18 @@ def test_every_type_divides_the_joints_and_solves(arm, kind):
 
 @pytest.mark.parametrize("joint", range(7))
 @pytest.mark.parametrize("by_name", [False, True])
-def test_each_free_joint_of_seven(panda, joint, by_name):
+def test_each_free_joint_of_seven(panda, joint, by_name, caplog):
     robot, index = panda.GetRobot(), int(panda.GetArmIndices()[joint])
     named = {"freejoints": [robot.GetJointFromDOFIndex(index).GetName()]} if by_name else {"freeindices": [index]}
     model = InverseKinematicsModel(robot, iktype=Type.Transform6D, **named)
     assert model.freeindices == [index]
     assert model.load(freeinc=[0.2])
-    if model.freeindices == [index]:  # else no six of the joints could be solved, and all seven are searched
+    if model.freeindices == [index]:
         assert model.freeinc == [0.2]
         assert model.iksolver.GetNumFreeParameters() == 1
+        assert not caplog.text
+    else:
+        assert f"no solver samples the joints [{index}]" in caplog.text
     assert model.testik(FEW)[1] == 0
 
 
@@ -139,3 +157,35 @@ def test_numbers_of_trials_are_whole_and_above_0(panda, count):
     with pytest.raises((ValueError, TypeError), match="iktests"):
         model.testik(count)
     assert len(model.perftiming(3)) == 3
+
+
+@pytest.mark.parametrize("is_inside_a_box", [False, True])
+@pytest.mark.parametrize("flags", range(64))
+def test_each_combination_of_flags_gives_the_same_answer_in_every_form(puma, flags, is_inside_a_box):
+    robot = puma.GetRobot()
+    robot.SetDOFValues(CONFIGURATION)
+    goal = puma.GetTransform()
+    robot.SetDOFValues(np.zeros(6))
+    box = robot.GetEnv().GetKinBody("box")
+    box.SetTransform(goal if is_inside_a_box else ravemj.matrixFromPose([1, 0, 0, 0, 9, 9, 9]))
+    lower, upper = robot.GetDOFLimits(puma.GetArmIndices())
+    before = robot.GetDOFValues()
+    one, answer = puma.FindIKSolution(goal, flags), puma.FindIKSolution(goal, flags, ikreturn=True)
+    rows, answers = puma.FindIKSolutions(goal, flags), puma.FindIKSolutions(goal, flags, ikreturn=True)
+    assert (one is None) == (len(rows) == 0) == (answer.GetAction() != IkReturnAction.Success)
+    assert (one is None) == (len(answer.GetSolution()) == 0)
+    assert len(answers) == len(rows)
+    assert all(every.GetAction() == IkReturnAction.Success for every in answers)
+    assert (robot.GetDOFValues() == before).all()
+    if one is None:
+        assert answer.GetAction() & (IkReturnAction.Reject | IkReturnAction.Quit)
+        assert rows.shape == (0,)
+        return
+    assert (one.shape, one.dtype, rows.shape[1]) == ((6,), np.float64, 6)
+    np.testing.assert_array_equal(answer.GetSolution(), one)
+    assert np.abs(rows - one).max(axis=1).min() < 1e-9
+    for row in rows:
+        assert flags & 4 or ((row >= lower - 1e-9) & (row <= upper + 1e-9)).all()
+        with robot:
+            robot.SetDOFValues(row, puma.GetArmIndices(), 0)
+            np.testing.assert_allclose(puma.GetTransform(), goal, atol=1e-9)

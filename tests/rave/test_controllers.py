@@ -331,6 +331,26 @@ def test_trajectories_grab_and_release(env, robot, timestep):
     np.testing.assert_allclose(mug.GetTransform(), T_world_end, atol=1e-12)
 
 
+def test_the_model_that_grabs_need_is_compiled_before_time_passes(env, robot, monkeypatch):
+    """Compiling takes longer than scripts wait for a path of one waypoint."""
+    spec = ravemj.ConfigurationSpecification()
+    spec.AddGroup(f"grab {robot.GetName()} 0", 1, "previous")
+    spec.AddGroup("deltatime", 1, "linear")
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    trajectory.Init(spec)
+    box = ravemj.RaveCreateKinBody(env, "")
+    box.InitFromBoxes(np.array([[0, 0, 5, 0.1, 0.1, 0.1]]), True)
+    box.SetName("box")
+    env.Add(box)
+    trajectory.Insert(0, [box.GetEnvironmentBodyIndex(), 0])
+    robot.GetController().SetPath(trajectory)
+    monkeypatch.setattr(env.simulation, "_compile", lambda: pytest.fail("compiled in a step"))
+    for _ in range(3):
+        env.StepSimulation(0.01)
+    assert robot.GetController().IsDone()
+    assert robot.GetGrabbed() == [box]
+
+
 def test_grabs_of_bodies_that_are_not_there(env, robot, caplog):
     spec = ravemj.ConfigurationSpecification()
     spec.AddGroup(f"grab {robot.GetName()} 0", 1, "previous")

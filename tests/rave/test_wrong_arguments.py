@@ -1,7 +1,9 @@
 """Mistakes that scripts make: each error says what was found, and what was expected."""
 
+import gc
 import inspect
 import math
+from enum import Enum
 
 import numpy as np
 import pytest
@@ -9,6 +11,8 @@ from wrong_calls import KINDS, calls_with_one_argument, calls_with_several_argum
 
 import ravemj
 from ravemj import geometry_functions
+from ravemj.compat import legacy, openravepy
+from ravemj.core.handles import Handle
 
 
 def trajectory(env, robot):
@@ -244,6 +248,35 @@ def test_functions_and_helpers_of_submodules_name_an_argument(wrong, tmp_path, m
                     assert named, (name, argument, wrong, error)  # noqa: PT017 - of many calls
     assert calls > 150
     env.Destroy()
+
+
+NAMES_OF_OLD = sorted({*legacy.NAMES} - {"RaveGlobalState", "VoidPointer"})
+ERRORS = ["SourceError", "CompileError", "OutputError", "UnsupportedError", "PlanningError", "SweepError"]
+ERRORS += ["CollisionPairInfo"]
+
+
+@pytest.mark.parametrize("name", [*NAMES_OF_OLD, *ERRORS])
+def test_old_names_and_errors_name_an_argument(name, scene):
+    function = getattr(openravepy, name, None) or getattr(ravemj, name)
+    if inspect.isclass(function) and issubclass(function, Enum):
+        return
+    for wrong in WRONG:
+        for _, given in rows_of(function, *scene, wrong):
+            try:
+                function(**given)
+            except ravemj.openrave_exception:
+                pass
+            except (TypeError, AttributeError, ValueError, LookupError, ArithmeticError) as error:
+                assert any(word in str(error) for word in (*given, name)), (given, error)  # noqa: PT017 - of many calls
+            gc.collect(0)
+
+
+def test_a_handle_needs_a_function(capfd):
+    for wrong in WRONG[:-1]:
+        with pytest.raises(TypeError, match=r"Handle: release: is .*, and should be a function"):
+            Handle(wrong)
+    gc.collect()
+    assert "Exception ignored" not in capfd.readouterr().err
 
 
 def rows_of(function, env, robot, wrong):

@@ -136,6 +136,9 @@ class InverseKinematicsModel(SolvedJoints):
         wanted = usual if free is None else free
         self.iksolver, self.freeindices = solver, wanted if set(wanted) == set(free_dofs) else free_dofs
         self.solveindices = self._divide(self.freeindices)
+        if free is not None and set(free) != set(free_dofs):
+            message = "'%s': no solver samples the joints %s; that of %s samples %s"
+            _LOG.warning(message, self.manip.GetName(), list(free), kind.name, free_dofs or "none")
 
     def generate(
         self,

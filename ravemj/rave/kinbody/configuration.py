@@ -142,8 +142,15 @@ class BodyConfiguration(BodyPart):
 
     @property
     def qpos_indices(self) -> Ints:
-        """The index of each DOF in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
+        """The index of each DOF in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld.
+
+        Raises:
+            openrave_exception: the body is not in an environment.
+        """
         with self._simulation.lock:
+            if not self._simulation.holds(self._state):
+                message = f"qpos_indices: '{self._state.scene.name}' is not in an environment; add it first"
+                raise RavemjError(message, ErrorCode.NotInitialized)
             return self._simulation.compiled().qpos_indices(self._state)
 
     def GetTransform(self) -> Floats:
