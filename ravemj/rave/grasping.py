@@ -15,7 +15,17 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.manipulation.bodies import Bodies
-from ravemj.manipulation.grasping.search import Choices, Grasp, Grasps, Method, Reach, count_candidates, proved, search
+from ravemj.manipulation.grasping.search import (
+    Choices,
+    Grasp,
+    Grasps,
+    Method,
+    Reach,
+    closes,
+    count_candidates,
+    proved,
+    search,
+)
 from ravemj.rave.env.viewing import GraphHandle
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
@@ -87,8 +97,13 @@ def grasps(  # noqa: PLR0913 - keyword arguments
     choices = _checked(method, friction, delta, rolls)
     if body is robot or robot.IsGrabbing(body):
         raise ArgumentError(f"grasps: body: '{body.GetName()}' is the robot or in its hand; expected a body to grasp")
+    if not robot.simulation_state.simulation.holds(body.simulation_state):
+        where = f"in the environment of robot '{robot.GetName()}'"
+        raise ArgumentError(f"grasps: body: '{body.GetName()}' is not {where}; add it first")
     if processes < 1:
         raise ArgumentError(f"grasps: processes: is {processes}; expected 1 or more")
+    if proofs < 0:
+        raise ArgumentError(f"grasps: proofs: is {proofs}; expected 0 or more")
     with robot.GetEnv():
         state, target = robot.simulation_state, body.simulation_state
         searched = Grasps(_searched(_Query(robot, body, choices, reach), processes), friction)
@@ -186,6 +201,12 @@ def _active(robot: Robot) -> Manipulator:
     arm = robot.GetActiveManipulator()
     if arm is None:
         raise ArgumentError(f"grasps: robot '{robot.GetName()}' has no active manipulator; give it a <Manipulator>")
+    others = [other.GetName() for other in robot.GetManipulators() if closes(other.description)]
+    if others and not closes(arm.description):
+        raise ArgumentError(
+            f"grasps: manipulator '{arm.GetName()}' has no gripper joints that close, and {', '.join(others)} "
+            f"{'has' if len(others) == 1 else 'have'} some; call robot.SetActiveManipulator"
+        )
     return arm
 
 

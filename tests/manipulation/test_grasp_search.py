@@ -194,3 +194,27 @@ def test_distinct_grasps_are_no_twins_and_the_best_ones():
             is_near = max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 0.015
             assert not (is_near and grasp.approach @ better.approach > np.cos(np.radians(20)))
     assert len(found.distinct(len(found))) < len(found)
+
+
+def test_bodies_elsewhere_and_disabled_ones_are_named():
+    robot, box = kitchen()
+    _, other = kitchen()
+    with pytest.raises(ravemj.openrave_exception, match="'box' is not in the environment of robot 'Panda'; add it"):
+        ravemj.grasps(robot, other)
+    box.Enable(False)
+    with pytest.raises(ravemj.openrave_exception, match=r"no shapes that collide; enable it with Enable\(True\)"):
+        ravemj.grasps(robot, box)
+    for options in ({"proofs": -1}, {"processes": 0}):
+        with pytest.raises(ravemj.openrave_exception, match="; expected"):
+            ravemj.grasps(robot, box, **options)
+
+
+def test_a_manipulator_without_a_gripper_names_one_with_it():
+    robot, box = kitchen()
+    info = robot.GetManipulators()[0].GetInfo()
+    info._name, info._vGripperJointNames = "camera", []  # noqa: SLF001 - OpenRAVE's names
+    info._vChuckingDirection = []
+    robot.AddManipulator(info)
+    robot.SetActiveManipulator("camera")
+    with pytest.raises(ravemj.openrave_exception, match="'camera' has no gripper joints that close, and arm has some"):
+        ravemj.grasps(robot, box)

@@ -180,6 +180,11 @@ Reach = Callable[[Floats], Floats | str]
 """Returns for ``T_world_tool`` the joint values of the arm, or the reason why there are none; the gripper is open."""
 
 
+def closes(arm: Manipulator) -> bool:
+    """Return whether a manipulator has gripper joints that close."""
+    return any(arm.chucking_direction)
+
+
 def count_candidates(robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> int:
     """Return the number of candidates of a search; the caller holds the lock.
 
@@ -249,7 +254,7 @@ def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
 
 
 def _open(robot: BodyState, arm: Manipulator) -> None:
-    if not any(arm.chucking_direction):
+    if not closes(arm):
         message = f"manipulator '{arm.name}' has no gripper joints that close"
         raise ArgumentError(f"{message}; name them in <joints>, and their signs in <closingdirection>")
     values = robot.kinematics.values()
@@ -289,7 +294,8 @@ class _CandidateSearch:
         T_target_links = inverse(self._T_world_target) @ target.link_transforms()
         bounds = links_bounds(target.scene.links, T_target_links)
         if bounds is None or not len(self._geoms):
-            raise ArgumentError(f"body '{target.scene.name}' has no shapes that collide; give it geometries")
+            hint = "enable it with Enable(True)" if not any(target.link_enabled) else "give it geometries"
+            raise ArgumentError(f"body '{target.scene.name}' has no shapes that collide; {hint}")
         self._low, self._high = np.array(bounds.low), np.array(bounds.high)
         self._center, self._radius = self._mass_center(T_target_links)
 
