@@ -218,3 +218,22 @@ def test_a_manipulator_without_a_gripper_names_one_with_it():
     robot.SetActiveManipulator("camera")
     with pytest.raises(ravemj.openrave_exception, match="'camera' has no gripper joints that close, and arm has some"):
         ravemj.grasps(robot, box)
+
+
+@pytest.mark.parametrize("method", ["fly", "antipodal"])
+def test_turned_worlds_have_the_same_candidates(method):
+    robot, box = kitchen()
+    expected = ravemj.grasps(robot, box, method=method)
+    random = np.random.default_rng(1)
+    for _ in range(2):
+        T = ravemj.matrixFromAxisAngle(random.normal(size=3), random.uniform(0, 3))
+        T[:3, 3] = random.uniform(-2, 2, 3)
+        robot, box = kitchen()
+        for body in (robot, box):
+            body.SetTransform(T @ body.GetTransform())
+        found = ravemj.grasps(robot, box, method=method)
+        assert len(found) + len(found.rejected) == len(expected) + len(expected.rejected)
+        assert [grasp.quality for grasp in found] == pytest.approx([grasp.quality for grasp in expected], abs=1e-9)
+        if method == "antipodal":  # hands that fly graze the sides of the box
+            assert found.counts == expected.counts
+        assert box.GetTransform() == pytest.approx(T @ ravemj.matrixFromPose([1, 0, 0, 0, 0.5, 0, 0]))

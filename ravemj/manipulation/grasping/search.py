@@ -243,6 +243,17 @@ def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, 
 
 
 @contextmanager
+def _at_origin(body: BodyState) -> Generator[None]:
+    """Move a body to the origin of the world, and restore it afterwards."""
+    saved = body.configuration()
+    body.set_transform(np.eye(4))
+    try:
+        yield
+    finally:
+        body.restore(saved)
+
+
+@contextmanager
 def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
     """Open the gripper as far as its limits go, and restore the robot afterwards."""
     saved = robot.configuration()
@@ -289,9 +300,9 @@ class _CandidateSearch:
         self._T_world_target = self._placed.T_world_target
         self._gripper = list(arm.gripper_dofs)
         self._signs = np.array(arm.chucking_direction)
-        self._world = robot.simulation.collisions()
-        self._geoms = self._world.geoms_of_body(target)
-        T_target_links = inverse(self._T_world_target) @ target.link_transforms()
+        self._geoms = robot.simulation.collisions().geoms_of_body(target)
+        with _at_origin(target):
+            T_target_links = target.link_transforms()
         bounds = links_bounds(target.scene.links, T_target_links)
         if bounds is None or not len(self._geoms):
             hint = "enable it with Enable(True)" if not any(target.link_enabled) else "give it geometries"
@@ -310,14 +321,18 @@ class _CandidateSearch:
         return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
 
     def candidates(self) -> list[_Make]:
-        """Return the candidates, which are not tried yet."""
-        return list((self._flown if self._choices.method == "fly" else self._jawed)(self._surface()))
+        """Return the candidates, which are not tried yet.
+
+        The target is at the origin meanwhile, so that rounding does not change them where the target stands.
+        """
+        with _at_origin(self._target):
+            return list((self._flown if self._choices.method == "fly" else self._jawed)(self._surface()))
 
     def run(
         self, candidates: Sequence[_Make], reach: Reach | None, progress: Callable[[int], object] | None
     ) -> list[Grasp]:
         judged: list[Grasp] = []
-        with hand_tests(self._world, self._robot, self._target) as tests:
+        with hand_tests(self._robot.simulation.collisions(), self._robot, self._target) as tests:
             for number, make in enumerate(candidates, 1):
                 judged.append(self._judged(make(tests), tests))
                 if progress is not None:
@@ -333,11 +348,8 @@ class _CandidateSearch:
         return rows[hit & ((rows[:, 3:] * rays[:, 3:]).sum(axis=1) < 0)]
 
     def _cast(self, rays: Floats) -> tuple[NDArray[np.bool_], Floats]:
-        """Return first hits of rays in the object's frame."""
-        R, origin = self._T_world_target[:3, :3], self._T_world_target[:3, 3]
-        in_world = np.hstack([rays[:, :3] @ R.T + origin, rays[:, 3:] @ R.T])
-        hit, rows = self._world.rays.first_hits(in_world, self._geoms)
-        return hit, np.hstack([(rows[:, :3] - origin) @ R, rows[:, 3:] @ R])
+        """Return first hits of rays in the object's frame; the object is at the origin."""
+        return self._robot.simulation.collisions().rays.first_hits(rays, self._geoms)
 
     def _flown(self, surface: Floats) -> Iterator[_Make]:
         """Yield flights against each point of the surface, with each roll and standoff."""
