@@ -16,7 +16,7 @@ from ravemj.core.output import check_file
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.graphics.video import known_suffix
-from ravemj.manipulation.grasping.search import Grasp, Grasps, closes
+from ravemj.manipulation.grasping.search import Grasp, Grasps
 from ravemj.rave import Environment, KinBody, RaveCreateKinBody, Robot, load
 from ravemj.rave.grasping import grasps
 from ravemj.rave.manipulator import Manipulator
@@ -51,12 +51,12 @@ def grasp(options: argparse.Namespace) -> int:
 
 
 def _hand_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
-    """Return the manipulator with a name; by default the active one if its gripper closes, else the first with one."""
+    """Return the manipulator with a name; by default the active one if it has a gripper, else the first with one."""
     arm = arm_of(robots, name)
-    if name is not None or closes(arm.description):
+    if name is not None or arm.GetGripperDOF():
         return arm
     arms = (other for robot in robots for other in robot.GetManipulators())
-    return next((other for other in arms if closes(other.description)), arm)
+    return next((other for other in arms if other.GetGripperDOF()), arm)
 
 
 def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[Grasps, str]:

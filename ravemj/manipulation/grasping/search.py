@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.hand import HandTests, hand_tests
 from ravemj.engine.collision.patches import contact_rows
+from ravemj.engine.collision.queries import moved_links
 from ravemj.engine.physics.grasp_proof import Proof, prove
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
@@ -39,6 +40,7 @@ _BACK = 0.1
 """Length of the straight line by which jaws approach [m]."""
 
 _STEP = 0.01  # m, between tested poses on that line
+_ROUNDING = 1e-6  # m^2 per rad or m, growth of a spread that counts as none
 _STANDOFFS = (0.0, 0.025)
 _CLEARANCE = 1e-3
 """Distance that is left between open jaws and the object [m]."""
@@ -183,6 +185,40 @@ Reach = Callable[[Floats], Floats | str]
 def closes(arm: Manipulator) -> bool:
     """Return whether a manipulator has gripper joints that close."""
     return any(arm.chucking_direction)
+
+
+def with_closing_direction(robot: BodyState, arm: Manipulator) -> Manipulator:
+    """Return a manipulator with a closing direction, found from the shapes of its fingers if it has none, as in URDF.
+
+    A joint closes in the direction in which the links of all fingers come nearer to each other. The caller holds the
+    lock.
+    """
+    if closes(arm) or not arm.gripper_dofs:
+        return arm
+    links, saved = sorted(moved_links(robot.scene, arm.gripper_dofs)), robot.configuration()
+    signs: list[float] = []
+    try:
+        values = robot.kinematics.values()
+        for dof in arm.gripper_dofs:
+            spreads: list[float] = []
+            for change in (-_SQUEEZE, _SQUEEZE):
+                moved = values.copy()
+                moved[dof] += change
+                robot.set_values(moved)
+                spreads.append(_spread(robot, links))
+            growth = (spreads[1] - spreads[0]) / (2 * _SQUEEZE)
+            signs.append(float(-np.sign(growth)) if abs(growth) > _ROUNDING else 0.0)
+    finally:
+        robot.restore(saved)
+    return replace(arm, chucking_direction=tuple(signs))
+
+
+def _spread(robot: BodyState, links: Sequence[int]) -> float:
+    """Return the sum of the squared distances of links' shapes from their middle [m^2]."""
+    poses = robot.link_transforms()
+    boxes = [links_bounds([robot.scene.links[link]], poses[[link]]) for link in links]
+    centers = np.array([(np.array(box.low) + np.array(box.high)) / 2 for box in boxes if box is not None])
+    return float(((centers - centers.mean(axis=0)) ** 2).sum()) if len(centers) else 0.0
 
 
 def count_candidates(robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> int:
@@ -468,7 +504,10 @@ def jaws_of(robot: BodyState, arm: Manipulator) -> antipodal.Jaws:
         raise ArgumentError(f"manipulator '{arm.name}' closes along its direction; correct its <direction>")
     ends = [_reach(robot, moving[along * sign > 0], before, sign * axis) for sign in (1.0, -1.0)]
     low, high = ends[0], -ends[1]
-    return antipodal.Jaws(axis, direction / np.linalg.norm(direction), (low + high) / 2, high - low)
+    direction /= np.linalg.norm(direction)
+    back, tip = -_reach(robot, moving, before, -direction), _reach(robot, moving, before, direction)
+    depth = 0.0 if back <= 0 <= tip else (back + tip) / 2  # a tool in the palm, as in URDF, lies behind the fingers
+    return antipodal.Jaws(axis, direction, (low + high) / 2, high - low, depth)
 
 
 def _moved(values: Floats, gripper: list[int], arm: Manipulator) -> Floats:
