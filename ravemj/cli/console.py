@@ -95,7 +95,7 @@ def console() -> "Console":
 
 
 @contextlib.contextmanager
-def progress(task: str, total: float, unit: str = "frames") -> Generator[Callable[[float], object]]:
+def progress(task: str, total: float, unit: str = "frames") -> Generator[Callable[[float], None]]:
     """Show a progress bar with the remaining time, if standard error is a terminal.
 
     Args:

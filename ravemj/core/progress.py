@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def progress_bar(task: str, total: float, unit: str = "") -> Generator[Callable[[float], object]]:
+def progress_bar(task: str, total: float, unit: str = "") -> Generator[Callable[[float], None]]:
     """Show a progress bar if standard error is a terminal.
 
     Args:

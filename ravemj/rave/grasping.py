@@ -15,17 +15,16 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.manipulation.bodies import Bodies
+from ravemj.manipulation.grasping.grippers import closes, with_closing_direction
 from ravemj.manipulation.grasping.search import (
     Choices,
     Grasp,
     Grasps,
     Method,
     Reach,
-    closes,
     count_candidates,
     proved,
     search,
-    with_closing_direction,
 )
 from ravemj.model import scene
 from ravemj.rave.env.viewing import GraphHandle
