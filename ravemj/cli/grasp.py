@@ -37,7 +37,7 @@ def grasp(options: argparse.Namespace) -> int:
         known_suffix(options.output, [_PAGE])
         check_file(options.output)
     env = load_model(options)
-    arm = arm_of(chosen_robots(env, options.robot), options.manip)
+    arm = _hand_of(chosen_robots(env, options.robot), options.manip)
     robot = arm.GetRobot()
     robot.SetActiveManipulator(arm)
     target = _target(env, robot, options)
@@ -48,6 +48,15 @@ def grasp(options: argparse.Namespace) -> int:
         write_grasps(options.output, arm, target, shown, [*([note] if note else []), *str(result).split("\n")])
         print(f"wrote {os.path.abspath(options.output)} ({len(shown)} grasps; any browser shows them)")
     return 0 if result else 1
+
+
+def _hand_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
+    """Return the manipulator with a name; by default the active one if it has a gripper, else the first with one."""
+    arm = arm_of(robots, name)
+    if name is not None or arm.GetGripperDOF():
+        return arm
+    arms = (other for robot in robots for other in robot.GetManipulators())
+    return next((other for other in arms if other.GetGripperDOF()), arm)
 
 
 def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[Grasps, str]:

@@ -15,7 +15,18 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.manipulation.bodies import Bodies
-from ravemj.manipulation.grasping.search import Choices, Grasp, Grasps, Method, Reach, count_candidates, proved, search
+from ravemj.manipulation.grasping.grippers import closes, with_closing_direction
+from ravemj.manipulation.grasping.search import (
+    Choices,
+    Grasp,
+    Grasps,
+    Method,
+    Reach,
+    count_candidates,
+    proved,
+    search,
+)
+from ravemj.model import scene
 from ravemj.rave.env.viewing import GraphHandle
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
@@ -49,7 +60,8 @@ def grasps(  # noqa: PLR0913 - keyword arguments
 ) -> Grasps:
     """Return grasps of a body where it stands, and the reason for each candidate that was rejected.
 
-    The active manipulator grasps; its gripper opens as far as its limits go. Robot and body are as before afterwards.
+    The active manipulator grasps; its gripper opens as far as its limits go. Fingers without a closing direction, as in
+    URDF, close towards each other. Robot and body are as before afterwards.
 
     Args:
         robot: The robot.
@@ -87,14 +99,19 @@ def grasps(  # noqa: PLR0913 - keyword arguments
     choices = _checked(method, friction, delta, rolls)
     if body is robot or robot.IsGrabbing(body):
         raise ArgumentError(f"grasps: body: '{body.GetName()}' is the robot or in its hand; expected a body to grasp")
+    if not robot.simulation_state.simulation.holds(body.simulation_state):
+        where = f"in the environment of robot '{robot.GetName()}'"
+        raise ArgumentError(f"grasps: body: '{body.GetName()}' is not {where}; add it first")
     if processes < 1:
         raise ArgumentError(f"grasps: processes: is {processes}; expected 1 or more")
+    if proofs < 0:
+        raise ArgumentError(f"grasps: proofs: is {proofs}; expected 0 or more")
     with robot.GetEnv():
         state, target = robot.simulation_state, body.simulation_state
         searched = Grasps(_searched(_Query(robot, body, choices, reach), processes), friction)
         best = searched.distinct(proofs)
         rest = [grasp for grasp in searched if all(grasp is not chosen for chosen in best)]
-        best = [proved(state, arm.description, target, grasp, choices.friction) for grasp in best]
+        best = [proved(state, _closing(arm), target, grasp, choices.friction) for grasp in best]
     return Grasps([*best, *rest, *searched.rejected], choices.friction)
 
 
@@ -111,13 +128,13 @@ class _Query(NamedTuple):
         arm, target = _active(self.robot), self.body.simulation_state
         reach = _reach(self.robot, arm) if self.reach else None
         state = self.robot.simulation_state
-        return search(state, arm.description, target, self.choices, reach, span=span, progress=progress)
+        return search(state, _closing(arm), target, self.choices, reach, span=span, progress=progress)
 
 
 def _searched(query: _Query, processes: int) -> list[Grasp]:
     """Return all candidates, tried in this process or in several."""
     robot, target = query.robot.simulation_state, query.body.simulation_state
-    count = count_candidates(robot, _active(query.robot).description, target, query.choices)
+    count = count_candidates(robot, _closing(_active(query.robot)), target, query.choices)
     with progress_bar("grasps", count) as show:
         if processes == 1 or count <= _BLOCK:
             return query.run(progress=show)
@@ -186,7 +203,17 @@ def _active(robot: Robot) -> Manipulator:
     arm = robot.GetActiveManipulator()
     if arm is None:
         raise ArgumentError(f"grasps: robot '{robot.GetName()}' has no active manipulator; give it a <Manipulator>")
+    others = [other.GetName() for other in robot.GetManipulators() if closes(other.description)]
+    if others and not arm.GetGripperDOF():
+        raise ArgumentError(
+            f"grasps: manipulator '{arm.GetName()}' has no gripper joints that close, and {', '.join(others)} "
+            f"{'has' if len(others) == 1 else 'have'} some; call robot.SetActiveManipulator"
+        )
     return arm
+
+
+def _closing(arm: Manipulator) -> scene.Manipulator:
+    return with_closing_direction(arm.GetRobot().simulation_state, arm.description)
 
 
 def _checked(method: str, friction: float, delta: float, rolls: int | None) -> Choices:

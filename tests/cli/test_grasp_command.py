@@ -41,6 +41,18 @@ def test_out_of_reach_are_grasps_of_the_hand_alone(folder):
     assert "the arm is" not in (folder / "x.html").read_text()
 
 
+def test_the_manipulator_with_a_gripper_is_taken(folder):
+    camera = "<Manipulator name='camera'><base>bar</base><effector>bar</effector></Manipulator></Robot>"
+    text = BALL.replace("</Robot>", camera).replace('<Manipulator name="hand">', "<Manipulator name='arm'>")
+    first, second = re.findall(r"<Manipulator.*?</Manipulator>", text, re.DOTALL)
+    (folder / "two.xml").write_text(text.replace(first, "").replace(second, second + first))
+    done = ravemj_command(folder, "grasp", "two.xml", "box", "--method", "antipodal")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "by 'arm' of 'post'" in done.stdout
+    done = ravemj_command(folder, "grasp", "two.xml", "box", "--manip", "camera")
+    assert "'camera' has no gripper joints that close, and arm has some" in done.stderr
+
+
 BALL = """<Robot name="post"><KinBody>
   <Body name="base"/>
   <Body name="bar"><offsetfrom>base</offsetfrom><Translation>0 0 0.4</Translation></Body>

@@ -347,6 +347,17 @@ def test_other_settings_start_anew(env, gmodel, monkeypatch):
     assert gmodel.load()  # what was stopped is still there
 
 
+def test_targets_that_cannot_be_grasped_are_refused(env, gmodel, database):
+    model = ravemj.databases.grasping.GraspingModel
+    with pytest.raises(ArgumentError, match="target 'hand' is the robot; expected a body"):
+        model(gmodel.robot, gmodel.robot).autogenerate()
+    other = ravemj.Environment()
+    other.LoadData(WORLD)
+    with pytest.raises(ArgumentError, match="'thing' is not in the environment of robot 'hand'"):
+        model(gmodel.robot, other.GetKinBody("thing")).generate(approachrays=[[0, 0, 0.02, 0, 0, 1]])
+    assert files(database) == []
+
+
 def test_errors_of_generation_are_told(gmodel, monkeypatch):
     from ravemj.compat.databases import grasp_generation
 

@@ -194,3 +194,75 @@ def test_distinct_grasps_are_no_twins_and_the_best_ones():
             is_near = max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 0.015
             assert not (is_near and grasp.approach @ better.approach > np.cos(np.radians(20)))
     assert len(found.distinct(len(found))) < len(found)
+
+
+def test_bodies_elsewhere_and_disabled_ones_are_named():
+    robot, box = kitchen()
+    _, other = kitchen()
+    with pytest.raises(ravemj.openrave_exception, match="'box' is not in the environment of robot 'Panda'; add it"):
+        ravemj.grasps(robot, other)
+    box.Enable(False)
+    with pytest.raises(ravemj.openrave_exception, match=r"no shapes that collide; enable it with Enable\(True\)"):
+        ravemj.grasps(robot, box)
+    for options in ({"proofs": -1}, {"processes": 0}):
+        with pytest.raises(ravemj.openrave_exception, match="; expected"):
+            ravemj.grasps(robot, box, **options)
+
+
+def test_a_manipulator_without_a_gripper_names_one_with_it():
+    robot, box = kitchen()
+    info = robot.GetManipulators()[0].GetInfo()
+    info._name, info._vGripperJointNames = "camera", []  # noqa: SLF001 - OpenRAVE's names
+    info._vChuckingDirection = []
+    robot.AddManipulator(info)
+    robot.SetActiveManipulator("camera")
+    with pytest.raises(ravemj.openrave_exception, match="'camera' has no gripper joints that close, and arm has some"):
+        ravemj.grasps(robot, box)
+
+
+@pytest.mark.parametrize("method", ["fly", "antipodal"])
+def test_turned_worlds_have_the_same_candidates(method):
+    robot, box = kitchen()
+    expected = ravemj.grasps(robot, box, method=method)
+    random = np.random.default_rng(1)
+    for _ in range(2):
+        T = ravemj.matrixFromAxisAngle(random.normal(size=3), random.uniform(0, 3))
+        T[:3, 3] = random.uniform(-2, 2, 3)
+        robot, box = kitchen()
+        for body in (robot, box):
+            body.SetTransform(T @ body.GetTransform())
+        found = ravemj.grasps(robot, box, method=method)
+        assert len(found) + len(found.rejected) == len(expected) + len(expected.rejected)
+        assert [grasp.quality for grasp in found] == pytest.approx([grasp.quality for grasp in expected], abs=1e-9)
+        if method == "antipodal":  # hands that fly graze the sides of the box
+            assert found.counts == expected.counts
+        assert box.GetTransform() == pytest.approx(T @ ravemj.matrixFromPose([1, 0, 0, 0, 0.5, 0, 0]))
+
+
+LINK = """<link name="{}"><collision><origin xyz="0 {} {}"/><geometry><box size="{}"/></geometry></collision>
+  <inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
+JOINT = """<joint name="{0}_joint" type="prismatic"><parent link="base"/><child link="{0}"/><origin xyz="0 0 0.015"/>
+  <axis xyz="0 {1} 0"/><limit lower="0" upper="0.04" effort="20" velocity="0.2"/>{2}</joint>"""
+
+
+@pytest.mark.parametrize("mimic", [True, False])
+@pytest.mark.parametrize("method", ["fly", "antipodal"])
+def test_jaws_of_a_urdf_close_towards_each_other(tmp_path, method, mimic):
+    """URDF has no closing directions, and the tool of a hand without an arm is its palm."""
+    parts = [LINK.format("base", 0, 0, "0.04 0.12 0.03"), LINK.format("left", 0.005, 0.04, "0.02 0.01 0.08")]
+    parts += [LINK.format("right", -0.005, 0.04, "0.02 0.01 0.08"), JOINT.format("left", 1, "")]
+    parts.append(JOINT.format("right", -1, '<mimic joint="left_joint"/>' if mimic else ""))
+    (tmp_path / "jaws.urdf").write_text(f"<robot name='jaws'>{''.join(parts)}</robot>")
+    joints = "<joint name='left_joint'/>" + ("" if mimic else "<joint name='right_joint'/>")
+    group = f"<group name='hand'>{joints}</group><end_effector name='hand' parent_link='base' group='hand'/>"
+    (tmp_path / "jaws.srdf").write_text(f"<robot name='jaws'>{group}</robot>")
+    env = ravemj.load(tmp_path / "jaws.urdf")
+    assert env.Load(ravemj.model_path("box"))
+    robot, box = env.GetRobots()[0], env.GetKinBody("box")
+    assert robot.GetActiveManipulator().GetChuckingDirection().tolist() == [0] * (1 if mimic else 2)
+    box.SetTransform([1, 0, 0, 0, 0.5, 0, 0])
+    found = ravemj.grasps(robot, box, method=method, proofs=1)
+    assert len(found) > 20
+    assert found[0].proof is not None
+    assert found[0].proof.held
+    assert (found[0].closed < found[0].preshape).all()

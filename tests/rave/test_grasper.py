@@ -310,6 +310,15 @@ def test_processes_find_the_same_grasps():
     np.testing.assert_array_equal(scene.robot.GetDOFValues(), [0, 0])
 
 
+def test_candidates_need_a_target_and_processes():
+    scene = Scene()
+    grasper, parts = interfaces.Grasper(scene.robot, 0.4), many_candidates(scene)
+    with pytest.raises(PlanningError, match="there is no target"):
+        grasper.GraspThreaded(**{**parts, "target": None})
+    with pytest.raises(ravemj.openrave_exception, match="numthreads is -1, and should be 1 or more"):
+        grasper.GraspThreaded(**parts, numthreads=-1)
+
+
 SLOW = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})

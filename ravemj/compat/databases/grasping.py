@@ -398,6 +398,11 @@ class GraspingModel(ValidGrasps):
                 f"GraspingModel: manipulator '{manip.GetName()}' of '{robot.GetName()}' has no gripper joints, and "
                 "grasps need fingers that close: list them in its <joints>, or choose another manipulator"
             )
+        if target == robot:
+            raise ArgumentError(f"GraspingModel: target '{target.GetName()}' is the robot; expected a body to grasp")
+        if target.GetEnv() != robot.GetEnv() or not robot.simulation_state.simulation.holds(target.simulation_state):
+            place = f"the environment of robot '{robot.GetName()}'"
+            raise ArgumentError(f"GraspingModel: target '{target.GetName()}' is not in {place}; add it first")
         self._check_shapes()
         if robot.IsGrabbing(target):
             raise ArgumentError(f"GraspingModel: '{robot.GetName()}' holds '{target.GetName()}'; release it first")

@@ -68,10 +68,22 @@ class TriangleTests:
             return False
         if self._is_mesh(other):
             return True
-        box, triangles = self._place_solid(mesh, other), self._triangles_of(mesh)
-        first = -np.inf, triangles.corners[overlaps.contacts[0].b1], None
-        candidates = chain([first], triangles.near(*box, touching))
+        box, first = self._place_solid(mesh, other), overlaps.contacts[0].b1
+        candidates = chain(self._chosen(mesh, [first]), self._near_solid(mesh, other, box, touching))
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
+
+    def _near_solid(self, mesh: int, solid: int, box: tuple[Floats, Floats], touching: float) -> Iterator[_Candidate]:
+        """Yield the triangles that may be within ``touching`` of a solid [m]: by FCL, few more than touch its box."""
+        if touching > _SLACK / 2:
+            yield from self._triangles_of(mesh).near(*box, touching)
+            return
+        overlaps = fcl.CollisionResult()
+        fcl.collide(self._placed(mesh), self._placed(solid), _ALL, overlaps)
+        yield from self._chosen(mesh, sorted({overlap.b1 for overlap in overlaps.contacts}))
+
+    def _chosen(self, mesh: int, indices: Iterable[int]) -> Iterator[_Candidate]:
+        corners = self._triangles_of(mesh).corners
+        return ((-np.inf, corners[index], None) for index in indices)
 
     def distance(self, mesh: int, other: int, limit: float, segment: Floats) -> float:
         """Return the signed distance [m] of a mesh and another geom, at most ``limit``.
@@ -97,7 +109,8 @@ class TriangleTests:
             fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)
             candidates = self._pairs(mesh, other, result.contacts)
         else:
-            candidates, place = self._triangles_of(mesh).near(*self._place_solid(mesh, other), touching), _SOLID
+            box, place = self._place_solid(mesh, other), _SOLID
+            candidates = self._near_solid(mesh, other, box, touching)
         for candidate in candidates:
             segment = np.zeros(6)
             distance = self._least(mesh, place, [candidate], 2 * touching, segment)

@@ -203,14 +203,16 @@ class _Srdf:
             parent = self._parent_group(element, link, own)
             used |= {own, parent or ""}
             gripper = self.groups[own] if own in self.groups and own != parent else None
+            joints = [] if gripper is None else [joint for joint in gripper.joints if self._is_dof(joint)]
             base = self._base(self.groups[parent], link) if parent is not None else None
+            if base is None and joints and not any(map(self.tree.is_dof, self.tree.path(link) or [])):
+                base = link  # a hand without an arm
             if base is None:
                 message = f"end effector '{attribute(element, 'name')}' has no arm: no group leads to its parent_link"
                 hint = 'write parent_group="…", the group of the arm'
                 self.context.diagnostics.warn("no-arm", message, element.source, hint)
                 continue
             name = attribute(element, "name")
-            joints = [] if gripper is None else [joint for joint in gripper.joints if self._is_dof(joint)]
             arms.setdefault(name, ManipulatorBuilder(name, element.source, base, link, gripper_joints=joints))
         for name, group in self.groups.items():
             if name not in used and name not in arms and (ends := self._serial_ends(group)) is not None:

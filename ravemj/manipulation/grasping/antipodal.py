@@ -37,12 +37,14 @@ class Jaws(NamedTuple):
         approach: Unit vector of the approach, perpendicular to the axis, shape (3,).
         middle: Position of the middle between the fingers on the axis [m].
         width: Largest distance between the fingers [m].
+        depth: Place of the points between the jaws, along ``approach`` from the tool [m].
     """
 
     axis: Floats
     approach: Floats
     middle: float
     width: float
+    depth: float = 0.0
 
 
 class Pair(NamedTuple):
@@ -128,7 +130,7 @@ def tool_poses(pair: Pair, jaws: Jaws, rolls: int = 8) -> list[Floats]:
         approach = np.cos(angle) * side + np.sin(angle) * third
         T = np.eye(4)
         T[:3, :3] = np.column_stack([line, approach, np.cross(line, approach)]) @ R_tool_jaws.T
-        T[:3, 3] = (pair.first + pair.second) / 2 - jaws.middle * line
+        T[:3, 3] = (pair.first + pair.second) / 2 - jaws.middle * line - jaws.depth * approach
         poses.append(T)
     return poses
 

@@ -21,6 +21,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
 from ravemj.manipulation.grasping import antipodal
 from ravemj.manipulation.grasping.closing import Approach, Closed, Hand, Reason, Target, close
+from ravemj.manipulation.grasping.grippers import CLEARANCE, SQUEEZE, closes, jaws_of
 from ravemj.manipulation.grasping.hands import hand_of, target_of
 from ravemj.manipulation.grasping.rays import box_rays
 from ravemj.manipulation.grasping.wrenches import epsilon, quality
@@ -28,9 +29,6 @@ from ravemj.model.bounds import links_bounds
 from ravemj.model.scene import Manipulator
 
 Method = Literal["fly", "antipodal"]
-
-_SQUEEZE = 2e-5
-"""Motion of the fingers beyond the first contact [rad or m], at which contacts are looked for."""
 
 _FREE = 1e-4
 """Distance back along the approach at which the open hand does not touch the object any more [m]."""
@@ -40,8 +38,6 @@ _BACK = 0.1
 
 _STEP = 0.01  # m, between tested poses on that line
 _STANDOFFS = (0.0, 0.025)
-_CLEARANCE = 1e-3
-"""Distance that is left between open jaws and the object [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,6 +234,17 @@ def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, 
 
 
 @contextmanager
+def _at_origin(body: BodyState) -> Generator[None]:
+    """Move a body to the origin of the world, and restore it afterwards."""
+    saved = body.configuration()
+    body.set_transform(np.eye(4))
+    try:
+        yield
+    finally:
+        body.restore(saved)
+
+
+@contextmanager
 def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
     """Open the gripper as far as its limits go, and restore the robot afterwards."""
     saved = robot.configuration()
@@ -249,7 +256,7 @@ def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
 
 
 def _open(robot: BodyState, arm: Manipulator) -> None:
-    if not any(arm.chucking_direction):
+    if not closes(arm):
         message = f"manipulator '{arm.name}' has no gripper joints that close"
         raise ArgumentError(f"{message}; name them in <joints>, and their signs in <closingdirection>")
     values = robot.kinematics.values()
@@ -284,12 +291,13 @@ class _CandidateSearch:
         self._T_world_target = self._placed.T_world_target
         self._gripper = list(arm.gripper_dofs)
         self._signs = np.array(arm.chucking_direction)
-        self._world = robot.simulation.collisions()
-        self._geoms = self._world.geoms_of_body(target)
-        T_target_links = inverse(self._T_world_target) @ target.link_transforms()
+        self._geoms = robot.simulation.collisions().geoms_of_body(target)
+        with _at_origin(target):
+            T_target_links = target.link_transforms()
         bounds = links_bounds(target.scene.links, T_target_links)
         if bounds is None or not len(self._geoms):
-            raise ArgumentError(f"body '{target.scene.name}' has no shapes that collide; give it geometries")
+            hint = "enable it with Enable(True)" if not any(target.link_enabled) else "give it geometries"
+            raise ArgumentError(f"body '{target.scene.name}' has no shapes that collide; {hint}")
         self._low, self._high = np.array(bounds.low), np.array(bounds.high)
         self._center, self._radius = self._mass_center(T_target_links)
 
@@ -304,14 +312,18 @@ class _CandidateSearch:
         return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
 
     def candidates(self) -> list[_Make]:
-        """Return the candidates, which are not tried yet."""
-        return list((self._flown if self._choices.method == "fly" else self._jawed)(self._surface()))
+        """Return the candidates, which are not tried yet.
+
+        The target is at the origin meanwhile, so that rounding does not change them where the target stands.
+        """
+        with _at_origin(self._target):
+            return list((self._flown if self._choices.method == "fly" else self._jawed)(self._surface()))
 
     def run(
         self, candidates: Sequence[_Make], reach: Reach | None, progress: Callable[[int], object] | None
     ) -> list[Grasp]:
         judged: list[Grasp] = []
-        with hand_tests(self._world, self._robot, self._target) as tests:
+        with hand_tests(self._robot.simulation.collisions(), self._robot, self._target) as tests:
             for number, make in enumerate(candidates, 1):
                 judged.append(self._judged(make(tests), tests))
                 if progress is not None:
@@ -327,11 +339,8 @@ class _CandidateSearch:
         return rows[hit & ((rows[:, 3:] * rays[:, 3:]).sum(axis=1) < 0)]
 
     def _cast(self, rays: Floats) -> tuple[NDArray[np.bool_], Floats]:
-        """Return first hits of rays in the object's frame."""
-        R, origin = self._T_world_target[:3, :3], self._T_world_target[:3, 3]
-        in_world = np.hstack([rays[:, :3] @ R.T + origin, rays[:, 3:] @ R.T])
-        hit, rows = self._world.rays.first_hits(in_world, self._geoms)
-        return hit, np.hstack([(rows[:, :3] - origin) @ R, rows[:, 3:] @ R])
+        """Return first hits of rays in the object's frame; the object is at the origin."""
+        return self._robot.simulation.collisions().rays.first_hits(rays, self._geoms)
 
     def _flown(self, surface: Floats) -> Iterator[_Make]:
         """Yield flights against each point of the surface, with each roll and standoff."""
@@ -349,7 +358,7 @@ class _CandidateSearch:
     def _jawed(self, surface: Floats) -> Iterator[_Make]:
         """Yield poses of the jaws at each pair of opposite points."""
         jaws = jaws_of(self._robot, self._arm)
-        for pair in antipodal.pairs(surface, self._cast, self._choices.friction, jaws.width - _CLEARANCE):
+        for pair in antipodal.pairs(surface, self._cast, self._choices.friction, jaws.width - CLEARANCE):
             if pair.reason:
                 yield partial(self._unplaced, pair.reason)
                 continue
@@ -391,7 +400,7 @@ class _CandidateSearch:
         if reason:
             return replace(grasp, reason=reason)
         squeezed = values.copy()
-        squeezed[self._gripper] += _SQUEEZE * self._signs
+        squeezed[self._gripper] += SQUEEZE * self._signs
         contacts, _ = tests.contacts(self._hand.links, candidate.T_world_base, squeezed)
         rows = contact_rows(contacts)
         R, origin = self._T_world_target[:3, :3], self._T_world_target[:3, 3]
@@ -419,54 +428,3 @@ class _CandidateSearch:
         T_world_tool[:3, 3] -= _FREE * self._T_world_target[:3, :3] @ grasp.approach
         reached = reach(T_world_tool)
         return replace(grasp, reason=reached) if isinstance(reached, str) else replace(grasp, arm=reached)
-
-
-def jaws_of(robot: BodyState, arm: Manipulator) -> antipodal.Jaws:
-    """Return the parallel jaws of an open gripper.
-
-    Raises:
-        ArgumentError: its fingers do not slide towards each other along one line.
-    """
-    assert arm.effector is not None
-    values, gripper = robot.kinematics.values(), list(arm.gripper_dofs)
-    T_world_tool = robot.link_transform(arm.effector) @ arm.T_effector_tool.matrix()
-    before = inverse(T_world_tool) @ robot.link_transforms()
-    robot.set_values(_moved(values, gripper, arm))
-    after = inverse(T_world_tool) @ robot.link_transforms()
-    robot.set_values(values)
-    motions = after[:, :3, 3] - before[:, :3, 3]
-    lengths = np.linalg.norm(motions, axis=1)
-    moving = np.flatnonzero((lengths > 0) | (np.abs(after - before)[:, :3, :3] > 0).any(axis=(1, 2)))
-    message = f"manipulator '{arm.name}' has no parallel jaws: two fingers that slide towards each other"
-    error = ArgumentError(f'{message}; use method="fly"')
-    if not len(moving) or (lengths[moving] == 0).any() or np.abs(after - before)[:, :3, :3].max() > _SQUEEZE:
-        raise error
-    axis = motions[moving[0]] / lengths[moving[0]]
-    along = motions[moving] @ axis
-    if np.abs(np.abs(along) - lengths[moving]).max() > _SQUEEZE or not (along > 0).any() or not (along < 0).any():
-        raise error
-    direction = np.array(arm.direction) - axis * (axis @ np.array(arm.direction))
-    if np.linalg.norm(direction) < _CLEARANCE:
-        raise ArgumentError(f"manipulator '{arm.name}' closes along its direction; correct its <direction>")
-    ends = [_reach(robot, moving[along * sign > 0], before, sign * axis) for sign in (1.0, -1.0)]
-    low, high = ends[0], -ends[1]
-    return antipodal.Jaws(axis, direction / np.linalg.norm(direction), (low + high) / 2, high - low)
-
-
-def _moved(values: Floats, gripper: list[int], arm: Manipulator) -> Floats:
-    closing = values.copy()
-    closing[gripper] += 1e-3 * np.array(arm.chucking_direction)
-    return closing
-
-
-def _reach(robot: BodyState, links: Sequence[int] | NDArray[np.int_], T_tool_links: Floats, axis: Floats) -> float:
-    """Return how far the shapes of some links reach along an axis in the frame of the tool [m]."""
-    side = np.eye(3)[int(np.abs(axis).argmin())]
-    side = np.cross(axis, side) / np.linalg.norm(np.cross(axis, side))
-    T = np.eye(4)
-    T[:3, :3] = np.stack([axis, side, np.cross(axis, side)])
-    chosen = [robot.scene.links[link] for link in links]
-    bounds = links_bounds(chosen, T @ T_tool_links[np.asarray(links, dtype=int)])
-    if bounds is None:
-        raise ArgumentError(f"a finger of '{robot.scene.name}' has no shapes; give it geometries")
-    return float(bounds.high[0])

@@ -153,8 +153,7 @@ class GraspSimulation(Manipulation):
             PlanningError: it fails; ``parameter`` is the ``Reason``.
             ArgumentError: a parameter is wrong.
         """
-        if request.parameters.target is None:
-            raise PlanningError("there is no target; give the body to grasp")
+        self._check_target(request)
         grasped = simulate(self.robot, request.parameters, self._sides(request.chuckingdirection), _RANDOM)
         if grasped.closed.reason is not None:
             raise PlanningError(grasped.closed.reason)
@@ -182,6 +181,9 @@ class GraspSimulation(Manipulation):
             The index of the next candidate, and the grasps in the order of their indices.
         """
         self._manipulator()
+        self._check_target(request)
+        if processes < 1:
+            raise ArgumentError(f"GraspThreaded: numthreads is {processes}, and should be 1 or more")
         spans, grasps = blocks_of(sweep.start, len(candidates), _BLOCK), list[Found]()
         if processes > 1 and len(spans) > 1:
             content = pickle.dumps((self.robot, candidates, request, sweep))
@@ -266,6 +268,10 @@ class GraspSimulation(Manipulation):
         traj = Trajectory(self.env, "")
         traj.set_waypoints(motion_of(self.robot, self.robot.GetActiveDOFIndices().tolist(), path))
         return traj
+
+    def _check_target(self, request: GraspRequest) -> None:
+        if request.parameters.target is None:
+            raise PlanningError("there is no target; give the body to grasp")
 
     def _manipulator(self) -> Manipulator:
         manip = self.robot.GetActiveManipulator()
