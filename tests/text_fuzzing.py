@@ -180,6 +180,7 @@ class TextFuzzer:
 def arm():
     """Return the robot of all trials."""
     env = ravemj.Environment()
+    env.StopSimulation()  # it lives on, and so would the thread of its time
     env.Load(ravemj.model_path("pendulum"))
     return env.GetRobots()[0]
 
