@@ -76,7 +76,7 @@ def _jittered_on(
     jitter: float,
     random: np.random.Generator,
 ) -> Floats | None:
-    """Return an allowed configuration near one on a constraint; None if there is none, or that one violates it."""
+    """Return an allowed configuration on a constraint near another one; None if this one violates the constraint."""
     if not manifold.has(configuration):
         return None
 

@@ -221,7 +221,7 @@ class Processor:
 
 
 def _certified(motion: ShortenedMotion, edges: Edges) -> Certificate | None:
-    """Certify a motion, without the shortcuts that prevent it; return None if that leaves an undecided span."""
+    """Certify a motion, after the removal of shortcuts that cannot be certified; return None if that fails."""
     if edges.certify is None or not motion.segments:
         return None
     while True:

@@ -142,7 +142,7 @@ class Moving:
         return com * mass / total + shares @ points, jacobian * mass / total + np.tensordot(shares, moved, 1)
 
     def _of_robot(self) -> tuple[Floats, Floats]:
-        """Return the centre of mass of the robot alone and its Jacobian, if they are not among the rows."""
+        """Return the centre of mass of the robot without grabbed bodies, and its Jacobian, computed by themselves."""
         jacobian = self._dynamics.com_jacobian()
         com = self._kinematics.data.subtree_com[0].copy()
         if self._all_dofs is not None:

@@ -315,7 +315,7 @@ class PlannerAction(NamedInt):
 
 
 class Interval(NamedFlag):
-    """End points that belong to an interval; also interpolations between waypoints."""
+    """End points that belong to an interval. OpenRAVE has the interpolations between waypoints here, too."""
 
     Open = Default = 0
     OpenStart = 1

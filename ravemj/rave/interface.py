@@ -124,7 +124,7 @@ class ReadableInterface(ApiObject):
 
 
 class stringreaders:  # noqa: N801 - OpenRAVE's name
-    """Factory of readable values."""
+    """Constructors of readables: named values that are stored with a body or another interface."""
 
     @staticmethod
     def CreateStringReadable(id: str, data: str) -> Readable:
@@ -138,7 +138,7 @@ class stringreaders:  # noqa: N801 - OpenRAVE's name
 
 
 class xmlreaders:  # noqa: N801 - OpenRAVE's name
-    """Factory of readable values, under OpenRAVE's older names."""
+    """The same constructors under OpenRAVE's older names."""
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:

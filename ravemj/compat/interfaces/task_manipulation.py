@@ -259,9 +259,9 @@ class TaskManipulation(Helper):
     ) -> tuple[NDArray[np.int_], Floats]:
         """Project configurations onto a constraint of the tool.
 
-        The constraint is about ``T_task_world @ T_world_tool``, which should have no rotation and no translation along
-        some axes: with the inverse of the tool's present pose as frame, the tool keeps its present position along these
-        axes.
+        The pose of the tool in a task frame, ``T_task_world @ T_world_tool``, should have no rotation about some axes
+        and no translation along some. With the inverse of the tool's present pose as ``T_task_world``, the tool stays
+        where it is along these axes.
 
         Args:
             freedoms: For rotations about x, y, z and translations along them, 1 constrains and 0 leaves free, shape

@@ -128,7 +128,7 @@ class GeomReader:
         return self._meshes[number]
 
     def _geom(self, index: int) -> _GeomRole:
-        """Return how a geom is read. World floors are not drawn, since viewers draw their own."""
+        """Return whether a geom is drawn and collides. World floors are not drawn, since viewers draw their own."""
         group = int(self._model.geom_group[index])
         is_floor = self._model.geom_type[index] == _Type.mjGEOM_PLANE and self._model.geom_bodyid[index] == 0
         is_seen = group < _FIRST_HIDDEN_GROUP and self._rgba(index)[3] > 0 and not is_floor

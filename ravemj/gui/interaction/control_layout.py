@@ -192,7 +192,7 @@ def _around(places: dict[Control, Rect]) -> Rect:
 
 
 def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the rectangles of the buttons, in two columns if one would reach the wheel; none on low views."""
+    """Return the rectangles of the buttons, in two columns if one is too long; none if there is no room."""
     if size[1] < _LOWEST_VIEW:
         return {}
     step = _COLUMN_HEIGHT + _GAP

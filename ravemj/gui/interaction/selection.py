@@ -220,7 +220,7 @@ class Selector:
         return cube, grip
 
     def _handle_at(self, ray: ViewRay, hit: Hit | None) -> tuple[JointHandle, Floats] | None:
-        """Return the cylinder and the point under the pointer; None beside it, or if another body hides it."""
+        """Return the handle of the selected joint and its point under the pointer; None if it is not visible there."""
         handle = self._handle()
         point = None if handle is None else handle.hit(ray)
         return None if handle is None or point is None or self._is_hidden(point, ray, hit) else (handle, point)
