@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import logging
 import os
 import signal
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ from screens import display, folder  # noqa: F401 - fixtures
 from strategies import DEV, PROFILE
 
 import ravemj
+from ravemj.rave import logs
 
 TESTS = Path(__file__).resolve().parent
 DATA = TESTS / "data"
@@ -67,6 +69,17 @@ def _home(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("OPENRAVE_HOME", str(tmp_path_factory.mktemp("openrave") / "home"))
         yield
+
+
+@pytest.fixture(autouse=True)
+def _usual_messages(monkeypatch):
+    """``RaveSetDebugLevel`` sets the level of messages for the whole process."""
+    monkeypatch.setattr(logs, "_level", logs.RaveGetDebugLevel())
+    loggers = [logging.getLogger(name) for name in ("openravepy", "ravemj")]
+    levels = [logger.level for logger in loggers]
+    yield
+    for logger, level in zip(loggers, levels, strict=True):
+        logger.setLevel(level)
 
 
 @pytest.fixture(autouse=True)

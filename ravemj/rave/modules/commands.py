@@ -232,7 +232,7 @@ def _named_body(manipulation: Manipulation, name: str) -> KinBody | None:
     """Return a body of the environment by name; log a warning if there is none."""
     body = manipulation.env.GetKinBody(name)
     if body is None:
-        known = ", ".join(f"'{one.GetName()}'" for one in manipulation.env.GetBodies())
+        known = ", ".join(f"'{known_body.GetName()}'" for known_body in manipulation.env.GetBodies())
         _LOG.warning("there is no body '%s', only %s", name, known)
     return body
 
