@@ -61,9 +61,6 @@ class JointStates:
         pairs = zip(cast("list[str]", names), cast("list[float]", values), strict=True)
         named = {self._renamed.get(name, name): float(value) for name, value in pairs}
         unknown = named.keys() - set(self._names) - self._others - self._unknown
-        if unknown:
-            self._unknown |= unknown
-            self._say(f"no joint of the model: {', '.join(sorted(unknown))}; the joints are {', '.join(self._names)}")
         with self._lock:
             self._values |= {name: named[name] for name in self._names if name in named}
             self._is_new = True
@@ -71,6 +68,9 @@ class JointStates:
                 self._rows[-1] = self._rows[-1][0], self._values.copy()
             elif self._values and self._records:
                 self._rows.append((now, self._values.copy()))
+        if unknown:
+            self._unknown |= unknown
+            self._say(f"no joint of the model: {', '.join(sorted(unknown))}; the joints are {', '.join(self._names)}")
 
     def skip(self, trouble: str) -> None:
         """Count an invalid message; each kind of problem is reported once."""

@@ -68,6 +68,14 @@ def test_unknown_names_are_said_once_and_mimic_joints_are_known():
     assert states.values == {"elbow": 1.0}
 
 
+def test_values_are_there_when_unknown_names_are_said():
+    """Whoever ends the mirror upon that message has a state to save."""
+    seen = []
+    states = JointStates(NAMES, [], {}, lambda text: seen.append(states.values), records=True)
+    states.add(["elbow", "nose"], [1, 2], 0.0)
+    assert seen == [{"elbow": 1.0}]
+
+
 def test_names_of_the_robot_are_renamed():
     states = States(renamed={"left_elbow": "elbow"})
     states.add(["left_elbow"], [1], 0.0)
@@ -267,7 +275,7 @@ def test_the_mirror_saves_what_came_and_plans_go_on_from_there(tmp_path):
         with Served(tmp_path, "mirror", *words) as page:
             said = page.next_message(), page.next_message()
             ended = page.end(signal.SIGINT)
-    assert ended == (0, "wrote came.csv\nwrote now.json\n", ""), said
+    assert ended == (0, "wrote came.csv\nwrote now.json\n", ""), "\n".join(map(str, [*said, *ended]))
     assert said[0] == f"ravemj: connected to {server.url}\n"
     assert "no joint of the model: joint9" in said[1]
     assert json.loads((tmp_path / "now.json").read_text()) == {"joint1": 0.25, "joint2": -0.5}
