@@ -2,7 +2,7 @@
 
 from enum import Enum, EnumMeta, IntEnum
 from functools import reduce
-from typing import Any
+from typing import Any, SupportsIndex
 
 
 class _Listed(EnumMeta):
@@ -46,6 +46,10 @@ class NamedFlag(NamedInt):
         flag._name_ = "|".join([*(part.name for part in parts), *([str(unnamed)] if unnamed else [])])
         flag._value_ = value
         return cls._value2member_map_.setdefault(value, flag)
+
+    def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[Any, ...]:
+        """Pickle by number: early releases of Python 3.11 pickle by name, which combinations do not have."""
+        return type(self), (int(self),)
 
     def __str__(self) -> str:
         return super().__str__() if self.name in type(self).__members__ else str(int(self))
