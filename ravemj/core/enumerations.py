@@ -2,7 +2,7 @@
 
 from enum import Enum, EnumMeta, IntEnum
 from functools import reduce
-from typing import Any, SupportsIndex
+from typing import Any
 
 
 class _Listed(EnumMeta):
@@ -47,7 +47,7 @@ class NamedFlag(NamedInt):
         flag._value_ = value
         return cls._value2member_map_.setdefault(value, flag)
 
-    def __reduce_ex__(self, protocol: SupportsIndex) -> tuple[Any, ...]:
+    def __reduce_ex__(self, proto: object) -> tuple[Any, ...]:
         """Pickle by number: early releases of Python 3.11 pickle by name, which combinations do not have."""
         return type(self), (int(self),)
 
