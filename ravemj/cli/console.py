@@ -96,16 +96,7 @@ def console() -> "Console":
 
 @contextlib.contextmanager
 def progress(task: str, total: float, unit: str = "frames") -> Generator[Callable[[float], None]]:
-    """Show a progress bar with the remaining time, if standard error is a terminal.
-
-    Args:
-        task: Description of the task.
-        total: Total amount of work.
-        unit: The unit of ``total``.
-
-    Yields:
-        A function that sets the amount of finished work.
-    """
+    """Show a ``progress_bar``, and remove it if a signal ends the command."""
     restoring = (
         on_signal(lambda: os.write(sys.stderr.fileno(), _WITHOUT_BAR))
         if sys.stderr.isatty()

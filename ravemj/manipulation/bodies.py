@@ -326,7 +326,7 @@ class Conditions:
         bodies: The bodies; None if nothing collides.
         constraints: User callbacks that return whether a configuration is allowed.
         manifold: The manifold of a tool constraint, or None.
-        proves: Whether each shortcut of a path must be certified.
+        proves: Whether each line that shortens a path must be certified.
     """
 
     bodies: Bodies | None = None

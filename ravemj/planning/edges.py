@@ -53,7 +53,7 @@ class Edges:
         space: The configuration space.
         allowed: The test of one configuration.
         step: Length of a step of a tree, a weighted distance; 0 selects ``STEP``.
-        proof: Additional test of shortcuts, or None.
+        proof: Additional test of lines that shorten a path, or None.
         certify: Certifies motions of shortcuts, or None.
 
     Attributes:
