@@ -51,7 +51,7 @@ class Limbs:
     def hand(self) -> np.ndarray:
         return self.look("robot.GetLink('RHand').ComputeAABB().pos()")
 
-    def press_a(self) -> None:
+    def press_key(self) -> None:
         raise NotImplementedError
 
     def press_button(self) -> None:
@@ -67,9 +67,9 @@ class Limbs:
         return colour_of(self.desk.picture()[y - 1 : y + 2, x - 1 : x + 2]) == "red"
 
     def pin(self, foot: str) -> None:
-        """Press A with the pointer over a foot."""
+        """Press P with the pointer over a foot."""
         self.desk.move(*self.desk.at(middle(self.desk.robot, foot)))
-        self.press_a()
+        self.press_key()
 
     def pull(self, *targets: np.ndarray) -> None:
         """Drag the hand to points, and hold it there."""
@@ -87,8 +87,8 @@ class Page(Limbs):
     def look(self, expression: str) -> np.ndarray:
         return np.array(eval(expression, {"robot": self.desk.robot}))
 
-    def press_a(self) -> None:
-        self.desk.page.keyboard.press("a")
+    def press_key(self) -> None:
+        self.desk.page.keyboard.press("p")
 
     def _button(self):
         return self.desk.page.get_by_role("button", name="Pin the selected link")
@@ -110,8 +110,8 @@ class Window(Limbs):
     def look(self, expression: str) -> np.ndarray:
         return self.desk.array(expression)
 
-    def press_a(self) -> None:
-        self.desk.display.tool("key", "a")
+    def press_key(self) -> None:
+        self.desk.display.tool("key", "p")
 
     def _controls(self) -> tuple[Control, ...]:
         text = self.desk.ask("[(c.name, c.text, c.is_on, c.group) for c in viewer.interaction.overlay().controls]")

@@ -242,7 +242,7 @@ def pin(hand, robot, name):
     """Press K over a link."""
     hand.lines(hand.at(robot.GetLink(name).ComputeAABB().pos()))
     assert hand.gui.hover.link == robot.GetLink(name).GetIndex()
-    hand.press_key("a")
+    hand.press_key("p")
 
 
 def test_pinned_feet_stay_and_the_base_moves(biped):

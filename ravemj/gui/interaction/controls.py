@@ -131,10 +131,10 @@ class Controls:
         if reach is not None and reach.free_dof is not None:
             controls.append(joint_controls.sweep_control(reach.body, reach.free_dof, in_degrees=self.in_degrees))
         if body is not None:
-            label = "Pull links: a drag on one takes the joints above it along (P)"
+            label = "Pull links: a drag on one takes the joints above it along (D)"
             controls.append(Control("pull", label, "Pull", is_on=self.pulls))
             if self._selector.selection is not None:
-                label = "Pin the selected link: it stays, and pulling another one moves the rest and the base (A)"
+                label = "Pin the selected link: it stays, and pulling another one moves the rest and the base (P)"
                 controls.append(Control("pin", label, "Pin", is_on=self._selector.is_pinned))
             label = f"DOFs of {body.scene.name}: a slider for each"
             controls.append(Control("joints", label, "DOFs", is_on=self.unfolded == "joints"))

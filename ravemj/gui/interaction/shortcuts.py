@@ -51,9 +51,9 @@ DISPLAY = (
 OTHERS = (
     Shortcut("help", ("f1", "h", "?"), "?", "show this help, or hide it"),
     Shortcut("tree", ("b",), "", "show the tree of bodies, links and joints, or hide it"),
-    Shortcut("pull", ("p",), "", "pull links with left drags, or move bodies again"),
+    Shortcut("pull", ("d",), "", "pull links with left drags, or move bodies again"),
     Shortcut(
-        "pin", ("a",), "", "pin the link under the pointer, or the selected one, where it is; or take its pin out"
+        "pin", ("p",), "", "pin the link under the pointer, or the selected one, where it is; or take its pin out"
     ),
     Shortcut("reload", ("r",), "", "read the model again (in ravemj view)"),
     Shortcut("play", (" ",), "", "play or pause a motion; without one, simulation time"),
@@ -107,7 +107,7 @@ GESTURES = {
         ),
         Gesture(
             "pull a link while others stay",
-            "pin these first: A over each, or select it and press the button Pin; the base moves then",
+            "pin these first: P over each, or select it and press the button Pin; the base moves then",
         ),
         Gesture(
             "move a redundant arm while its link stays",
