@@ -22,8 +22,8 @@ from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, RaveGetAffineDOF
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.planning.certificates import Certificate
 from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
+from ravemj.planning.curves import Curve
 from ravemj.planning.edges import Allowed, Edges
-from ravemj.planning.proofs import Curve
 from ravemj.planning.space import Coordinates, Space
 from ravemj.trajectories.extraction import rotation_columns
 from ravemj.trajectories.groups import AFFINE, IK, JOINTS, Group, affine_parts, ik_type, joint_indices

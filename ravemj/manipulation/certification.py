@@ -15,7 +15,8 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine
 from ravemj.manipulation.bodies import Bodies, Part
 from ravemj.planning.certificates import Certificate, CertifiedSpan
-from ravemj.planning.proofs import TOUCHING, Curve, Span, configuration_at, distances, exempt_spans, is_proved, prove
+from ravemj.planning.curves import Curve, configuration_at
+from ravemj.planning.proofs import TOUCHING, Span, distances, exempt_spans, is_proved, prove
 from ravemj.trajectories.groups import AFFINE, JOINTS
 from ravemj.trajectories.layout import packed
 from ravemj.trajectories.waypoints import Waypoints

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.planning.curves import path_curves
 from ravemj.planning.edges import LINE, ROUNDING, STEP, Allowed, Edges, Growth, Proof
 from ravemj.planning.projection import PROJECTION_STEPS, Error, project
-from ravemj.planning.proofs import path_curves
 from ravemj.planning.space import Space
 
 _PROJECTED = 0.1

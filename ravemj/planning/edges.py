@@ -9,7 +9,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.certificates import Certificate
-from ravemj.planning.proofs import Curve, line_curve
+from ravemj.planning.curves import Curve, line_curve
 from ravemj.planning.space import Space
 
 STEP = 0.04

@@ -6,16 +6,15 @@ Latombe, IEEE T-RO 21(3), 2005).
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
-from itertools import pairwise
-from typing import NamedTuple, Protocol, Self
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
+from ravemj.planning.curves import Curve, Intervals, configuration_at
 
 Bools = NDArray[np.bool_]
 
@@ -34,77 +33,6 @@ _REFINEMENTS, _REFINED, _CUTS = 4, 8, 2  # rounds for the smallest gap, interval
 _TOLERANCE, _PART = 1e-3, 0.05  # m, and relative to it: how much too small it may be
 _FAR = 1e9  # m
 _NOTHING = 1e-12  # m
-
-
-class Curve(NamedTuple):
-    """Polynomial segment of a motion.
-
-    Attributes:
-        start: Start time [s].
-        end: End time [s].
-        control: Bézier control points, shape (k, n): the configurations of the segment are in their convex hull.
-    """
-
-    start: float
-    end: float
-    control: Floats
-
-    @classmethod
-    def of_powers(cls, start: float, end: float, coefficients: Floats) -> Self:
-        """Return the segment that is a polynomial in (time - start) / (end - start); the lowest power comes first."""
-        return cls(start, end, _from_powers(len(coefficients)) @ coefficients)
-
-    def split(self, part: float) -> tuple[Self, Self]:
-        """Split the segment at a fraction of its duration."""
-        between, number = self.start + part * (self.end - self.start), len(self.control)
-        first, second = _weights(number, 0.0, part), _weights(number, part, 1.0)
-        head = self._replace(end=between, control=first @ self.control)
-        return head, self._replace(start=between, control=second @ self.control)
-
-    def parts(self, number: int) -> list[Self]:
-        """Divide the segment into equal durations."""
-        start, end, kind = self.start, self.end, type(self)
-        times = [start + (end - start) * part / number for part in range(number)] + [end]
-        return list(map(kind, times, times[1:], _subdivision(len(self.control), number) @ self.control))
-
-    def at(self, part: float) -> Floats:
-        """Return the configuration at a fraction of the duration, shape (n,)."""
-        return _bernstein(len(self.control), part) @ self.control
-
-
-def _bernstein(number: int, part: float) -> Floats:
-    """Return the Bernstein polynomials of the control points at a fraction of the duration."""
-    powers = range(number)
-    return np.array([math.comb(number - 1, k) * part**k * (1 - part) ** (number - 1 - k) for k in powers])
-
-
-@cache
-def _from_powers(number: int) -> Floats:
-    """Return the matrix that converts power coefficients to control points."""
-    rows = [[math.comb(row, power) / math.comb(number - 1, power) for power in range(number)] for row in range(number)]
-    return np.array(rows)
-
-
-def _weights(number: int, start: float, end: float) -> Floats:
-    """Return the matrix from the control points of a curve to those of its part from ``start`` to ``end`` (blossom)."""
-    matrix = np.zeros((number, number))
-    for row in range(number):
-        polynomial = np.ones(1)
-        for factor in [end] * row + [start] * (number - 1 - row):
-            polynomial = np.convolve(polynomial, [1 - factor, factor])
-        matrix[row] = polynomial
-    return matrix
-
-
-@cache
-def _subdivision(number: int, parts: int) -> Floats:
-    """Return the matrices of ``_weights`` for equal parts, shape (parts, number, number)."""
-    return np.array([_weights(number, part / parts, (part + 1) / parts) for part in range(parts)])
-
-
-@cache
-def _middle(number: int) -> Floats:
-    return _bernstein(number, 0.5)
 
 
 class PairTests(Protocol):
@@ -173,13 +101,23 @@ class Span(NamedTuple):
     pair: int
 
 
+class _Examined(NamedTuple):
+    """Test results of intervals: lower bounds of the distances of pairs that are proven [m], and what is undecided."""
+
+    intervals: Intervals
+    tested: PairTests
+    bounds: Floats  # shape (m, k); infinite for other pairs
+    undecided: list[Span]
+
+
 class _Proved(NamedTuple):
-    """Proven interval of a motion: its least lower bound of a distance [m], its pairs, and their lower bounds [m]."""
+    """Proven interval of a motion: its least lower bound of a distance [m], lower bounds for its pairs [m]."""
 
     least: float
-    curve: Curve
-    pairs: Ints
+    times: Floats
+    control: Floats
     bounds: Floats
+    pairs: Ints
 
 
 @dataclass
@@ -199,7 +137,7 @@ class Proof:
 
 def is_proved(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = ()) -> bool:
     """Return whether a motion is proven free of collisions, except for pairs on their exempt spans."""
-    return not any(isinstance(result, Span) for result in _examined(spaces, _asked(spaces, curves, exempt)))
+    return not any(examined.undecided for examined in _examined(spaces, *_asked(spaces, curves, exempt)))
 
 
 def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = (), *, whole: bool = True) -> Proof:
@@ -207,16 +145,15 @@ def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = (), 
 
     Unless ``whole``, the first undecided span ends the proof.
     """
-    proof, proved = Proof(), list[_Proved]()
-    for result in _examined(spaces, _asked(spaces, curves, exempt), proof):
-        if isinstance(result, Span):
-            proof.undecided.append(result)
-            if not whole:
-                return proof
-        else:
-            proved.append(result)
+    proof, every = Proof(), list[_Examined]()
+    for examined in _examined(spaces, *_asked(spaces, curves, exempt)):
+        _note_nearest(proof, spaces, examined.tested, examined.intervals)
+        every.append(examined)
+        proof.undecided += examined.undecided
+        if proof.undecided and not whole:
+            return proof
     proof.undecided = _joined(proof.undecided)
-    _find_smallest_gap(spaces, proved, proof)
+    _find_smallest_gap(spaces, every, proof)
     return proof
 
 
@@ -267,26 +204,19 @@ def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_sta
     return times_apart.tolist()
 
 
-def configuration_at(curves: Sequence[Curve], time: float) -> Floats:
-    """Return the configuration at a time [s] of a motion, shape (n,)."""
-    curve = next(curve for curve in curves if time <= curve.end or curve is curves[-1])
-    part = (time - curve.start) / (curve.end - curve.start) if curve.end > curve.start else 0.0
-    return curve.at(min(max(part, 0.0), 1.0))
-
-
-def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> list[tuple[Curve, Bools]]:
-    """Return the segments of a motion, divided where exempt spans start or end, each with the mask of pairs to test."""
+def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> tuple[Intervals, Bools]:
+    """Return the segments of a motion, divided where exempt spans start or end, and the masks of pairs to test."""
     cuts = sorted({time for span in exempt for time in (span.start, span.end)})
-    asked: list[tuple[Curve, Bools]] = []
+    pieces: list[Curve] = []
     for curve in curves:
         rest = curve
         for time in cuts:
             if rest.start < time < rest.end:
                 piece, rest = rest.split((time - rest.start) / (rest.end - rest.start))
-                asked.append((piece._replace(end=time), _without(spaces, piece, exempt)))
+                pieces.append(piece._replace(end=time))
                 rest = rest._replace(start=time)
-        asked.append((rest, _without(spaces, rest, exempt)))
-    return asked
+        pieces.append(rest)
+    return Intervals.of(pieces), np.array([_without(spaces, piece, exempt) for piece in pieces])
 
 
 def _without(spaces: Spaces, curve: Curve, exempt: Sequence[Span]) -> Bools:
@@ -295,61 +225,44 @@ def _without(spaces: Spaces, curve: Curve, exempt: Sequence[Span]) -> Bools:
     return asked
 
 
-def _examined(
-    spaces: Spaces, pending: list[tuple[Curve, Bools]], proof: Proof | None = None
-) -> Iterator[Span | _Proved]:
-    """Test intervals, and subdivide those without proof; yield proven intervals and undecided spans."""
-    while pending:
-        batch, pending = pending[: spaces.most], pending[spaces.most :]
-        curves, asked = [curve for curve, _ in batch], np.array([asked for _, asked in batch])
-        tested = spaces.test(*_reach(curves), asked)
-        counted = spaces.counted[tested.pairs]
-        if proof is not None:
-            _note_nearest(proof, tested, curves, counted)
-        free = asked[:, tested.pairs] & ~tested.is_open & counted
-        bounds = np.where(free, tested.gaps - tested.travel, np.inf)
-        least = bounds.min(axis=1, initial=np.inf).tolist()
+def _examined(spaces: Spaces, intervals: Intervals, asked: Bools) -> Iterator[_Examined]:
+    """Test intervals, and subdivide those without proof."""
+    while len(asked):
+        now, later = slice(spaces.most), slice(spaces.most, None)
+        some, mask, intervals, asked = intervals.only(now), asked[now], intervals.only(later), asked[later]
+        tested = spaces.test(*some.boxes(), mask)
+        free = mask[:, tested.pairs] & ~tested.is_open & spaces.counted[tested.pairs]
         shortest = np.where(tested.measured <= 0, _SHORTEST_IN_CONTACT, _SHORTEST)
-        lost = tested.is_open & (tested.travel < shortest)
-        open_still = tested.is_open & ~lost
-        rest = np.zeros(asked.shape, dtype=bool)
-        rest[:, tested.pairs] = open_still
-        shares = np.where(open_still, tested.travel / np.maximum(tested.gaps, _NOTHING), 0.0).max(axis=1, initial=0.0)
-        lost_rows = set(np.flatnonzero(lost.any(axis=1)).tolist())
-        numbers = np.ceil(np.clip(_RESERVE * shares, 2, _PARTS)).astype(int)
-        for row, (curve, number) in enumerate(zip(curves, numbers.tolist(), strict=True)):
-            yield _Proved(least[row], curve, tested.pairs, bounds[row])
-            if row in lost_rows:
-                yield from (Span(curve.start, curve.end, pair) for pair in tested.pairs[lost[row]].tolist())
-            if shares[row] > 0:
-                pending += [(part, rest[row]) for part in curve.parts(number)]
+        is_lost = tested.is_open & (tested.travel < shortest)
+        spans: list[Span] = []
+        for row, column in np.argwhere(is_lost).tolist():
+            start, end = some.times[row].tolist()
+            spans.append(Span(start, end, int(tested.pairs[column])))
+        yield _Examined(some, tested, np.where(free, tested.gaps - tested.travel, np.inf), spans)
+        is_open = tested.is_open & ~is_lost
+        rows = np.flatnonzero(is_open.any(axis=1))
+        if not len(rows):
+            continue
+        shares = np.where(is_open, tested.travel / np.maximum(tested.gaps, _NOTHING), 0.0)[rows].max(axis=1)
+        parts, origins = some.only(rows).parts(np.ceil(np.clip(_RESERVE * shares, 2, _PARTS)).astype(int))
+        rest = np.zeros((len(rows), asked.shape[1]), dtype=bool)
+        rest[:, tested.pairs] = is_open[rows]
+        intervals = intervals.with_others(parts)
+        asked = np.concatenate([asked, rest[origins]])
 
 
-def _reach(curves: Sequence[Curve]) -> tuple[Floats, Floats]:
-    """Return the middle of each segment, and the largest difference of its configurations from it; shape (m, n)."""
-    middles, spreads = np.empty((2, len(curves), curves[0].control.shape[1]))
-    numbers = [len(curve.control) for curve in curves]
-    for number in set(numbers):
-        rows = [row for row, its in enumerate(numbers) if its == number]
-        control = np.array([curves[row].control for row in rows])
-        middles[rows] = at = _middle(number) @ control
-        spreads[rows] = np.abs(control - at[:, None]).max(axis=1)
-    return middles, spreads
-
-
-def _note_nearest(proof: Proof, tested: PairTests, curves: Sequence[Curve], counted: Bools) -> None:
-    if not counted.any():
+def _note_nearest(proof: Proof, spaces: Spaces, tested: PairTests, intervals: Intervals) -> None:
+    measured = np.where(spaces.counted[tested.pairs], tested.measured, np.inf)
+    if not measured.size:
         return
-    measured = np.where(counted, tested.measured, np.inf)
-    row, column = divmod(int(measured.argmin()), len(counted))
+    row, column = divmod(int(measured.argmin()), measured.shape[1])
     if measured[row, column] < proof.nearest[0]:
-        time = (curves[row].start + curves[row].end) / 2
-        proof.nearest = float(measured[row, column]), time, int(tested.pairs[column])
+        proof.nearest = float(measured[row, column]), float(intervals.times[row].mean()), int(tested.pairs[column])
 
 
-def _find_smallest_gap(spaces: Spaces, proved: list[_Proved], proof: Proof) -> None:
+def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof) -> None:
     """Subdivide the intervals with the smallest bounds until the lower bound is close to the measured distance."""
-    proved = [interval for interval in proved if interval.least < np.inf]
+    proved, rest = _smallest(every)
     for _ in range(_REFINEMENTS):
         wanted = proof.nearest[0] - max(_TOLERANCE, _PART * proof.nearest[0])
         proved.sort(key=lambda interval: interval.least)
@@ -358,22 +271,40 @@ def _find_smallest_gap(spaces: Spaces, proved: list[_Proved], proof: Proof) -> N
             break
         if np.isinf(wanted):  # nothing has been measured yet
             near, wanted = near[:1], _FAR
-        parts = [interval._replace(curve=part) for interval in near for part in interval.curve.parts(_CUTS)]
-        proved = [*proved[len(near) :], *_raised(spaces, parts, wanted, proof)]
-    proof.smallest_gap = min([proof.nearest[0], *(interval.least for interval in proved)])
+        proved = [*proved[len(near) :], *_raised(spaces, near, wanted, proof)]
+    proof.smallest_gap = min([proof.nearest[0], rest, *(interval.least for interval in proved)])
 
 
-def _raised(spaces: Spaces, intervals: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
-    """Return the intervals with better lower bounds for pairs whose bounds are below ``wanted`` [m]."""
-    curves, known = [interval.curve for interval in intervals], np.full((len(intervals), spaces.pair_count), np.inf)
-    for row, interval in zip(known, intervals, strict=True):
-        row[interval.pairs] = interval.bounds
-    tested = spaces.test(*_reach(curves), known < wanted, wanted)
-    _note_nearest(proof, tested, curves, spaces.counted[tested.pairs])
+def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
+    """Return the intervals with the smallest bounds, as many as can be refined, and the least bound of the others."""
+    proved: list[_Proved] = []
+    for examined in every:
+        intervals, bounds, pairs = examined.intervals, examined.bounds, examined.tested.pairs
+        least = bounds.min(axis=1, initial=np.inf)
+        finite = np.flatnonzero(least < np.inf)
+        proved += [
+            _Proved(float(least[row]), intervals.times[row], intervals.control[row], bounds[row], pairs)
+            for row in finite[least[finite].argsort()][: _REFINEMENTS * _REFINED + 1].tolist()
+        ]
+    proved.sort(key=lambda interval: interval.least)
+    others = proved[_REFINEMENTS * _REFINED :]
+    return proved[: _REFINEMENTS * _REFINED], others[0].least if others else np.inf
+
+
+def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
+    """Return the parts of intervals, with better lower bounds for pairs whose bounds are below ``wanted`` [m]."""
+    whole = Intervals(np.array([interval.times for interval in near]), np.array([each.control for each in near]))
+    parts, origins = whole.parts(np.full(len(near), _CUTS))
+    known = np.full((len(origins), spaces.pair_count), np.inf)
+    for row, origin in enumerate(origins):
+        interval = near[int(origin)]
+        known[row, interval.pairs] = interval.bounds
+    tested = spaces.test(*parts.boxes(), known < wanted, wanted)
+    _note_nearest(proof, spaces, tested, parts)
     bounds = known[:, tested.pairs]
     known[:, tested.pairs] = np.where(bounds < wanted, np.maximum(bounds, tested.gaps - tested.travel), bounds)
-    every = np.arange(spaces.pair_count)
-    return [_Proved(float(row.min()), curve, every, row) for curve, row in zip(curves, known, strict=True)]
+    pairs, least = np.arange(spaces.pair_count), known.min(axis=1).tolist()
+    return [_Proved(*fields, pairs=pairs) for fields in zip(least, *parts, known, strict=True)]
 
 
 def _joined(spans: list[Span]) -> list[Span]:
@@ -385,16 +316,3 @@ def _joined(spans: list[Span]) -> list[Span]:
         else:
             joined.append(span)
     return sorted(joined)
-
-
-def line_curve(start: Floats, step: Floats) -> Curve:
-    """Return a straight line as a curve with a duration of 1 s."""
-    return Curve(0.0, 1.0, np.array([start, start + step]))
-
-
-def path_curves(points: Floats, differences: Callable[[Floats, Floats], Floats]) -> list[Curve]:
-    """Return a path of straight lines as curves with a duration of 1 s each."""
-    return [
-        Curve(float(number), number + 1.0, np.array([start, start + differences(end, start)]))
-        for number, (start, end) in enumerate(pairwise(points))
-    ]

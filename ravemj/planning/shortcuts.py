@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.planning.curves import Curve
 from ravemj.planning.edges import Edges, bisection_order
-from ravemj.planning.proofs import Curve
 from ravemj.planning.ramps import Ramps, fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.retiming.segments import PathLimits
 

@@ -14,7 +14,7 @@ import ravemj
 from ravemj import DOFAffine
 from ravemj.manipulation.bodies import Bodies
 from ravemj.manipulation.certification import BodySpaces, Certifier, UncertifiableError
-from ravemj.planning.proofs import Curve, line_curve
+from ravemj.planning.curves import Curve, Intervals, line_curve
 
 SWING = """<Environment><Robot name="arm"><KinBody>
   <Body name="base"><Geom type="sphere"><radius>0.001</radius></Geom></Body>
@@ -63,10 +63,15 @@ class TestCurves:
         coefficients = np.random.default_rng(seed).normal(size=(number, 3))
         curve = Curve.of_powers(1.0, 3.0, coefficients)
         powers = np.arange(number)
-        for index, piece in enumerate(curve.parts(count)):
-            place = (index + part) / count
-            np.testing.assert_allclose(piece.at(part), place**powers @ coefficients, atol=1e-9)
-            assert piece.start == pytest.approx(1 + 2 * index / count)
+        line = line_curve(np.zeros(3), np.ones(3))  # of another degree
+        parts, origins = Intervals.of([curve, line, curve]).parts(np.array([count, 1, 2]))
+        for index, row in enumerate(np.flatnonzero(origins == 0).tolist()):
+            place, (start, end) = (index + part) / count, parts.times[row].tolist()
+            at = Curve(start, end, parts.control[row]).at(part)
+            np.testing.assert_allclose(at, place**powers @ coefficients, atol=1e-9)
+            assert (start, end) == pytest.approx((1 + 2 * index / count, 1 + 2 * (index + 1) / count))
+        (row,) = np.flatnonzero(origins == 1)
+        np.testing.assert_allclose(Curve(0.0, 1.0, parts.control[row]).at(part), np.full(3, part), atol=1e-12)
         first, second = curve.split(part)
         np.testing.assert_allclose(first.at(0.5), (part / 2) ** powers @ coefficients, atol=1e-9)
         np.testing.assert_allclose(second.control[0], part**powers @ coefficients, atol=1e-9)

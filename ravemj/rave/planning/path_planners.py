@@ -13,8 +13,8 @@ from ravemj.errors import ArgumentError
 from ravemj.manipulation.motions import find_path
 from ravemj.manipulation.refusals import Blocked, RefusedError, allowed_ends, refusal
 from ravemj.manipulation.roots import FIRST_ROOTS, Refuse, RootSource, Sampler
+from ravemj.planning.curves import path_curves
 from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
-from ravemj.planning.proofs import path_curves
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreRoots, Problem, Search, connect, explore, single
 from ravemj.rave.enums import PlannerAction, PlannerStatusCode
