@@ -16,7 +16,7 @@ from ravemj.geometry_functions.affine import DOFAffine
 from ravemj.manipulation.bodies import Bodies, Part
 from ravemj.planning.certificates import Certificate, CertifiedSpan
 from ravemj.planning.curves import Curve, configuration_at
-from ravemj.planning.proofs import TOUCHING, Span, distances, exempt_spans, is_proved, prove
+from ravemj.planning.proofs import TOUCHING, Cases, Span, distances, exempt_spans, is_proved, prove
 from ravemj.trajectories.groups import AFFINE, JOINTS
 from ravemj.trajectories.layout import packed
 from ravemj.trajectories.waypoints import Waypoints
@@ -128,13 +128,13 @@ class BodySpaces:
         chains = {geom: chain for body in bodies.bodies for geom, chain in _chains(world, body, numbers)}
         self._clearances = Clearances(model, world.model.data, world.shapes, self.pairs, chains, ids)
 
-    def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> Tested:
-        """Test if pairs ``asked``, (m, pairs), may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``."""
+    def test(self, middles: Floats, spreads: Floats, cases: Cases, apart: float = 0.0) -> Tested:
+        """Test whether pairs may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``, shape (m, n)."""
         place = self._bodies.placement()
         for slot, values in enumerate(middles):
             place(values)
             self._clearances.take(slot)
-        return self._clearances.test(spreads @ self._rates, asked, apart)
+        return self._clearances.test(spreads @ self._rates, *cases, apart)
 
     def nearest_points(self, values: Floats, pair: int) -> tuple[Vec3, Vec3]:
         """Return the nearest points of both shapes of a pair in a configuration [m]."""

@@ -74,7 +74,7 @@ class Intervals(NamedTuple):
 
     def parts(self, numbers: Ints) -> tuple[Self, Ints]:
         """Divide each interval into a number of equal durations; return the parts, and the row of each one."""
-        times, control, origins = list[Floats](), list[Floats](), list[Ints]()
+        times, control, origins = [self.times[:0]], [self.control[:0]], [np.zeros(0, dtype=int)]
         for number in np.unique(numbers).tolist():
             rows = np.flatnonzero(numbers == number)
             starts, finish = self.times[rows, 0], self.times[rows, 1]

@@ -36,12 +36,7 @@ _NOTHING = 1e-12  # m
 
 
 class PairTests(Protocol):
-    """Test results of k pairs of shapes in m configurations, shape (m, k); see ``engine.collision.clearances``."""
-
-    @property
-    def pairs(self) -> Ints:
-        """Indices of the pairs that were tested in at least one configuration, shape (k,)."""
-        ...
+    """Test results of pairs of shapes in boxes of configurations, shape (k,); see ``engine.collision.clearances``."""
 
     @property
     def is_open(self) -> Bools:
@@ -82,8 +77,8 @@ class Spaces(Protocol):
         """Whether each pair contributes to the smallest gap, shape (pair_count,)."""
         ...
 
-    def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> PairTests:
-        """Test if pairs ``asked``, (m, pairs), may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``."""
+    def test(self, middles: Floats, spreads: Floats, cases: "Cases", apart: float = 0.0) -> PairTests:
+        """Test whether pairs may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``, shape (m, n)."""
         ...
 
 
@@ -101,12 +96,30 @@ class Span(NamedTuple):
     pair: int
 
 
+class Cases(NamedTuple):
+    """Pairs of shapes on intervals, in the order of the intervals.
+
+    Attributes:
+        rows: Indices of the intervals, shape (k,).
+        pairs: Indices of the pairs, shape (k,).
+    """
+
+    rows: Ints
+    pairs: Ints
+
+    def of_rows(self, start: int, end: int | None = None) -> "Cases":
+        """Return the cases of the intervals from ``start`` to ``end``, whose numbers then begin with 0."""
+        first, last = np.searchsorted(self.rows, (start, len(self.rows) + start if end is None else end)).tolist()
+        return Cases(self.rows[first:last] - start, self.pairs[first:last])
+
+
 class _Examined(NamedTuple):
     """Test results of intervals: lower bounds of the distances of pairs that are proven [m], and what is undecided."""
 
     intervals: Intervals
+    cases: Cases
     tested: PairTests
-    bounds: Floats  # shape (m, k); infinite for other pairs
+    bounds: Floats  # shape (k,); infinite for other pairs
     undecided: list[Span]
 
 
@@ -147,7 +160,7 @@ def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = (), 
     """
     proof, every = Proof(), list[_Examined]()
     for examined in _examined(spaces, *_asked(spaces, curves, exempt)):
-        _note_nearest(proof, spaces, examined.tested, examined.intervals)
+        _note_nearest(proof, spaces, examined.intervals, examined.cases, examined.tested)
         every.append(examined)
         proof.undecided += examined.undecided
         if proof.undecided and not whole:
@@ -182,11 +195,10 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
     table = np.zeros((len(configurations), len(pairs)))
     for first in range(0, len(configurations), spaces.most):
         some = np.array(configurations[first : first + spaces.most])
-        asked = np.zeros((len(some), spaces.pair_count), dtype=bool)
-        asked[:, pairs] = True
-        tested = spaces.test(some, np.zeros_like(some), asked, 2 * APART)
+        cases = Cases(np.repeat(np.arange(len(some)), len(pairs)), np.tile(pairs, len(some)))
+        tested = spaces.test(some, np.zeros_like(some), cases, 2 * APART)
         near = np.where(np.isfinite(tested.measured), tested.measured, tested.gaps)
-        table[first : first + len(some)] = near[:, np.searchsorted(tested.pairs, pairs)]
+        table[first : first + len(some)] = near.reshape(len(some), -1)
     return table
 
 
@@ -204,8 +216,8 @@ def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_sta
     return times_apart.tolist()
 
 
-def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> tuple[Intervals, Bools]:
-    """Return the segments of a motion, divided where exempt spans start or end, and the masks of pairs to test."""
+def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> tuple[Intervals, Cases]:
+    """Return the segments of a motion, divided where exempt spans start or end, and the pairs to test."""
     cuts = sorted({time for span in exempt for time in (span.start, span.end)})
     pieces: list[Curve] = []
     for curve in curves:
@@ -216,7 +228,7 @@ def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> t
                 pieces.append(piece._replace(end=time))
                 rest = rest._replace(start=time)
         pieces.append(rest)
-    return Intervals.of(pieces), np.array([_without(spaces, piece, exempt) for piece in pieces])
+    return Intervals.of(pieces), Cases(*np.nonzero([_without(spaces, piece, exempt) for piece in pieces]))
 
 
 def _without(spaces: Spaces, curve: Curve, exempt: Sequence[Span]) -> Bools:
@@ -225,39 +237,53 @@ def _without(spaces: Spaces, curve: Curve, exempt: Sequence[Span]) -> Bools:
     return asked
 
 
-def _examined(spaces: Spaces, intervals: Intervals, asked: Bools) -> Iterator[_Examined]:
+def _examined(spaces: Spaces, intervals: Intervals, cases: Cases) -> Iterator[_Examined]:
     """Test intervals, and subdivide those without proof."""
-    while len(asked):
-        now, later = slice(spaces.most), slice(spaces.most, None)
-        some, mask, intervals, asked = intervals.only(now), asked[now], intervals.only(later), asked[later]
-        tested = spaces.test(*some.boxes(), mask)
-        free = mask[:, tested.pairs] & ~tested.is_open & spaces.counted[tested.pairs]
+    while len(intervals.times):
+        some, rest = intervals.only(slice(spaces.most)), intervals.only(slice(spaces.most, None))
+        now, later = cases.of_rows(0, spaces.most), cases.of_rows(spaces.most)
+        tested = spaces.test(*some.boxes(), now)
+        bounds = np.where(~tested.is_open & spaces.counted[now.pairs], tested.gaps - tested.travel, np.inf)
         shortest = np.where(tested.measured <= 0, _SHORTEST_IN_CONTACT, _SHORTEST)
         is_lost = tested.is_open & (tested.travel < shortest)
-        spans: list[Span] = []
-        for row, column in np.argwhere(is_lost).tolist():
-            start, end = some.times[row].tolist()
-            spans.append(Span(start, end, int(tested.pairs[column])))
-        yield _Examined(some, tested, np.where(free, tested.gaps - tested.travel, np.inf), spans)
-        is_open = tested.is_open & ~is_lost
-        rows = np.flatnonzero(is_open.any(axis=1))
-        if not len(rows):
-            continue
-        shares = np.where(is_open, tested.travel / np.maximum(tested.gaps, _NOTHING), 0.0)[rows].max(axis=1)
-        parts, origins = some.only(rows).parts(np.ceil(np.clip(_RESERVE * shares, 2, _PARTS)).astype(int))
-        rest = np.zeros((len(rows), asked.shape[1]), dtype=bool)
-        rest[:, tested.pairs] = is_open[rows]
-        intervals = intervals.with_others(parts)
-        asked = np.concatenate([asked, rest[origins]])
+        yield _Examined(some, now, tested, bounds, _spans(some, now, np.flatnonzero(is_lost)))
+        left = np.flatnonzero(tested.is_open & ~is_lost)
+        parts, cases = _subdivided(some, now, left, tested.travel[left] / np.maximum(tested.gaps[left], _NOTHING))
+        cases = Cases(
+            np.concatenate([later.rows, cases.rows + len(rest.times)]), np.concatenate([later.pairs, cases.pairs])
+        )
+        intervals = rest.with_others(parts)
 
 
-def _note_nearest(proof: Proof, spaces: Spaces, tested: PairTests, intervals: Intervals) -> None:
-    measured = np.where(spaces.counted[tested.pairs], tested.measured, np.inf)
-    if not measured.size:
-        return
-    row, column = divmod(int(measured.argmin()), measured.shape[1])
-    if measured[row, column] < proof.nearest[0]:
-        proof.nearest = float(measured[row, column]), float(intervals.times[row].mean()), int(tested.pairs[column])
+def _subdivided(intervals: Intervals, cases: Cases, left: Ints, shares: Floats) -> tuple[Intervals, Cases]:
+    """Subdivide the intervals of the cases ``left``.
+
+    Args:
+        intervals: The intervals.
+        cases: The cases.
+        left: Indices of the undecided cases.
+        shares: Their travel as a multiple of the gap.
+    """
+    largest = np.zeros(len(intervals.times))
+    np.maximum.at(largest, cases.rows[left], shares)
+    rows = np.flatnonzero(largest)
+    parts, origins = intervals.only(rows).parts(np.ceil(np.clip(_RESERVE * largest[rows], 2, _PARTS)).astype(int))
+    is_left = np.zeros((len(rows), int(cases.pairs[left].max(initial=-1)) + 1), dtype=bool)
+    is_left[np.searchsorted(rows, cases.rows[left]), cases.pairs[left]] = True
+    return parts, Cases(*np.nonzero(is_left[origins]))
+
+
+def _spans(intervals: Intervals, cases: Cases, lost: Ints) -> list[Span]:
+    times, pairs = intervals.times[cases.rows[lost]].tolist(), cases.pairs[lost].tolist()
+    return [Span(start, end, pair) for (start, end), pair in zip(times, pairs, strict=True)]
+
+
+def _note_nearest(proof: Proof, spaces: Spaces, intervals: Intervals, cases: Cases, tested: PairTests) -> None:
+    measured = np.where(spaces.counted[cases.pairs], tested.measured, np.inf)
+    nearest = int(measured.argmin()) if len(measured) else -1
+    if nearest >= 0 and measured[nearest] < proof.nearest[0]:
+        row, pair = int(cases.rows[nearest]), int(cases.pairs[nearest])
+        proof.nearest = float(measured[nearest]), float(intervals.times[row].mean()), pair
 
 
 def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof) -> None:
@@ -277,18 +303,15 @@ def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof)
 
 def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
     """Return the intervals with the smallest bounds, as many as can be refined, and the least bound of the others."""
-    proved: list[_Proved] = []
-    for examined in every:
-        intervals, bounds, pairs = examined.intervals, examined.bounds, examined.tested.pairs
-        least = bounds.min(axis=1, initial=np.inf)
-        finite = np.flatnonzero(least < np.inf)
-        proved += [
-            _Proved(float(least[row]), intervals.times[row], intervals.control[row], bounds[row], pairs)
-            for row in finite[least[finite].argsort()][: _REFINEMENTS * _REFINED + 1].tolist()
-        ]
-    proved.sort(key=lambda interval: interval.least)
-    others = proved[_REFINEMENTS * _REFINED :]
-    return proved[: _REFINEMENTS * _REFINED], others[0].least if others else np.inf
+    most, proved = _REFINEMENTS * _REFINED, list[_Proved]()
+    for (times, control), cases, _, bounds, _ in every:
+        least = np.full(len(times), np.inf)
+        np.minimum.at(least, cases.rows, bounds)
+        for row in np.argsort(least)[: most + 1].tolist():
+            its = slice(*np.searchsorted(cases.rows, (row, row + 1)).tolist())
+            proved.append(_Proved(float(least[row]), times[row], control[row], bounds[its], cases.pairs[its]))
+    proved = sorted((interval for interval in proved if interval.least < np.inf), key=lambda interval: interval.least)
+    return proved[:most], proved[most].least if len(proved) > most else np.inf
 
 
 def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
@@ -299,10 +322,10 @@ def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof
     for row, origin in enumerate(origins):
         interval = near[int(origin)]
         known[row, interval.pairs] = interval.bounds
-    tested = spaces.test(*parts.boxes(), known < wanted, wanted)
-    _note_nearest(proof, spaces, tested, parts)
-    bounds = known[:, tested.pairs]
-    known[:, tested.pairs] = np.where(bounds < wanted, np.maximum(bounds, tested.gaps - tested.travel), bounds)
+    cases = Cases(*np.nonzero(known < wanted))
+    tested = spaces.test(*parts.boxes(), cases, wanted)
+    _note_nearest(proof, spaces, parts, cases, tested)
+    known[cases] = np.maximum(known[cases], tested.gaps - tested.travel)
     pairs, least = np.arange(spaces.pair_count), known.min(axis=1).tolist()
     return [_Proved(*fields, pairs=pairs) for fields in zip(least, *parts, known, strict=True)]
 

@@ -15,6 +15,7 @@ from ravemj import DOFAffine
 from ravemj.manipulation.bodies import Bodies
 from ravemj.manipulation.certification import BodySpaces, Certifier, UncertifiableError
 from ravemj.planning.curves import Curve, Intervals, line_curve
+from ravemj.planning.proofs import Cases
 
 SWING = """<Environment><Robot name="arm"><KinBody>
   <Body name="base"><Geom type="sphere"><radius>0.001</radius></Geom></Body>
@@ -93,13 +94,14 @@ def assert_bounded(bodies, lower, upper, seed, *, spread, count=6) -> None:
         for _ in range(count):
             middle = numbers.uniform(lower, upper)
             change = spread * numbers.uniform(0, 1, len(middle))
-            tested = spaces.test([middle], [change], np.ones((1, spaces.pair_count), dtype=bool), 1e9)
+            pairs = np.arange(spaces.pair_count)
+            tested = spaces.test([middle], [change], Cases(np.zeros_like(pairs), pairs), 1e9)
             spaces.put_back()
             here = distances(middle)
-            assert (tested.gaps[0] <= np.maximum(here, 0) + 1e-6).all()
+            assert (tested.gaps <= np.maximum(here, 0) + 1e-6).all()
             for _ in range(4):
                 there = distances(middle + change * numbers.choice([-1.0, 1.0, numbers.uniform(-1, 1)], len(middle)))
-                assert (np.maximum(here, 0) - np.maximum(there, 0) <= tested.travel[0] + 1e-6).all()
+                assert (np.maximum(here, 0) - np.maximum(there, 0) <= tested.travel + 1e-6).all()
 
 
 class TestBounds:

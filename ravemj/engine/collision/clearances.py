@@ -52,30 +52,33 @@ class Chain(NamedTuple):
 
 
 class Tested(NamedTuple):
-    """Test results of k pairs of shapes; arrays have the shape (configurations, k) unless stated.
+    """Test results of pairs of shapes in configurations; arrays have the shape (k,).
 
     Attributes:
-        pairs: Indices of the pairs that were tested in at least one configuration, shape (k,).
         is_open: Whether contact is possible within the changes of the joints.
         travel: Maximum relative travel of the shapes [m].
         gaps: Proven lower bounds of the distances in the configuration [m].
         measured: Measured distances [m]; infinite if not measured.
     """
 
-    pairs: Ints
     is_open: Bools
     travel: Floats
     gaps: Floats
     measured: Floats
 
 
-class _GapBounds(NamedTuple):
-    """Current bounds of the tested pairs; gaps [m] are those of ``Tested``."""
+class _Cases(NamedTuple):
+    """Pairs in configurations, and their current bounds; gaps [m] are those of ``Tested``."""
 
+    rows: Ints
     pairs: Ints
-    needed: Floats  # gaps with which they cannot come too near [m], shape (m, k)
+    needed: Floats  # gaps with which they cannot come too near [m]
     gaps: Floats
     measured: Floats
+
+    def open_of(self, cases: Ints) -> Ints:
+        """Return those of some cases that may come too near."""
+        return cases[self.gaps[cases] <= self.needed[cases]]
 
 
 class Clearances:
@@ -142,48 +145,44 @@ class Clearances:
         if self._bases:
             self._anchors[slot, model.njnt :] = np.repeat(data.xpos[self._bases], 2, axis=0)
 
-    def test(self, changes: Floats, asked: Bools, apart: float = 0.0) -> Tested:
+    def test(self, changes: Floats, rows: Ints, pairs: Ints, apart: float = 0.0) -> Tested:
         """Test which pairs may come closer than a distance [m] while joints change.
 
         Args:
             changes: Maximum change of each joint [rad or m], shape (m, joints).
-            asked: The mask of pairs to test, shape (m, n).
+            rows: The configuration of each case, ascending, shape (k,).
+            pairs: The pair of each case, shape (k,).
             apart: The distance.
         """
-        count, pairs = len(changes), np.flatnonzero(asked.any(axis=0))
         first, second = self._first[pairs], self._second[pairs]
-        away = self._positions[:count, second] - self._positions[:count, first]
+        away = self._positions[rows, second] - self._positions[rows, first]
         centers = np.sqrt((away * away) @ _ONES)
         gaps = centers - (self._model.geom_rbound[first] + self._model.geom_rbound[second])
-        travel = self._travel(changes, pairs)
+        travel = self._travel(changes, rows, pairs)
         needed = travel + (apart + SLACK)
-        known = _GapBounds(pairs, needed, gaps, np.full(gaps.shape, np.inf))
-        is_near = asked[:, pairs] & (gaps <= needed)
-        is_hopeless = is_near & (needed > centers)  # no distance of theirs would be enough
-        is_open = is_near & ~is_hopeless
-        if is_open.any():
-            rows, columns = np.nonzero(is_open & ~np.isnan(self._directions[pairs, 0]))
-            self._separate(known, rows, columns)
-            is_open &= gaps <= needed
-            self._measure(known, *_middles(is_open))  # whose directions may do for the others
-            is_open &= gaps <= needed
-            rows, columns = np.nonzero(is_open)
-            self._separate(known, rows, columns)
-            is_open &= gaps <= needed
-            rows, columns = np.nonzero(is_open & np.isinf(known.measured))
-            self._measure(known, rows, columns)
-            is_open &= gaps <= needed
-        return Tested(pairs, is_open | is_hopeless, travel, gaps, known.measured)
+        cases = _Cases(rows, pairs, needed, gaps, np.full(len(rows), np.inf))
+        near = np.flatnonzero((gaps <= needed) & (needed <= centers))  # beyond, no distance would be enough
+        if len(near):
+            self._separate(cases, near[~np.isnan(self._directions[pairs[near], 0])])
+            near = cases.open_of(near)
+            self._measure(cases, _middles(near, pairs))  # whose directions may do for the others
+            near = cases.open_of(near)
+            self._separate(cases, near)
+            near = cases.open_of(near)
+            self._measure(cases, near[np.isinf(cases.measured[near])])
+        return Tested(gaps <= needed, travel, gaps, cases.measured)
 
     def put_back(self) -> None:
         """Restore the geom poses to those of the model's joints."""
         mujoco.mj_kinematics(self._model, self._data)
 
-    def _travel(self, changes: Floats, pairs: Ints) -> Floats:
-        """Return the maximum relative travel of pairs [m], shape (m, k)."""
+    def _travel(self, changes: Floats, rows: Ints, pairs: Ints) -> Floats:
+        """Return the maximum relative travel of the pairs of cases [m], shape (k,)."""
         count, which = len(changes), self._rows[:, pairs]
-        used, which = np.unique(which, return_inverse=True)
-        geoms, joints = self._moving[used], self._joints[used]  # -1, in place of what does not move, is the last one
+        is_used = np.zeros(len(self._moving) + 1, dtype=bool)
+        is_used[which] = True  # -1, in place of what does not move, is the last one
+        used = np.flatnonzero(is_used[:-1])
+        geoms, joints = self._moving[used], self._joints[used]
         away = self._positions[:count, geoms, None] - np.take(self._anchors[:count], joints, axis=1)
         along = np.einsum("cgjk,cgjk->cgj", away, np.take(self._axes[:count], joints, axis=1))
         square = np.einsum("cgjk,cgjk->cgj", away, away) - along * along
@@ -194,39 +193,38 @@ class Clearances:
         sums = np.zeros((joints.shape[1] + 1, count, len(geoms)))
         for depth in range(joints.shape[1]):
             sums[depth + 1] = sums[depth] + change[..., depth] * (lever[..., depth] + grows[:, depth] * sums[depth])
-        first, second = which.reshape(2, -1)
-        depths, rows = self._depths[:, pairs], np.arange(count)[:, None]
+        places = np.zeros(len(is_used), dtype=int)
+        places[used] = np.arange(len(used))
+        (first, second), depths = places[which], self._depths[:, pairs]
         return sums[depths[0], rows, first] + sums[depths[1], rows, second]
 
-    def _separate(
-        self, known: _GapBounds, rows: Ints, columns: Ints, directions: Floats | None = None, *, exactly: bool = False
-    ) -> None:
-        """Raise the bounds of gaps by separation along directions, unit vectors or NaN, shape (k, 3).
+    def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
+        """Raise the bounds of gaps of some cases by separation along directions, unit vectors or NaN, shape (k, 3).
 
         The default directions are those of the last measurements. Unless ``exactly``, meshes are replaced by their
         bounding boxes.
         """
-        if not len(rows):
+        if not len(some):
             return
-        pairs = known.pairs[columns]
-        geoms, rows_of = np.concatenate([self._first[pairs], self._second[pairs]]), np.concatenate([rows, rows])
+        pairs, rows = cases.pairs[some], cases.rows[some]
+        geoms, rows = np.concatenate([self._first[pairs], self._second[pairs]]), np.concatenate([rows, rows])
         directions = self._directions[pairs] if directions is None else directions
-        positions, both = self._positions[rows_of, geoms], np.concatenate([directions, -directions])
+        positions, both = self._positions[rows, geoms], np.concatenate([directions, -directions])
         # Along d, the first shape ends at d c + h(d), and the second one begins at d c - h(-d).
         ends = (both * positions) @ _ONES + self._supports.of(
-            geoms, both, self._rotations[rows_of, geoms], exactly=exactly
+            geoms, both, self._rotations[rows, geoms], exactly=exactly
         )
-        count = len(rows)
-        known.gaps[rows, columns] = np.fmax(known.gaps[rows, columns], -ends[:count] - ends[count:])
+        count = len(some)
+        cases.gaps[some] = np.fmax(cases.gaps[some], -ends[:count] - ends[count:])
 
-    def _measure(self, known: _GapBounds, rows: Ints, columns: Ints) -> None:
-        """Measure the distances of pairs ``columns`` in configurations ``rows``, and raise the bounds of their gaps."""
+    def _measure(self, cases: _Cases, some: Ints) -> None:
+        """Measure the distances of some cases, and raise the bounds of their gaps."""
         model, data = self._model, self._data
-        pairs = known.pairs[columns]
+        pairs = cases.pairs[some]
         first, second = self._first[pairs].tolist(), self._second[pairs].tolist()
-        ways, present = np.zeros((len(rows), 6)), -1
+        ways, present = np.zeros((len(some), 6)), -1
         distances: list[float] = []
-        for row, geom, other, way in zip(rows.tolist(), first, second, ways, strict=True):
+        for row, geom, other, way in zip(cases.rows[some].tolist(), first, second, ways, strict=True):
             if row != present:
                 self._place(row)
                 present = row
@@ -236,35 +234,33 @@ class Clearances:
         lengths = np.sqrt((ways * ways).sum(axis=1))
         lengths[~((far > 0) & (lengths > 0))] = np.nan
         directions = self._directions[pairs] = ways / lengths[:, None]
-        known.measured[rows, columns] = far
-        self._separate(known, rows, columns, directions)
-        near = known.gaps[rows, columns] <= known.needed[rows, columns]
-        self._separate(known, rows[near], columns[near], directions[near], exactly=True)
+        cases.measured[some] = far
+        self._separate(cases, some, directions)
+        near = cases.gaps[some] <= cases.needed[some]
+        self._separate(cases, some[near], directions[near], exactly=True)
         if self._concave.any():
-            near = (known.gaps[rows, columns] <= known.needed[rows, columns]) & self._concave[pairs]
-            self._measure_triangles(known, rows[near], columns[near])
+            near = cases.open_of(some)
+            self._measure_triangles(cases, near[self._concave[cases.pairs[near]]])
 
     def _place(self, row: int) -> None:
         self._data.geom_xpos[...] = self._positions[row]
         self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
 
-    def _measure_triangles(self, known: _GapBounds, rows: Ints, columns: Ints) -> None:
+    def _measure_triangles(self, cases: _Cases, some: Ints) -> None:
         """Measure non-convex meshes whose hulls are too close by their triangles, and raise the bounds."""
-        pairs = known.pairs[columns]
-        for row, column, pair in zip(rows.tolist(), columns.tolist(), pairs.tolist(), strict=True):
-            self._place(row)
+        for case in some.tolist():
+            self._place(int(cases.rows[case]))
+            pair = cases.pairs[case]
             distance = self._shapes.distance(int(self._first[pair]), int(self._second[pair]))
-            known.measured[row, column] = distance
-            known.gaps[row, column] = max(known.gaps[row, column], distance - SLACK)
+            cases.measured[case] = distance
+            cases.gaps[case] = max(cases.gaps[case], distance - SLACK)
 
 
-def _middles(is_open: Bools) -> tuple[Ints, Ints]:
-    """Return for each pair with undecided configurations the middle one of its undecided ones, and the pair."""
-    counts = np.cumsum(is_open, axis=0)
-    pairs = np.flatnonzero(counts[-1])
-    rows = (counts[:, pairs] > counts[-1, pairs] // 2).argmax(axis=0)
-    order = np.argsort(rows, kind="stable")
-    return rows[order], pairs[order]
+def _middles(cases: Ints, pairs: Ints) -> Ints:
+    """Return of each pair the middle one of its undecided ``cases``."""
+    order = np.argsort(pairs[cases], kind="stable")
+    _, starts, counts = np.unique(pairs[cases][order], return_index=True, return_counts=True)
+    return np.sort(cases[order[starts + counts // 2]])
 
 
 class _Supports:
