@@ -3,6 +3,7 @@
 from collections.abc import Callable, Generator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from ravemj.core.blocks import block, restoring
 from ravemj.core.transforms import Floats, Vec3
 from ravemj.engine.affine import translation_columns
 from ravemj.engine.collision.findings import Checker, Findings
-from ravemj.engine.collision.moving import moved_world, moving_test
+from ravemj.engine.collision.moving import MovingTest, moved_world, moving_test
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself, touching_region
 from ravemj.engine.collision.world import CollisionWorld
@@ -20,9 +21,7 @@ from ravemj.engine.simulation.body import SavedConfiguration
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, RaveGetAffineDOF, affine_values, pose_with_values
 from ravemj.geometry_functions.ik_types import IkParameterizationType
-from ravemj.planning.certificates import Certificate
 from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
-from ravemj.planning.curves import Curve
 from ravemj.planning.edges import Allowed, Edges
 from ravemj.planning.space import Coordinates, Space
 from ravemj.trajectories.extraction import rotation_columns
@@ -222,7 +221,7 @@ class Bodies:
     def _are_joints_of_one(self) -> bool:
         return len(self.parts) == 1 and bool(self.parts[0].dofs)
 
-    def fast_test(self) -> Callable[[Floats], bool] | None:
+    def fast_test(self) -> MovingTest | None:
         """Return a fast collision test of configurations, or None if only ``move`` and ``collision`` can decide.
 
         Use it within ``kept``, without other changes of the world.
@@ -366,16 +365,16 @@ class Conditions:
             return Edges(space, allowed, step, proof)
         return ConstrainedEdges(space, replace(self, manifold=None).allowed(), self.manifold, step, proof)
 
-    def straight_edges(self, space: Space, ends: Sequence[Floats]) -> Edges:
-        """Return the tests of straight edges, ignoring a constraint manifold; see ``edges``."""
-        certifier = self.certifier(ends) if self.proves else None
+    def straight_edges(self, space: Space, ends: Sequence[Floats], *, certifies: bool) -> Edges:
+        """Return the tests of straight edges, ignoring a constraint manifold; see ``edges``.
 
-        def certify(curves: Sequence[Curve]) -> Certificate | None:
-            nonlocal certifier
-            certifier = certifier or self.certifier(ends)  # on first use, since it takes as long as many tests
-            return certifier and certifier.certificate(curves, whole=False)
-
-        return Edges(space, self.allowed(), proof=certifier and certifier.proves, certify=certify)
+        If the motion should be certified (``certifies``), shortcuts keep a clearance, which makes that likely.
+        """
+        fast = self.bodies.fast_test() if certifies and self.bodies is not None and not self.constraints else None
+        make_certifier = cache(lambda: self.certifier(ends))  # on first use, since it takes as long as many tests
+        certifier = make_certifier() if self.proves else None
+        proof, clear = certifier and certifier.proves, None if fast is None else fast.with_clearance(ends)
+        return Edges(space, self.allowed(), proof=proof, certifier=make_certifier, clear=clear)
 
     def certifier(self, ends: Sequence[Floats]) -> "Certifier | None":
         """Return the certifier of motions with given starts and goals, for use within ``kept``; None if impossible."""

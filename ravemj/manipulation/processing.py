@@ -7,12 +7,13 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.certificates import Certificate
+from ravemj.planning.detours import certified_detour
 from ravemj.planning.edges import Edges, path_is_allowed
 from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, MatchedRamps, Parabolic, Quintic
 from ravemj.planning.retiming.segments import Interpolated, PathLimits, Profile, RetimingError, Timed, retime
 from ravemj.planning.retiming.spline import Spline
 from ravemj.planning.retiming.topp_ra import ToppRa
-from ravemj.planning.shortcuts import MotionSegment, ShortenedMotion, lines, motion_curves, shorten
+from ravemj.planning.shortcuts import MotionSegment, ShortenedMotion, lines, motion_curves, shorten, straightened
 from ravemj.trajectories.conversion import FindBody
 from ravemj.trajectories.groups import DELTATIME, Group
 from ravemj.trajectories.layout import (
@@ -28,6 +29,12 @@ from ravemj.trajectories.waypoints import Waypoints
 
 _TRIES = 100
 """OpenRAVE's default for the number of attempted shortcuts."""
+
+_TRIES_PER_LINE = 3
+"""Number of further attempts for each line of a path whose lines are kept."""
+
+_REPAIRS = 50
+"""Maximum number of shortcuts and lines that are replaced because they cannot be certified."""
 
 TOPP_RA = ("toppra", "toppratrajectoryretimer")
 
@@ -185,15 +192,44 @@ class Processor:
                 smoothers = "the LinearSmoother and the ParabolicSmoother"
                 raise RetimingError(f"poses of bodies can be smoothed by {smoothers} only")
             tries = self.iterations or _TRIES
-            short = shorten(edges, points, tries, self.random, self.proceed)
+            keeps_lines = self.certifies and isinstance(profile, Parabolic)  # shortcuts of motions can be removed again
+            short = (
+                straightened(edges, points) if keeps_lines else shorten(edges, points, tries, self.random, self.proceed)
+            )
             if not isinstance(profile, Parabolic):
                 return self._written(profile, retime(profile, short, self.limits)), None
+            if keeps_lines:
+                tries = min(tries + _TRIES_PER_LINE * len(short), 2 * tries)
             motion = ShortenedMotion(lines(short, self.limits))
             motion.shorten(edges, self.limits, tries, self.random, self.proceed)
-            certificate = _certified(motion, edges) if self.certifies else None
+            certificate = self._certified(motion, edges, tries) if self.certifies else None
             return self._written(profile, _timed(motion.segments, points), marks=True), certificate
         except (RetimingError, ValueError) as error:
             raise RetimingError(str(error)) from None
+
+    def _certified(self, motion: ShortenedMotion, edges: Edges, tries: int) -> Certificate | None:
+        """Certify a motion, without the shortcuts and lines that prevent it; return None if that fails.
+
+        With a line, all shortcuts from it and to it are lost, so there are further attempts then.
+        """
+        certifier = edges.certifier()
+        if certifier is None or not motion.segments:
+            return None
+
+        def detour(part: Floats) -> Floats | None:
+            return certified_detour(edges, certifier.proves, part, self.random)
+
+        for _ in range(_REPAIRS):
+            certificate = certifier.certificate(motion_curves(motion.segments), whole=False)
+            if not certificate.undecided:
+                return certificate
+            time = (certificate.undecided[0].start + certificate.undecided[0].end) / 2
+            if motion.remove_shortcut(time):
+                continue
+            if not motion.replace_line(time, edges.space, self.limits, detour):
+                break
+            motion.shorten(edges, self.limits, tries, self.random, self.proceed)
+        return None
 
     def _written(self, profile: Interpolated, timed: Timed, *, marks: bool = False) -> Waypoints:
         """Convert a timed path to waypoints; ``marks`` adds a group ``iswaypoint``."""
@@ -218,19 +254,6 @@ class Processor:
                 rows[:, target.columns] = numbers[:, group.columns]
                 target = find_shifted(result, target.name, 1, exact=True)
         return Waypoints(result, rows)
-
-
-def _certified(motion: ShortenedMotion, edges: Edges) -> Certificate | None:
-    """Certify a motion, after the removal of shortcuts that cannot be certified; return None if that fails."""
-    if edges.certify is None or not motion.segments:
-        return None
-    while True:
-        certificate = edges.certify(motion_curves(motion.segments))
-        if certificate is None or not certificate.undecided:
-            return certificate
-        first = certificate.undecided[0]
-        if not motion.remove_shortcut((first.start + first.end) / 2):
-            return None
 
 
 def _timed(motion: list[MotionSegment], points: Floats) -> Timed:

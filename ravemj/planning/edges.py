@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -28,8 +28,17 @@ Allowed = Callable[[Floats], bool]
 Proof = Callable[[Sequence[Curve]], bool]
 """Proof that a motion is free of collisions at all times."""
 
-Certify = Callable[[Sequence[Curve]], Certificate | None]
-"""Returns the certificate of a motion, up to its first undecided span; None if it cannot be certified."""
+
+class Certifier(Protocol):
+    """Proofs that motions are free of collisions at all times; see ``manipulation.certification``."""
+
+    def proves(self, curves: Sequence[Curve]) -> bool:
+        """Return whether a motion is proven free of collisions."""
+        ...
+
+    def certificate(self, curves: Sequence[Curve], *, whole: bool = True) -> Certificate:
+        """Return the certificate of a motion; unless ``whole``, the first undecided span is the only one."""
+        ...
 
 
 class Growth(NamedTuple):
@@ -54,7 +63,8 @@ class Edges:
         allowed: The test of one configuration.
         step: Length of a step of a tree, a weighted distance; 0 selects ``STEP``.
         proof: Additional test of lines that shorten a path, or None.
-        certify: Certifies motions of shortcuts, or None.
+        certifier: Returns the certifier of motions, or None.
+        clear: The test of one configuration of a shortcut; None for ``allowed``.
 
     Attributes:
         is_strict: Whether the edges of trees have to pass ``proof``, too.
@@ -66,9 +76,10 @@ class Edges:
         allowed: Allowed,
         step: float = STEP,
         proof: Proof | None = None,
-        certify: Certify | None = None,
+        certifier: Callable[[], Certifier | None] = lambda: None,
+        clear: Allowed | None = None,
     ) -> None:
-        self.space, self.allowed, self.proof, self.certify = space, allowed, proof, certify
+        self.space, self.allowed, self.proof, self.certifier, self.clear = space, allowed, proof, certifier, clear
         self.step = step if step > 0 else STEP
         self.is_strict = False
 
@@ -112,13 +123,15 @@ class Edges:
 
         Halves are tested before quarters, since colliding lines mostly collide in the middle.
         """
-        allowed, steps = self.allowed, self.space.steps(step)
-        is_free = all(allowed(start + number / steps * step) for number in bisection_order(steps))
-        return is_free and (not self.is_strict or self._is_proved(start, step))
+        return self._passes(self.allowed, start, step) and (not self.is_strict or self._is_proved(start, step))
 
     def shortcut(self, start: Floats, step: Floats) -> bool:
         """Return whether a line is allowed and passes the proof required of shortcuts."""
-        return self.line(start, step) and (self.is_strict or self._is_proved(start, step))
+        return self._passes(self.clear or self.allowed, start, step) and self._is_proved(start, step)
+
+    def _passes(self, test: Allowed, start: Floats, step: Floats) -> bool:
+        steps = self.space.steps(step)
+        return all(test(start + number / steps * step) for number in bisection_order(steps))
 
     def _is_proved(self, start: Floats, step: Floats) -> bool:
         return self.proof is None or self.proof([line_curve(start, step)])

@@ -1,7 +1,8 @@
 """Shortcuts of paths and motions: straight lines, or faster ramps, instead of detours."""
 
-from collections.abc import Callable
-from itertools import pairwise
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
+from itertools import count, pairwise
 from math import ceil
 from typing import NamedTuple
 
@@ -9,9 +10,11 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.curves import Curve
+from ravemj.planning.detours import AROUND
 from ravemj.planning.edges import Edges, bisection_order
 from ravemj.planning.ramps import Ramps, fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.retiming.segments import PathLimits
+from ravemj.planning.space import Space
 
 _WORTH = 3e-3
 """Minimum saving of a shortcut, as a fraction of the path length, because collision checks dominate the time."""
@@ -62,6 +65,16 @@ def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
     return start + step * (along / length if length > 0 else 0.0)
 
 
+def straightened(edges: Edges, points: Floats) -> Floats:
+    """Return a path without the waypoints inside of straight lines; if many remain, also without detours."""
+    steps = edges.space.difference(points[1:], points[:-1])
+    lengths = np.linalg.norm(steps, axis=1)
+    products = np.einsum("ij,ij->i", steps[1:], steps[:-1])
+    is_corner = lengths[1:] * lengths[:-1] - products > _STRAIGHT * lengths[1:] * lengths[:-1]
+    corners = points[[True, *is_corner, True]]
+    return corners if len(corners) <= _MOST_ENDS else _without_detours(edges, corners)
+
+
 def _without_detours(edges: Edges, path: Floats) -> Floats:
     """Return the path in which each waypoint is connected to the last one that a straight line reaches.
 
@@ -75,6 +88,9 @@ def _without_detours(edges: Edges, path: Floats) -> Floats:
         kept.append(next(reached, kept[-1] + 1))
     return path[kept]
 
+
+_STRAIGHT = 1e-12
+"""1 minus the cosine of the largest angle between lines that count as one."""
 
 _WORTH_TIME = 1e-3
 """Minimum saving of a shortcut, as a fraction of the duration."""
@@ -174,9 +190,13 @@ class ShortenedMotion:
     """
 
     def __init__(self, straight: list[MotionSegment]) -> None:
-        self._straight = [piece._replace(source=number) for number, piece in enumerate(straight)]
+        self._sources = count()
+        self._straight = self._with_sources(straight)
         self.segments = self._straight
         self._shortcuts: list[_Shortcut] = []
+
+    def _with_sources(self, line: list[MotionSegment]) -> list[MotionSegment]:
+        return [piece._replace(source=next(self._sources)) for piece in line]
 
     def shorten(
         self,
@@ -191,7 +211,6 @@ class ShortenedMotion:
         There are at most ``tries`` attempts. ``proceed`` is called before each with its number; returning False stops
         them.
         """
-        source = len(self._straight)
         for attempt in range(tries):
             if not self.segments or not proceed(attempt):
                 break
@@ -200,19 +219,54 @@ class ShortenedMotion:
             (start, first), (end, second) = self._at(low, ends), self._at(high, ends)
             pieces = _shortcut(edges, first, second, (high - low) * (1 - _WORTH_TIME), limits)
             if pieces is not None:
-                shortcut = _Shortcut(start, end, _from_one_source(pieces, source + attempt))
+                shortcut = _Shortcut(start, end, _from_one_source(pieces, next(self._sources)))
                 self._shortcuts.append(shortcut)
                 self._insert(shortcut)
 
     def remove_shortcut(self, time: float) -> bool:
         """Remove the shortcut at a time [s], and those that start or end on it; return whether one is there."""
         source = self._at(time, self._ends())[0].source
-        if source < len(self._straight):
-            return False
-        self.segments = self._straight
         others = [shortcut for shortcut in self._shortcuts if shortcut.segments[0].source != source]
-        self._shortcuts = [shortcut for shortcut in others if self._insert(shortcut)]
+        if len(others) == len(self._shortcuts):
+            return False
+        self._shortcuts = others
+        self._insert_all()
         return True
+
+    def replace_line(
+        self, time: float, space: Space, limits: PathLimits, detour: Callable[[Floats], Floats | None]
+    ) -> bool:
+        """Replace the path around a time [s] at which the motion is on a line.
+
+        Args:
+            time: The time.
+            space: The configuration space.
+            limits: The limits of the motion.
+            detour: Returns a path from the first to the last of some waypoints, shape (m, n), or None.
+
+        Returns:
+            Whether there is a detour.
+        """
+        (source, _), (values, _) = self._at(time, self._ends())
+        pieces = self._straight
+        corners = [*(index for index, piece in enumerate(pieces) if piece.is_corner), len(pieces)]
+        end = pieces[-1].after(pieces[-1].duration)[0]
+        points = [*(pieces[corner].values for corner in corners[:-1]), end]
+        line = bisect_right(corners, [piece.source for piece in pieces].index(source)) - 1
+        first, start = _until_around(space, values, points, range(line, -1, -1))
+        last, end = _until_around(space, values, points, range(line + 1, len(points)))
+        path = detour(np.array([start, *points[first + 1 : last], values, end]))
+        if path is None:
+            return False
+        motion = lines(np.array([points[first], *path, points[last]]), limits)
+        self._straight = [*pieces[: corners[first]], *self._with_sources(motion), *pieces[corners[last] :]]
+        self._insert_all()
+        return True
+
+    def _insert_all(self) -> None:
+        """Make the motion anew, without shortcuts whose start or end is no longer there."""
+        self.segments = self._straight
+        self._shortcuts = [shortcut for shortcut in self._shortcuts if self._insert(shortcut)]
 
     def _ends(self) -> Floats:
         return np.cumsum([piece.duration for piece in self.segments])
@@ -243,6 +297,29 @@ class ShortenedMotion:
             if piece.source == place.source and -_SAME_TIME <= since <= piece.duration + _SAME_TIME:
                 return number
         return None
+
+
+def _until_around(space: Space, values: Floats, points: Sequence[Floats], rows: Iterable[int]) -> tuple[int, Floats]:
+    """Follow a path up to a distance of ``AROUND``.
+
+    Args:
+        space: The configuration space.
+        values: The configuration on the path from which to start, shape (n,).
+        points: The waypoints.
+        rows: The indices of the next waypoints.
+
+    Returns:
+        The index of the first waypoint that is farther away, and the configuration on the line to it; without one,
+        those of the last waypoint.
+    """
+    row, before = -1, values
+    for row in rows:
+        step = space.difference(points[row], before)
+        far = space.distance(points[row], values)
+        if far > AROUND:
+            return row, before + step * min(1.0, AROUND / float(np.linalg.norm(space.weights * step)))
+        before = points[row]
+    return row, before
 
 
 def _from_one_source(pieces: list[MotionSegment], source: int) -> list[MotionSegment]:
@@ -285,4 +362,5 @@ def _is_allowed(edges: Edges, piece: MotionSegment) -> bool:
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
     steps = edges.space.steps(farthest)
-    return all(edges.allowed(piece.after(number / steps * piece.duration)[0]) for number in bisection_order(steps))
+    test = edges.clear or edges.allowed
+    return all(test(piece.after(number / steps * piece.duration)[0]) for number in bisection_order(steps))

@@ -155,7 +155,8 @@ class Clearances:
             apart: The distance.
         """
         first, second = self._first[pairs], self._second[pairs]
-        away = self._positions[rows, second] - self._positions[rows, first]
+        places, begins = self._positions.reshape(-1, 3), rows * self._model.ngeom
+        away = places.take(begins + second, axis=0) - places.take(begins + first, axis=0)  # faster than an index
         centers = np.sqrt((away * away) @ _ONES)
         gaps = centers - (self._model.geom_rbound[first] + self._model.geom_rbound[second])
         travel = self._travel(changes, rows, pairs)
@@ -195,8 +196,8 @@ class Clearances:
             sums[depth + 1] = sums[depth] + change[..., depth] * (lever[..., depth] + grows[:, depth] * sums[depth])
         places = np.zeros(len(is_used), dtype=int)
         places[used] = np.arange(len(used))
-        (first, second), depths = places[which], self._depths[:, pairs]
-        return sums[depths[0], rows, first] + sums[depths[1], rows, second]
+        first, second = (self._depths[:, pairs] * count + rows) * len(used) + places[which]
+        return sums.take(first) + sums.take(second)
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
         """Raise the bounds of gaps of some cases by separation along directions, unit vectors or NaN, shape (k, 3).

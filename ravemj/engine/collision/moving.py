@@ -1,6 +1,6 @@
 """Collision tests of a body at many joint values, the hot path of planners; grabbed bodies follow the joints."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import NamedTuple
 
 import mujoco
@@ -85,11 +85,14 @@ _KINDS: tuple[_Kind, ...] = (body_and_others, itself)
 _KEY = 1 << 31
 """Upper bound of the number of geoms, for encoding a pair as one number."""
 
+_CLEARANCE = 3e-3
+"""Distance below which hulls nearly touch, as a fraction of the size of the body."""
+
 _MANY = 50
 """Number of configurations from which threads are worthwhile."""
 
 
-def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
+def moving_test(body: BodyState, dofs: Sequence[int]) -> "MovingTest | None":
     """Return a fast test of values of some joints, or None if links are displaced from their joints.
 
     It tests the moved links and grabbed bodies. While it is used, the world must not change otherwise, and the caller
@@ -98,7 +101,7 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     world = body.simulation.collisions()
     if body.kinematics.displaced:
         return None
-    return _MovingTest(world, body, Placement(world, body, dofs), _Chosen.of(world, body, dofs, _KINDS))
+    return MovingTest(world, body, Placement(world, body, dofs), _Chosen.of(world, body, dofs, _KINDS))
 
 
 def moved_world(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None] | None:
@@ -139,7 +142,7 @@ def batch_collides(body: BodyState, values: Floats, among: Among) -> NDArray[np.
         chosen = _Chosen.of(world, body, dofs, among.kinds)
         if among.dofs is None and any(map(world.collide, chosen.resting)):
             return np.ones(len(values), dtype=bool)
-        return _MovingTest(world, body, Placement(world, body, dofs), chosen).of_many(values)
+        return MovingTest(world, body, Placement(world, body, dofs), chosen).of_many(values)
 
 
 def batch_distances(body: BodyState, values: Floats, among: Among) -> Floats:
@@ -292,31 +295,52 @@ class _Mover:
         self._world.model.pose_stamp += 1
 
 
-class _MovingTest:
+class MovingTest:
     """Implementation of ``moving_test``: MuJoCo's collision detection, and tests of the pairs that it ignores."""
 
     def __init__(self, world: CollisionWorld, body: BodyState, place: Placement, chosen: _Chosen) -> None:
         self._model, self._data = world.model.model, world.model.data
-        self._place, self._world = place, world
+        self._place, self._world, self._body = place, world, body
         self._held = HeldRoots(world, body) if body.grabs else None
         self._meant, self._masks, self._is_all, self._rest, _ = chosen
         self._detect = world.detection.overlaps(self._masks)
 
     def __call__(self, values: Floats) -> bool:
         """Return whether the body collides."""
-        model, data = self._model, self._data
-        self._place(values)
-        if self._held is None:
-            mujoco.mj_kinematics(model, data)
-            self._detect()
-        else:
-            self._detect_with(self._held)
-        if data.ncon:
+        self._move_and(self._detect, values)
+        if self._data.ncon:
             touch = self._world.shapes.touch  # MuJoCo uses the hulls of meshes
-            for first, second in data.contact.geom.tolist():
+            for first, second in self._data.contact.geom.tolist():
                 if first * _KEY + second in self._meant and touch(first, second):
                     return True
         return self._rest is not None and self._world.collide(self._rest)
+
+    def with_clearance(self, ends: Iterable[Floats]) -> Callable[[Floats], bool]:
+        """Return a test whether no shapes collide and no hulls nearly touch, except for those that do at an end.
+
+        Motions that pass it at every step are rarely in collision between the steps.
+        """
+        world, shapes, close = self._world, self._world.shapes, set[int]()
+        geoms = world.geoms_of_body(self._body)
+        size = np.ptp(world.detection.positions[geoms], axis=0).max() + 2 * world.detection.radii[geoms].max()
+        margin = _CLEARANCE * float(size)
+
+        def look() -> None:
+            world.detection.detect_near(self._detect, margin)
+
+        def is_clear(values: Floats) -> bool:
+            self._move_and(look, values)
+            for first, second in self._data.contact.geom.tolist() if self._data.ncon else ():
+                key = first * _KEY + second
+                is_exact = key in close or shapes.is_concave(first) or shapes.is_concave(second)
+                if key in self._meant and (not is_exact or shapes.touch(first, second)):
+                    return False
+            return self._rest is None or not world.collide(self._rest)
+
+        for end in ends:
+            self._move_and(look, end)
+            close.update(first * _KEY + second for first, second in self._data.contact.geom.tolist())
+        return is_clear
 
     def of_many(self, values: Floats) -> NDArray[np.bool_]:
         """Return for each configuration, shape (n, dofs), whether the body collides.
@@ -334,11 +358,16 @@ class _MovingTest:
                 touching[index] = self(values[index])
         return touching
 
-    def _detect_with(self, held: HeldRoots) -> None:
-        """Run MuJoCo's collision detection with grabbed bodies at their carriers."""
-        with held.on_carriers():
+    def _move_and(self, detect: Callable[[], None], values: Floats) -> None:
+        """Move the body, and run a detection of MuJoCo with grabbed bodies at their carriers."""
+        self._place(values)
+        if self._held is None:
             mujoco.mj_kinematics(self._model, self._data)
-            if held.are_late:
+            detect()
+            return
+        with self._held.on_carriers():
+            mujoco.mj_kinematics(self._model, self._data)
+            if self._held.are_late:
                 mujoco.mj_kinematics(self._model, self._data)
-            self._detect()
+            detect()
         self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again

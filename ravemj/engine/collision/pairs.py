@@ -59,7 +59,6 @@ class Detection:
         self.is_overruled = False
         self._most = int(self._data.narena * _MOST_CONTACTS)
         self._option = self._model.opt
-        self._option.o_margin = _MARGIN  # only ``_OVERRIDE`` lets it count
         self._bodies = self._model.geom_bodyid
         self._welds = self._model.body_weldid[self._bodies]
         self._geom_masks = self._model.geom_contype, self._model.geom_conaffinity
@@ -119,11 +118,11 @@ class Detection:
         self._found_stamp = self._stamp if self._is_shared else -1  # last, as an interrupt may have come before
         return self._found
 
-    def detect_near(self, look: Callable[[], None]) -> None:
-        """Run the detection ``look``, a result of ``overlaps``, also for hulls that nearly touch."""
+    def detect_near(self, look: Callable[[], None], margin: float = _MARGIN) -> None:
+        """Run the detection ``look``, a result of ``overlaps``, also for hulls within ``margin`` [m] of each other."""
         option, flags = self._option, self._option.enableflags
         try:
-            option.enableflags = flags | _OVERRIDE
+            option.o_margin, option.enableflags = margin, flags | _OVERRIDE  # without the flag, no margin counts
             look()
         finally:  # no signal is handled in it
             option.enableflags = flags

@@ -13,14 +13,13 @@ from ravemj.errors import ArgumentError
 from ravemj.manipulation.motions import find_path
 from ravemj.manipulation.refusals import Blocked, RefusedError, allowed_ends, refusal
 from ravemj.manipulation.roots import FIRST_ROOTS, Refuse, RootSource, Sampler
-from ravemj.planning.curves import path_curves
 from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreRoots, Problem, Search, connect, explore, single
 from ravemj.rave.enums import PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.planner import Planner, PlannerStatus
 from ravemj.rave.planning.processing import post_process
-from ravemj.rave.planning.values import Values
+from ravemj.rave.planning.values import CHAIN, Values
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.waypoints import Waypoints
 
@@ -29,10 +28,6 @@ _ITERATIONS = 10000
 
 _SPACING = 10
 """Maximum distance between waypoints of a path without post-processing, in step lengths."""
-
-
-_OTHER_LINES = 2
-"""Number of retries with other random numbers before each line that shortens a path has to be certified."""
 
 
 _STRICT_ITERATIONS, _STRICT_EFFORT = 50, 4
@@ -173,30 +168,18 @@ class PathPlanner(Planner):
         return self._failed(str(certificate)) if values.certify == "required" else status
 
     def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
-        """Yield alternative paths with their post-processing parameters, the quick ones first.
+        """Yield alternative paths with their post-processing parameters, which certify each line that shortens a path.
 
-        If the path itself can be certified, other lines that shorten it mostly succeed; otherwise each of these lines
-        is certified, then also each edge of another path.
+        Of the last one, all edges are certified.
         """
         assert search is not None, "it has found the motion"
         proving = replace(values, conditions=replace(values.conditions, proves=True))
-        if self._is_proved(values, search):
-            for number in range(1, _OTHER_LINES + 1):
-                seed = values.numbers["_nrandomgeneratorseed"] + number
-                yield search, replace(values, numbers={**values.numbers, "_nrandomgeneratorseed": seed})
+        if values.postprocessing != CHAIN:
             yield search, proving
         most = max(_STRICT_ITERATIONS, _STRICT_EFFORT * search.iterations)
         search_ = self._found(proving, strict_iterations=most)
         if isinstance(search_, Search):
             yield search_, proving
-
-    def _is_proved(self, values: Values, search: Search) -> bool:
-        """Return whether a path without post-processing is proven free of collisions."""
-        path = search.path
-        assert path is not None, "it was found"
-        with values.conditions.kept():
-            certifier = values.conditions.certifier([path[0], path[-1]])
-            return certifier is not None and certifier.proves(path_curves(path, values.space().difference))
 
     @abstractmethod
     def _search(self, problem: Problem, values: Values) -> Search: ...

@@ -13,7 +13,7 @@ from ravemj.manipulation.processing import RETIMERS, SMOOTHERS, SPLINE, Processo
 from ravemj.planning.certificates import Certificate
 from ravemj.planning.retiming.segments import OutsideLimitsError, RetimingError
 from ravemj.rave.planning.planner import Planner, PlannerStatus
-from ravemj.rave.planning.values import CHAIN, Values
+from ravemj.rave.planning.values import CERTIFIED_CHAIN, CHAIN, Values
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.conversion import FindBody
 from ravemj.trajectories.layout import derived
@@ -114,7 +114,9 @@ def _processed(
                 numbers["_fsteplength"],
                 int(numbers["_nmaxiterations"]),
                 values.random(),
-                lambda points: values.conditions.straight_edges(values.space(), [points[0], points[-1]]),
+                lambda points: values.conditions.straight_edges(
+                    values.space(), [points[0], points[-1]], certifies=bool(values.certify)
+                ),
                 bool(values.certify),
                 proceed,
             )
@@ -128,6 +130,8 @@ def _chain(values: Values) -> Iterator[tuple[str, Values]]:
     name, text = values.postprocessing
     if (name, text) == CHAIN and len(values.coordinates().rotation) > 1:
         name, text = "LinearSmoother", ""  # the chain's parabolic smoother cannot interpolate quaternions
+    elif (name, text) == CHAIN and values.certify:
+        name, text = CERTIFIED_CHAIN
     numbers = {**values.numbers, "_nmaxiterations": 0.0, "_fsteplength": 0.0}
     while name:
         own = replace(values, numbers=numbers, tags={}, postprocessing=("", "")).with_tags(text)

@@ -42,13 +42,16 @@ VECTORS = (
 )
 NUMBERS = ("_nmaxiterations", "_nmaxplanningtime", "_fsteplength", "_nrandomgeneratorseed")
 
+_SECOND = "<_nmaxiterations>100</_nmaxiterations><verifyinitialpath>0</verifyinitialpath>"
+
 CHAIN = (
     "linearsmoother",
-    "<_nmaxiterations>20</_nmaxiterations>"
-    '<_postprocessing planner="parabolicsmoother"><_nmaxiterations>100</_nmaxiterations>'
-    "<verifyinitialpath>0</verifyinitialpath></_postprocessing>",
+    f'<_nmaxiterations>20</_nmaxiterations><_postprocessing planner="parabolicsmoother">{_SECOND}</_postprocessing>',
 )
 """Default post-processing of paths: the first planner, and its parameters, which name the second."""
+
+CERTIFIED_CHAIN = "parabolicsmoother", _SECOND
+"""The default if motions should be certified: without lines that shorten the path, which are not removed again."""
 
 _SAME = 1e-9
 """Tolerance of equal configuration values [rad or m]."""

@@ -1,0 +1,25 @@
+"""Certified detours around lines that cannot be certified."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.edges import Edges, Proof
+from ravemj.planning.rrt import Budget, connect
+
+AROUND = 0.3
+"""Maximum distance of a detour from the line in each coordinate; weighted."""
+
+_ITERATIONS = 200
+"""Maximum number of iterations of the search for a detour."""
+
+
+def certified_detour(edges: Edges, proof: Proof, part: Floats, random: np.random.Generator) -> Floats | None:
+    """Return a path near a part of a path, shape (m, n), from its start to its end, with certified edges, or None."""
+    space, around = edges.space, AROUND / edges.space.weights
+    lower = np.maximum(part.min(axis=0) - around, space.lower)
+    upper = np.minimum(part.max(axis=0) + around, space.upper)
+    near = Edges(replace(space, lower=lower, upper=upper), edges.allowed, edges.step, proof)
+    near.is_strict = True
+    return connect(near, [part[0]], [part[-1]], Budget(_ITERATIONS), random).path
