@@ -3,7 +3,7 @@
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
 from itertools import count, pairwise
-from math import ceil
+from math import ceil, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -314,10 +314,12 @@ def _until_around(space: Space, values: Floats, points: Sequence[Floats], rows: 
     """
     row, before = -1, values
     for row in rows:
-        step = space.difference(points[row], before)
-        far = space.distance(points[row], values)
-        if far > AROUND:
-            return row, before + step * min(1.0, AROUND / float(np.linalg.norm(space.weights * step)))
+        if space.distance(points[row], values) > AROUND:
+            away, step = space.difference(before, values), space.difference(points[row], before)
+            weighted, line = space.weights * away, space.weights * step
+            square, middle = float(line.dot(line)), float(line.dot(weighted))
+            rest = AROUND**2 - float(weighted.dot(weighted))
+            return row, before + step * ((sqrt(middle * middle + square * rest) - middle) / square)
         before = points[row]
     return row, before
 

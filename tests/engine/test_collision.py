@@ -839,6 +839,28 @@ class TestManyPairs:
             assert answer == (env.CheckCollision(snake) or snake.CheckSelfCollision())
         assert 0 < sum(found) < len(found)
 
+    def test_with_clearance_hulls_that_nearly_touch_count_unless_they_do_at_an_end(self, env, snake):
+        values, options = np.random.default_rng(4).uniform(-2.5, 2.5, (400, snake.GetDOF())), CollisionOptions.Distance
+        with env, snake:
+            collides = moving_test(snake.simulation_state, range(snake.GetDOF()))
+            is_clear = collides.with_clearance([])
+            free = [not collides(one) for one in values]
+            clear = [is_clear(one) for one in values]
+            close = values[np.array(free) & ~np.array(clear)]
+            assert all(collides.with_clearance([one])(one) for one in close)
+            assert [not collides(one) for one in values] == free, "the margin is used by no other test"
+        assert not any(clear[row] and not free[row] for row in range(len(values)))
+        assert len(close) > 2
+        env.GetCollisionChecker().SetCollisionOptions(options)
+        report, size = CollisionReport(), 2 * np.linalg.norm(snake.ComputeAABB().extents())
+        for one in close:
+            snake.SetDOFValues(one)
+            gaps = []
+            for ask in (env.CheckCollision, lambda body, report: body.CheckSelfCollision(report)):
+                assert not ask(snake, report=report)
+                gaps.append(report.minDistance)
+            assert 0 < min(gaps) < 0.01 * size
+
     def test_the_masks_of_the_model_are_back(self, env, snake):
         """A user may step the model, in which everything collides."""
         before, flags = [env.model.body_contype.copy(), env.model.body_conaffinity.copy()], env.model.opt.disableflags

@@ -5,13 +5,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from ravemj.planning.curves import line_curve
+from ravemj.planning.detours import certified_detour
 from ravemj.planning.edges import LINE, STEP, Edges, bisection_order, length, nearby, path_is_allowed
 from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.retiming.polynomials import Cubic, JerkLimited, Linear, Parabolic, Quintic
 from ravemj.planning.retiming.segments import OutsideLimitsError, PathLimits, RetimingError, retime
 from ravemj.planning.rrt import Budget, End, MoreRoots, connect, explore, single
-from ravemj.planning.shortcuts import ShortenedMotion, lines, shorten
+from ravemj.planning.shortcuts import ShortenedMotion, lines, shorten, straightened
 from ravemj.planning.space import Coordinates, Space
 from ravemj.planning.verification import Samples, flaw
 
@@ -352,6 +354,80 @@ def test_shortcuts_can_be_removed_one_by_one(seed):
         assert_smooth(motion.segments)
     for piece, line in zip(motion.segments, slow, strict=True):
         assert (piece.duration, piece.values.tolist()) == (line.duration, line.values.tolist())
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_lines_can_be_replaced_by_detours(seed):
+    slow, motion = shortened(seed)
+    random, parts = np.random.default_rng(seed), []
+    while any(motion.remove_shortcut(time) for time in np.linspace(0, time_of(motion.segments), 500)):
+        pass
+    for time in random.uniform(0, time_of(slow), 5):
+        before, at = motion.segments, at_time(motion.segments, time)
+        assert not motion.replace_line(time, space(), limits(2, 1.0, 3.0), parts.append)
+        assert motion.segments is before
+        part = parts[-1]
+        assert np.linalg.norm(part - at, axis=1).min() == pytest.approx(0, abs=1e-9)
+        for end, own in ((part[0], START), (part[-1], GOAL)):
+            assert np.linalg.norm(end - at) >= 0.3 - 1e-9 or np.linalg.norm(end - own) < 1e-9
+        assert motion.replace_line(time, space(), limits(2, 1.0, 3.0), lambda part: around(part, 0.01))
+        assert_smooth(motion.segments)
+        assert np.isclose([piece.values for piece in motion.segments], around(part, 0.01)[1]).all(axis=1).any()
+        motion.shorten(Edges(space(), round_a_wall), limits(2, 1.0, 3.0), 20, random)
+        assert_smooth(motion.segments)
+        while any(motion.remove_shortcut(time) for time in np.linspace(0, time_of(motion.segments), 500)):
+            pass
+
+
+def at_time(segments, time):
+    for piece in segments:
+        if time <= piece.duration:
+            return piece.after(time)[0]
+        time -= piece.duration
+    return segments[-1].after(segments[-1].duration)[0]
+
+
+def around(part, offset):
+    """Return the part of a path with its first line bent by an offset away from the wall."""
+    away = np.array([np.sign(part[:2].mean(axis=0)[0]) * offset, offset])
+    return np.array([part[0], part[:2].mean(axis=0) + away, *part[1:]])
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_certified_detours_avoid_what_is_smaller_than_the_resolution(seed):
+    random = np.random.default_rng(seed)
+    start = random.uniform(-1, 1, 2)
+    end = start + 0.6 * np.array([np.cos(seed), np.sin(seed)])
+    post, radius = (start + end) / 2 + 0.005 * random.normal(size=2), 0.012
+
+    def distance(curve):
+        first, last = curve.control
+        step = last - first
+        part = np.clip((post - first) @ step / max(step @ step, 1e-12), 0, 1)
+        return np.linalg.norm(post - first - part * step)
+
+    edges = Edges(space(), lambda values: np.linalg.norm(values - post) > radius)
+    path = certified_detour(
+        edges, lambda curves: all(distance(one) > radius for one in curves), np.array([start, end]), random
+    )
+    assert path[0].tolist() == start.tolist()
+    assert path[-1].tolist() == end.tolist()
+    assert all(distance(line_curve(first, last - first)) > radius for first, last in pairwise(path))
+    assert (path >= np.minimum(start, end) - 0.3).all()
+    assert (path <= np.maximum(start, end) + 0.3).all()
+    assert certified_detour(edges, lambda curves: False, np.array([start, end]), random) is None
+
+
+def test_paths_are_straightened():
+    corners = np.array([[0.0, 0.0], [1.0, 0.5], [1.0, 1.0], [-1.0, 0.0]])
+    points = np.concatenate(
+        [start + np.linspace(0, 1, 7)[:-1, None] * (end - start) for start, end in pairwise(corners)]
+    )
+    edges = Edges(space(), lambda values: True)
+    np.testing.assert_allclose(straightened(edges, np.concatenate([points, corners[-1:]])), corners)
+    many = np.random.default_rng(0).uniform(-1, 1, (40, 2))
+    np.testing.assert_array_equal(straightened(edges, many), many[[0, -1]])
+    np.testing.assert_array_equal(straightened(edges, many[:20]), many[:20])
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda one: type(one).__name__)

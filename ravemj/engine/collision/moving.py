@@ -322,8 +322,8 @@ class MovingTest:
         """
         world, shapes, close = self._world, self._world.shapes, set[int]()
         geoms = world.geoms_of_body(self._body)
-        size = np.ptp(world.detection.positions[geoms], axis=0).max() + 2 * world.detection.radii[geoms].max()
-        margin = _CLEARANCE * float(size)
+        places, radii = world.detection.positions[geoms], world.detection.radii[geoms]
+        margin = _CLEARANCE * float(np.ptp(places, axis=0).max() + 2 * radii.max()) if len(geoms) else 0.0
 
         def look() -> None:
             world.detection.detect_near(self._detect, margin)
