@@ -234,6 +234,19 @@ class TestContacts:
                 np.testing.assert_allclose(robot.GetManipulator(task.name).GetTransform(), pose, atol=1e-6)
         assert motion.GetDuration() == pytest.approx(10)
 
+    @pytest.mark.parametrize(
+        "goal", [[1.43, -1.87, 0.92], [1.92, 0.74, 0.6], [1.71, 1.87, -1.94], [-1.96, -0.54, -1.69]]
+    )
+    def test_a_target_out_of_reach_does_not_open_them(self, goal):
+        for limb in ("left_hand", "right_hand"):
+            ik = WholeBodyIK(biped(), base=True)
+            kept = [ik.add_contact(foot) for foot in FEET]
+            ik.add_reach(limb, goal)
+            result = ik.solve()
+            assert not result
+            assert f": {limb} is" in result.reason
+            assert max(np.abs(contact.residual).max() for contact in kept) < 1e-8
+
     def test_contacts_that_contradict_each_other_are_no_error(self):
         robot = biped()
         ik = WholeBodyIK(robot, base=True)

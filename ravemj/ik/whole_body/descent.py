@@ -40,6 +40,8 @@ _BOUNCE = 1e-7
 """Displacement above which a step that reverses the last one counts as oscillation, as near unreachable targets."""
 _WINDOW, _LITTLE = 40, 1e-6
 """Convergence test: the number of steps, and the relative decrease of the cost over them."""
+_MINOR = 1e-3
+"""Relative decrease of the cost over these steps below which a descent out of steps counts as converged."""
 _STILL = 1e-10
 """Displacement that counts as zero."""
 
@@ -75,7 +77,7 @@ class DescentResult:
     Attributes:
         steps: Number of steps.
         cost: Remaining weighted sum of squared errors.
-        stopped: Whether it converged; False if the maximum number of steps was reached.
+        stopped: Whether it converged; False if the cost still decreased after the maximum number of steps.
     """
 
     steps: int
@@ -153,8 +155,11 @@ class Descent:
             cost = state.cost()
             stopped = stopped or (len(history) == _WINDOW and history[0] - cost < _LITTLE * abs(cost))
             history.append(cost)
+        stopped = stopped or (len(history) == _WINDOW and history[0] - history[-1] < _MINOR * history[-1])
         if len(state.costs()) > 2 or state.inequalities:
             self._settle(state, longest)
+        elif self.exact_contacts:
+            self._restore_contacts(longest)
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
@@ -165,6 +170,14 @@ class Descent:
             before, state = state, self._state()
             if not improves(before.costs(), state.costs(), float(moved.dot(moved))):
                 self._mechanism.restore(saved)
+                break
+
+    def _restore_contacts(self, longest: float) -> None:
+        """Close contacts that a target out of reach has pulled open, as far as the limits allow."""
+        for _ in range(_TURNS * _TURNS):
+            nothing = np.zeros(len(self.limits.lower))
+            bounds = self.limits.reachable(self._mechanism.values(), longest)
+            if float(np.abs(self._on_contacts(nothing, *bounds, math.inf)).max(initial=0.0)) < _STILL:
                 break
 
     def pressing(self) -> Floats:
@@ -223,14 +236,14 @@ class Descent:
         )
         return [TaskRows(error, jacobian) for jacobian, error in parts]
 
-    def _on_contacts(self, x: Floats, lower: Floats, upper: Floats) -> Floats:
-        """Correct the errors of nearly closed contacts after a displacement; return the total displacement."""
+    def _on_contacts(self, x: Floats, lower: Floats, upper: Floats, most: float = _DRIFT) -> Floats:
+        """Correct contact errors of at most ``most`` after a displacement; return the total displacement."""
         contacts = [task for task in self.tasks if task.is_contact and task.enabled]
         for _ in range(_TURNS if contacts else 0):
             measured = [(task, task.rows()) for task in contacts]
             error = np.concatenate([rows.error for _, rows in measured])
             left = _length(error)
-            if not EXACT < left < _DRIFT:
+            if not EXACT < left < most:
                 break
             jacobian = np.concatenate([rows.jacobian for _, rows in measured])
             back = _shortest(jacobian, error, lower - x, upper - x)
