@@ -33,8 +33,8 @@ _TRIES = 100
 _TRIES_PER_LINE = 3
 """Number of further attempts for each line of a path whose lines are kept."""
 
-_REPAIRS = 50
-"""Maximum number of shortcuts and lines that are replaced because they cannot be certified."""
+_DETOURS = 5
+"""Maximum number of lines of a path that are replaced by detours because they cannot be certified."""
 
 TOPP_RA = ("toppra", "toppratrajectoryretimer")
 
@@ -219,17 +219,18 @@ class Processor:
         def detour(part: Floats) -> Floats | None:
             return certified_detour(edges, certifier.proves, part, self.random)
 
-        for _ in range(_REPAIRS):
+        detours = 0
+        while True:
             certificate = certifier.certificate(motion_curves(motion.segments), whole=False)
             if not certificate.undecided:
                 return certificate
             time = (certificate.undecided[0].start + certificate.undecided[0].end) / 2
             if motion.remove_shortcut(time):
                 continue
-            if not motion.replace_line(time, edges.space, self.limits, detour):
-                break
+            if detours == _DETOURS or not motion.replace_line(time, edges.space, self.limits, detour):
+                return None
+            detours += 1
             motion.shorten(edges, self.limits, tries, self.random, self.proceed)
-        return None
 
     def _written(self, profile: Interpolated, timed: Timed, *, marks: bool = False) -> Waypoints:
         """Convert a timed path to waypoints; ``marks`` adds a group ``iswaypoint``."""
