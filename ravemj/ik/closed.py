@@ -28,7 +28,10 @@ _SAME = 1e-5
 _STEPS = 12
 """Maximum number of Newton steps."""
 _SETTLED, _SLOWEST = 3, 0.5
-"""Number of steps after which each must reduce the error by a factor; Newton reaches 0.25 at double roots."""
+"""Number of Newton steps before convergence is checked, and the maximum error ratio of a later step.
+
+At double roots, Newton's method reaches a ratio of 0.25.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +86,7 @@ class ClosedForm:
         chain: The true arm.
         task: The constrained components of the pose.
         family: The family.
-        near: Maximum error of the family's solutions that are refined.
+        near: Maximum error up to which a solution of the family is refined.
     """
 
     def __init__(self, chain: Chain, task: Task, family: Family, *, snapped: bool) -> None:

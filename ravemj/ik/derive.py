@@ -77,7 +77,7 @@ def derive(
     Args:
         chain: The arm.
         task: The constrained components of the tool pose.
-        locked: Joints whose values will be given; the other joints are at most as many as the task constrains.
+        locked: Joints whose values will be given; at most ``task.dof`` joints remain.
         general: Whether to try the eigenvalue problem of general arms, instead of the special families.
 
     Returns:

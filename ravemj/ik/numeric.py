@@ -119,7 +119,7 @@ class NumericSolver:
         return ahead
 
     def start(self, number: int) -> Floats:
-        """Return start number ``number``, shape (n,), from a low-discrepancy sequence."""
+        """Return start configuration ``number`` of a low-discrepancy sequence, shape (n,)."""
         return self._low + (self._high - self._low) * _evenly(self.chain.dof, number)
 
     def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:

@@ -121,7 +121,7 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
-    """Return those of configurations (K, n) in which two joints rotate about one line.
+    """Return the configurations among ``rows`` (K, n) in which two joints rotate about one line.
 
     Each item is the configuration, the two joints, and 1 or -1 for equal or opposite directions.
     """

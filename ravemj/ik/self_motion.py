@@ -44,9 +44,9 @@ def null_space_path(
     step: float = 0.05,
     length: float = 2 * np.pi,
 ) -> Floats:
-    """Return configurations along a path through the null space that keeps a goal.
+    """Return configurations along a self-motion of the arm, during which the tool keeps its goal.
 
-    It ends at a limit, when it returns to its start, or after ``length``.
+    The path ends at a limit, when it returns to its start, or after ``length``.
 
     Args:
         solver: The solver of the arm.

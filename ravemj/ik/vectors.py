@@ -115,7 +115,7 @@ class Screw:
 
     @cached_property
     def shared(self) -> bool:
-        """Whether it is the same for all poses."""
+        """Whether axis and point are the same for all poses."""
         return self.axis.size == 3 and self.point.size == 3
 
     @cached_property

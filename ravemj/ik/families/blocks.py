@@ -30,7 +30,7 @@ class Wrist:
 
     Attributes:
         centre: The point, shape (3, 1, 1).
-        side: A direction perpendicular to the last axis, shape (3, 1, 1), whose required image gives the last joint.
+        side: A direction perpendicular to the last axis, shape (3, 1, 1); its required image determines the last joint.
         phase: Cosine and sine of the middle joint at the smallest angle between the outer axes.
         gaps: 1 - cos of the smallest angle between the outer axes, and 1 + cos of the largest.
     """
@@ -89,7 +89,7 @@ class Planar:
     """
 
     def __init__(self, screws: Sequence[Screw]) -> None:
-        """Prepare the solution.
+        """Detect which joints are prismatic, and prepare the solution.
 
         Raises:
             NoFamilyError: the joints cannot move the plane freely.

@@ -208,9 +208,11 @@ def _nearest(first: Screw, other: Screw) -> Floats:
 
 
 def _crossing(screws: Screws) -> tuple[int | None, str]:
-    """Choose directions perpendicular to a prismatic middle joint along which another joint has no effect.
+    """Find a direction along which neither the prismatic middle joint nor the first or third joint moves points.
 
-    A revolute joint does not move points along its own axis; a prismatic one moves them only along it.
+    Returns:
+        The index of the first or third joint, 0 or 2, and ``along`` (the direction of its axis) or ``across``
+        (perpendicular to both axes); None and an empty string if there is no such direction.
     """
     middle = screws[1]
     for index in (0, 2):

@@ -56,7 +56,7 @@ class Arm:
         return list(range(free[0], free[-1] + 1))
 
     def free(self, places: Sequence[int]) -> list[int]:
-        """Return those positions whose joints are not locked."""
+        """Return the positions in ``places`` whose joints are not locked."""
         return [place for place in places if place not in self.locked]
 
 

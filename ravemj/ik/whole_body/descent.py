@@ -32,7 +32,7 @@ _NEWTON = 1e-5
 _TURNS = 3
 """Maximum number of multiplier updates, and of Newton steps on contacts."""
 _EXACTLY = 1e-6
-"""Part of a contact error that a displacement may leave, beside the damping of dependent rows."""
+"""Fraction of a contact error that a displacement may leave, beside the damping of dependent rows."""
 _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
@@ -158,7 +158,7 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Correct the drift of all levels but the last, which is damped so strongly that it does not move."""
+        """Correct the drift of all levels but the last; strong damping keeps the last level from moving."""
         for _ in range(_TURNS):
             saved = self._mechanism.saved()
             moved = self._advance(state, _MOST_DAMPING, self.limits.reachable(self._mechanism.values(), longest))

@@ -87,7 +87,7 @@ _Room = tuple[Floats, Floats, Floats]
 
 
 def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, basis: Floats) -> _Room:
-    """Return constraints of the coordinates: a matrix and bounds of its product, which 0 always satisfies."""
+    """Return the constraints of coordinates z: a matrix and bounds of its product with z. z = 0 satisfies them."""
     below = np.concatenate([np.minimum(lower - x, 0.0), np.minimum(least - rows @ x, 0.0)])
     above = np.concatenate([np.maximum(upper - x, 0.0), np.full(len(least), 1e30)])
     matrix = np.vstack([basis, rows @ basis])
