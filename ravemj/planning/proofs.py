@@ -155,7 +155,14 @@ class Spaces(Protocol):
         ...
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> PairTests:
-        """Test if pairs ``asked``, (m, pairs), may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``."""
+        """Test whether pairs in the mask ``asked`` may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``.
+
+        Args:
+            middles: Configurations, shape (m, n).
+            spreads: Maximum differences from the configurations, shape (m, n).
+            asked: Mask of pairs to test for each configuration, shape (m, pair_count).
+            apart: Distance [m].
+        """
         ...
 
 
@@ -203,7 +210,7 @@ def is_proved(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = 
 
 
 def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = (), *, whole: bool = True) -> Proof:
-    """Prove what can be proven of a motion; ``exempt`` are the spans on which pairs are ignored.
+    """Prove as much of a motion as possible; pairs are ignored on their spans in ``exempt``.
 
     Unless ``whole``, the first undecided span ends the proof.
     """

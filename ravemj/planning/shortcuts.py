@@ -149,7 +149,7 @@ def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) ->
 
 
 class _Place(NamedTuple):
-    """Place on a motion, as a time [s] in a line or shortcut."""
+    """Position on a motion: a time [s] in a line or shortcut."""
 
     source: int
     time: float
@@ -205,7 +205,7 @@ class ShortenedMotion:
                 self._insert(shortcut)
 
     def remove_shortcut(self, time: float) -> bool:
-        """Remove the shortcut at a time [s], and those that start or end on it; return whether one is there."""
+        """Remove the shortcut at a time [s], and those that start or end on it; return whether there was one."""
         source = self._at(time, self._ends())[0].source
         if source < len(self._straight):
             return False
@@ -218,14 +218,14 @@ class ShortenedMotion:
         return np.cumsum([piece.duration for piece in self.segments])
 
     def _at(self, time: float, ends: Floats) -> tuple[_Place, tuple[Floats, Floats]]:
-        """Return the place, and values and velocities, at a time; ``ends`` are the end times of the segments."""
+        """Return the place, values and velocities at a time; ``ends`` are the end times of the segments."""
         number = min(int(np.searchsorted(ends, time)), len(ends) - 1)
         piece = self.segments[number]
         after = time - (float(ends[number]) - piece.duration)
         return _Place(piece.source, piece.begins + after), piece.after(after)
 
     def _insert(self, shortcut: _Shortcut) -> bool:
-        """Replace the motion between two places by a shortcut; return whether both places are there."""
+        """Replace the motion between two places by a shortcut; return False if a place is no longer on the motion."""
         first, second = self._find(shortcut.start), self._find(shortcut.end)
         if first is None or second is None or first > second:
             return False

@@ -86,7 +86,7 @@ class Space:
         return float(np.linalg.norm(self.weights * self.difference(start, other)))
 
     def clamp(self, configuration: Floats) -> Floats:
-        """Return a configuration with each value inside its limits; circular angles have none."""
+        """Return a configuration with each value clamped to its limits, except circular angles."""
         limited = np.minimum(np.maximum(configuration, self.lower), self.upper)
         return np.where(self.coordinates.circular, configuration, limited)
 
