@@ -86,7 +86,7 @@ class NumericSolver:
         return Nearest(at, float(np.sqrt(best)), step + 1)
 
     def shortfall(self, pose: Floats, values: Floats) -> tuple[float, float]:
-        """Return distance [m] and angle [rad] of the tool at joint values (n,) to a pose, as far as constrained."""
+        """Return distance [m] and angle [rad] of the tool at ``values`` to a pose; free components are ignored."""
         error, _ = self._residual(pose, values, _PLAIN)
         turning = np.array(component_rows(self.task)) > 2
         distance, turn = float(np.linalg.norm(error[~turning])), float(np.linalg.norm(error[turning]))

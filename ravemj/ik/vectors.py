@@ -145,7 +145,7 @@ class Screw:
         return along + value[0] * across - value[1] * later
 
     def split(self, vectors: Floats) -> Floats:
-        """Return components of vectors along the axis, across it, and the latter after a quarter turn, (3, 3, B, N)."""
+        """Return components of vectors along and across the axis, and the latter turned by 90°, (3, 3, B, N)."""
         parts = apply_matrix(self.parts, vectors)
         return parts.reshape(3, 3, *parts.shape[1:])
 

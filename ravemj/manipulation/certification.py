@@ -52,7 +52,7 @@ class Certifier:
             self._spaces.put_back()
 
     def certificate(self, curves: Sequence[Curve], *, whole: bool = True) -> Certificate:
-        """Return the certificate of a motion; unless ``whole``, the first undecided span is the only one."""
+        """Return the certificate of a motion; unless ``whole``, the proof ends at the first undecided span."""
         try:
             exempt = exempt_spans(self._spaces, curves, self._touching)
             proof = prove(self._spaces, curves, exempt, whole=whole)
@@ -128,7 +128,10 @@ class BodySpaces:
         self._clearances = Clearances(model, world.model.data, world.shapes, self.pairs, chains, ids)
 
     def test(self, middles: Floats, spreads: Floats, asked: Bools, apart: float = 0.0) -> Tested:
-        """Test if pairs ``asked``, (m, pairs), may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``."""
+        """Test whether pairs in the mask ``asked`` may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``.
+
+        See ``planning.proofs.Spaces.test``.
+        """
         place = self._bodies.placement()
         for slot, values in enumerate(middles):
             place(values)

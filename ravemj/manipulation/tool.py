@@ -115,7 +115,7 @@ class MovedTool:
 
     @classmethod
     def for_arm(cls, bodies: Bodies, arm: Manipulator, *, gripper: bool = False) -> "MovedTool":
-        """Return the tool of the single moving body.
+        """Return the tool of the only body that moves.
 
         Args:
             bodies: The body.

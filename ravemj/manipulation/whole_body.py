@@ -27,7 +27,7 @@ class Keeper(NamedTuple):
     """Minimum-distance constraint of geom pairs.
 
     Attributes:
-        pairs: Returns the world and the pairs.
+        pairs: Returns the collision world and the geom pairs.
         least: Minimum distance [m].
         seen: Distance below which pairs are considered [m].
     """
@@ -142,7 +142,7 @@ class Moving:
         return com * mass / total + shares @ points, jacobian * mass / total + np.tensordot(shares, moved, 1)
 
     def _of_robot(self) -> tuple[Floats, Floats]:
-        """Return the centre of mass of the robot without grabbed bodies, and its Jacobian, computed by themselves."""
+        """Return the centre of mass of the robot without grabbed bodies, and its Jacobian."""
         jacobian = self._dynamics.com_jacobian()
         com = self._kinematics.data.subtree_com[0].copy()
         if self._all_dofs is not None:
