@@ -111,7 +111,7 @@ class Clock:
             thread.join()
 
     def lose_thread(self) -> None:
-        """If the calling thread is the clock's, note that it ends; ``wake`` then starts another one."""
+        """Record that the clock's thread ends, if this is the calling thread; ``wake`` then starts another one."""
         with self._starting:
             if self._thread is threading.current_thread():
                 self._thread = None

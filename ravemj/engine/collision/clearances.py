@@ -259,7 +259,7 @@ class Clearances:
 
 
 def _middles(is_open: Bools) -> tuple[Ints, Ints]:
-    """Return for each pair with undecided configurations the middle one of its undecided ones, and the pair."""
+    """Return the undecided configuration in the middle of each pair's undecided ones, and the index of the pair."""
     counts = np.cumsum(is_open, axis=0)
     pairs = np.flatnonzero(counts[-1])
     rows = (counts[:, pairs] > counts[-1, pairs] // 2).argmax(axis=0)

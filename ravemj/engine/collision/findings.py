@@ -39,7 +39,7 @@ class Collision(NamedTuple):
 
 
 Counts = Callable[[Collision], bool]
-"""Function that decides whether a collision counts."""
+"""Function that decides whether a collision is reported."""
 
 
 class Wanted(NamedTuple):

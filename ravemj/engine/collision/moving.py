@@ -47,7 +47,7 @@ class HeldRoots:
 
     @block
     def on_carriers(self) -> Generator[None]:
-        """Context manager that attaches them to the grabbing links; the caller restores their poses afterwards."""
+        """Context manager that attaches the roots to the grabbing links; the caller restores their poses afterwards."""
         with restoring(self._detach):
             self._attach()
             yield
@@ -123,7 +123,7 @@ class Among(NamedTuple):
 
     @property
     def kinds(self) -> tuple[_Kind, ...]:
-        """Return the queries."""
+        """Return the selected kinds of queries."""
         return tuple(kind for kind, counts in zip(_KINDS, (self.others, self.itself), strict=True) if counts)
 
 
@@ -192,7 +192,7 @@ class _Chosen(NamedTuple):
 
     @classmethod
     def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
-        """Select the pairs, for a world in which bodies only move."""
+        """Return the cached selection of pairs, which is valid as long as bodies only move."""
         moved = MovedBy(tuple(dofs))
         return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
 

@@ -73,7 +73,7 @@ class TriangleTests:
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
 
     def _near_solid(self, mesh: int, solid: int, box: tuple[Floats, Floats], touching: float) -> Iterator[_Candidate]:
-        """Yield the triangles that may be within ``touching`` of a solid [m]: by FCL, few more than touch its box."""
+        """Yield the triangles that may be within ``touching`` [m] of a solid: FCL finds those near its bounding box."""
         if touching > _SLACK / 2:
             yield from self._triangles_of(mesh).near(*box, touching)
             return
@@ -143,9 +143,9 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return ``distance`` of the nearest candidate; they come in the order of lower bounds.
+        """Return ``distance`` of the nearest candidate; candidates are sorted by their lower bounds.
 
-        Triangles are measured against the geom ``place`` of the scratch model, until one is as near as ``enough`` [m].
+        Triangles are measured against the geom ``place`` of the scratch model, until one is within ``enough`` [m].
         """
         best, nearest = limit, np.zeros(6)
         for bound, triangle, other in candidates:

@@ -336,7 +336,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write DOF accelerations and additional accelerations of roots, (6,), to velocity-dependent ones."""
+        """Write the sum of DOF, velocity-dependent and additional root accelerations (6,) into ``qacc``."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0

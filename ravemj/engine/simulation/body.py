@@ -37,7 +37,7 @@ class GrabbedBody(NamedTuple):
 
 
 class SavedConfiguration(NamedTuple):
-    """State of joints and links."""
+    """Saved state of joints and links of a body."""
 
     configuration: Configuration  # of MuJoCo's model
     scene: KinBody  # what the model was made of, for a body that has other joints by then
