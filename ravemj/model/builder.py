@@ -212,9 +212,10 @@ class BodyBuilder:
         return replace(body, manipulators=manipulators) if manipulators else body
 
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
-        """Return the manipulators, incomplete from the first one with a joint that does not move its effector.
+        """Return the manipulators with links, joints and DOFs resolved.
 
-        That one has no gripper, and those after it have neither links nor gripper, as in OpenRAVE.
+        If a joint of one does not move its effector, this manipulator has no gripper, and the later ones have neither
+        links nor gripper, as in OpenRAVE.
         """
         frozen: list[scene.Manipulator] = []
         names: set[str] = set()

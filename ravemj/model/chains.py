@@ -143,7 +143,7 @@ def dofs_moving(body: KinBody, link: int) -> frozenset[int]:
 
 
 def dependency_order(body: KinBody) -> list[int]:
-    """Return the active joints, each after those that move its links; others are in the order from the root."""
+    """Return the active joints in the order from the root, so that each follows the joints that move its links."""
 
     def depth(index: int) -> tuple[int, int, int]:
         joint = body.joints[index]

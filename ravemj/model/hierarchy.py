@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ravemj.core.graphs import depth_first, topological_order
 
 _UNREACHED = -1
-"""Depth of a link that no path connects to link 0, with which OpenRAVE compares it with others."""
+"""Depth that OpenRAVE uses for a link without path to link 0, when comparing links."""
 
 
 _HIGHEST = (sys.maxsize, sys.maxsize)
@@ -141,8 +141,8 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
 def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
     """Return for each link the neighbours that a path from link 0 reaches without passing the link.
 
-    In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. A path always reaches
-    ancestors so, and descendants if the link is not an articulation point of their branch.
+    In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. The ancestors always
+    have such a path; the descendants have one unless the link is an articulation point that separates them from link 0.
     """
     number, above, highest = depth_first(neighbours, 0)
     branches: list[list[int]] = [[] for _ in neighbours]
@@ -173,7 +173,7 @@ def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Se
 def _hangs_on(
     link: int, other: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]], carriers: set[int]
 ) -> bool:
-    """Return whether a link is another link or its descendant; ``carriers`` are the links that have children."""
+    """Return whether ``link`` is ``other`` or its descendant; ``carriers`` are the links that have children."""
     while link != other and other in carriers and link in placed_by:
         link = ends[placed_by[link]][0]
     return link == other
