@@ -31,12 +31,12 @@ class FileAccess:
 
     @classmethod
     def opened(cls, path: str) -> "FileAccess":
-        """Return the access of a model that its user opens; a text counts as a file in the working folder."""
+        """Return the access for a model that its user opens; a text is treated as a file in the working folder."""
         return cls((os.path.dirname(path), *data_folders()), is_dropped=False)
 
     @classmethod
     def dropped(cls, path: str, others: Iterable[str] = ()) -> "FileAccess":
-        """Return the access of a model that was dropped on a viewer, together with other files."""
+        """Return the access for a model that was dropped on a viewer, together with other files."""
         return cls((os.path.dirname(path), path, *others), is_dropped=True)
 
     def permits(self, path: str) -> bool:
@@ -115,6 +115,6 @@ class FileAccess:
 
 
 def is_inside(path: str, place: str) -> bool:
-    """Return whether an absolute path is a place or below it; paths are compared as written."""
+    """Return whether an absolute path is ``place`` or below it; symbolic links are not resolved."""
     path, place = os.path.normcase(path), os.path.normcase(place)
     return path == place or path.startswith(os.path.join(place, ""))

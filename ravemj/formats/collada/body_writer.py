@@ -231,7 +231,10 @@ class BodyWriter:
 
 
 def _joint_names(body: KinBody) -> dict[int, str]:
-    """Return unique joint names by index, also after readers normalize them; names that they change come last."""
+    """Return joint names by index, unique also after readers normalize them.
+
+    Names that normalization does not change have priority.
+    """
     names, used = [joint.name for joint in body.all_joints], Names(())
     order = sorted(range(len(names)), key=lambda index: not names[index] or valid_name(names[index]) != names[index])
     return {index: used.give(valid_name(names[index]) or f"joint{index}") for index in order}

@@ -205,7 +205,7 @@ class Context:
         self.diagnostics.warn("missing-file", message, source, hint)
 
     def with_parameter(self, before: Parameters, element: Element) -> Parameters:
-        """Return ``before`` with that of a ``<parameter>``; a malformed one is skipped, with a warning."""
+        """Return ``before`` with the value of a ``<parameter>`` added; a malformed one is skipped, with a warning."""
         self.check_attributes(element, PARAMETER_ATTRIBUTES, {})
         try:
             return with_parameter(
@@ -273,7 +273,7 @@ PLACEMENT_TAGS: dict[str, Tag[Placed]] = {
 
 
 def _found_above(name: str, folder: str, access: FileAccess) -> str | None:
-    """Return the path of a file in the folder above ``folder`` that contains it; None if several do.
+    """Return the path of a file in a folder above ``folder``; None if no folder or several folders contain it.
 
     The search ends at the root of a repository, or after ``_MOST_ABOVE`` folders.
     """
