@@ -50,7 +50,7 @@ class ApiObject(metaclass=_ApiType):
 
 
 def published(thing: Thing, module: str) -> Thing:
-    """Return a function or class of a module for users: its errors name arguments, its signature is as written."""
+    """Prepare a public function or class: errors name wrong arguments, signatures are shown as in the source."""
     if isinstance(thing, FunctionType):
         thing = cast("Thing", explained(thing))
         thing.__module__ = module  # where pickle finds it

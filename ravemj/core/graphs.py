@@ -127,7 +127,7 @@ class ShortestPaths:
         return nearer[0]
 
     def _largest_inner(self, start: int, end: int, distance: dict[int, int]) -> int:
-        """Return the minimum, over the shortest paths between two nodes, of the largest inner node."""
+        """Return the largest inner node of a shortest path, minimized over all shortest paths between two nodes."""
         layers = [{start}]
         while end not in layers[-1]:
             layers.append({near for node in layers[-1] for near in self._nearer(node, distance)})
