@@ -36,9 +36,9 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 49)
 
 
 def driving_dof(body: KinBody, link: int) -> int | None:
-    """Return the first DOF of the joint that moves a link: its parent joint, or above welds the next moving one.
+    """Return the first DOF of the joint that moves a link: its parent joint or, above welds, the next moving joint.
 
-    For a mimic joint it is the first DOF that it follows. None if no joint moves the link.
+    For a mimic joint, it is the first DOF that the joint follows. None if no joint moves the link.
     """
     joints = body.all_joints
     for index in joints_above(body, link):

@@ -32,7 +32,7 @@ _FIGURES = "SetFiguresInCamera"
 _LARGEST_TEXT = 200  # points that letters are high; larger ones would fill the window
 
 LOCKED, PATIENCE = "Locked by the script", 1.0
-"""Text in a window or page, shown after a script has held the environment's lock for this time [s]."""
+"""Message shown while a script holds the environment's lock, and the time until it appears [s]."""
 
 
 class Viewer(Interactive):
