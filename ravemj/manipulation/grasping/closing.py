@@ -304,7 +304,11 @@ class _ClosingSimulation:
         return None
 
     def _fly(self, target: Target) -> Reason | None:
-        """Place the hand, back it out of the target, fly to the contact, and move back by the standoff."""
+        """Place the hand outside of the target, fly to the contact, and retreat by the standoff.
+
+        Returns:
+            The reason of a failure, or None.
+        """
         hand, T_target_tool = self._hand, tool_start(self._approach)
         start = target.T_world_target @ T_target_tool @ inverse(hand.T_base_tool)
         along = target.T_world_target[:3, :3] @ _unit(self._approach.direction)
