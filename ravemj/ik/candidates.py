@@ -48,7 +48,7 @@ def nearest_first(
 
 
 def ranked(solver: ArmSolutions, goal: Floats, start: Floats) -> list[tuple[Floats, str]]:
-    """Return all solutions and their branch names, those nearest to a configuration first.
+    """Return all solutions and their branch names, those nearest to ``start`` first.
 
     They include solutions outside the limits; angles are shifted by whole turns into their limits if possible. If no
     sample of the free joints gives a solution within the limits, solutions between the samples are added.

@@ -123,7 +123,7 @@ class ClosedForm:
         return names
 
     def solve(self, poses: Floats, locked: Floats | None = None, *, limits: bool = False) -> Solutions:
-        """Return all solutions; with ``limits``, some outside of the limits may be omitted.
+        """Return all solutions; with ``limits``, solutions outside of the limits may be missing.
 
         Args:
             poses: Poses of the tool in the base, shape (N, 4, 4).
@@ -219,7 +219,7 @@ class ClosedForm:
         return self._error(tool, poses[:, :3].transpose(2, 1, 0))
 
     def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> None:
-        """Refine solutions with Newton's method, and mark those that reach their pose as valid."""
+        """Refine doubtful solutions with Newton's method, and mark as valid those that reach their goal."""
         branch, pose = np.nonzero(doubtful)
         start = values[:, branch, pose].T
         refined, error = self.refine(start, goal[:, :, pose])

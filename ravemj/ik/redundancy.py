@@ -138,7 +138,7 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 
 
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
-    """Return other configurations (K, n) with the tool pose of a singular one, an item of ``singular_rows``.
+    """Return other configurations (K, n) with the same tool pose as a singular one, an item of ``singular_rows``.
 
     One result has the value of the first of the two joints in ``seed``, another that of the second.
     """

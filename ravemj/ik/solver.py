@@ -204,7 +204,7 @@ class ArmSolutions:
             yield np.vstack([row, others[self.chain.differences(others, row) > DISTINCT]])
 
     def spread(self, rows: Floats, at: Floats | None = None) -> Floats:
-        """Add equivalent configurations to solutions in which two joints rotate about one line."""
+        """Return solutions, with equivalent ones added if two joints of a solution rotate about one line."""
         if self.task is not Task.TRANSFORM or not len(rows):
             return rows
         extra = [redundancy.spread(self.chain, row, at) for row in redundancy.singular_rows(self.chain, rows)]

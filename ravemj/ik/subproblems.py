@@ -29,7 +29,7 @@ def normalized(turn: Floats, least: float = TINY) -> Floats:
 
 
 def turn_between(joint: Screw, start: Floats, end: Floats) -> Floats:
-    """Return the turns (2, B, N) of a joint that carry a direction (3, B, N) nearest to another (subproblem 1).
+    """Return the turns (2, B, N) of a joint that carry ``start`` (3, B, N) nearest to ``end`` (subproblem 1).
 
     Directions are relative to the joint's point. If one is along the axis, the result is the turn by 0.
     """

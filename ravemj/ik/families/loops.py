@@ -82,7 +82,7 @@ class Family(Protocol):
     shared: bool
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
+        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
         ...
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
@@ -213,7 +213,7 @@ class BlockFamily:
         return points, (Plane(normals[0], points[0]), Plane(normals[1], points[1]))
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
+        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
         around = [(self.circle.places[joint], count) for joint, count in self.carry.names]
         return around + [(self.circle.block[joint], count) for joint, count in self.inside.names]
 
@@ -267,7 +267,7 @@ class PointFamily:
         return screws, _moved(seen, self.tool)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
+        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
         return [(self.order[joint], count) for joint, count in self.carry.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

@@ -20,7 +20,7 @@ Motion = tuple[Vector, Vector, Vector, Vector]
 
 
 class OnePose:
-    """Solver of one pose, with the order of the family's joints and branches. ``for_family`` makes it."""
+    """Solver of a single pose; joints and branches are in the family's order. ``for_family`` makes it."""
 
     def __init__(self, family: BlockFamily, wrist: Wrist, carry: CarryPoint, alone: tuple[int, int]) -> None:
         places, block = family.circle.places, family.circle.block
@@ -201,7 +201,7 @@ def _about(line: tuple[Vector, Vector], cosine: float, sine: float, point: Vecto
 
 
 def _between(axis: Vector, start: Vector, end: Vector) -> Turn:
-    """Return the turn about an axis that carries a direction nearest to another (``subproblems.turn_between``)."""
+    """Return the turn about an axis that carries ``start`` nearest to ``end`` (``subproblems.turn_between``)."""
     hx, hy, hz = axis
     height = _dot(axis, start)
     x, y, z = start[0] - height * hx, start[1] - height * hy, start[2] - height * hz

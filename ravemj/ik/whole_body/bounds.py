@@ -10,7 +10,7 @@ from ravemj.ik.vectors import Floats
 
 @dataclass(frozen=True, eq=False)
 class MotionLimits:
-    """Limits of the variables; infinite for unlimited ones.
+    """Limits of the variables; infinite if a variable is unlimited.
 
     Attributes:
         lower: Lower limits of the values [rad or m], shape (n,).

@@ -264,7 +264,7 @@ def _length(error: Floats) -> float:
 
 
 def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> Floats:
-    """Return a short displacement that removes an error; if none is found in the box, the best one inside.
+    """Return a short displacement that removes an error; if none is found, the best displacement in the box.
 
     Variables that leave the box are fixed at their bounds, and the others remove the rest.
     """
