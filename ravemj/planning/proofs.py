@@ -86,7 +86,7 @@ def _from_powers(number: int) -> Floats:
 
 
 def _weights(number: int, start: float, end: float) -> Floats:
-    """Return the matrix from the control points of a curve to those of its part from ``start`` to ``end`` (blossom)."""
+    """Return the matrix from the control points of a curve to those of its part ``start`` to ``end`` (blossom)."""
     matrix = np.zeros((number, number))
     for row in range(number):
         polynomial = np.ones(1)
@@ -248,7 +248,7 @@ def exempt_spans(spaces: Spaces, curves: Sequence[Curve], touching: Ints) -> lis
 
 
 def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> Floats:
-    """Return the distances of some pairs [m], shape (configurations, pairs); large ones may be underestimated."""
+    """Return the distances of ``pairs`` [m], shape (configurations, pairs); large distances may be underestimated."""
     table = np.zeros((len(configurations), len(pairs)))
     for first in range(0, len(configurations), spaces.most):
         some = np.array(configurations[first : first + spaces.most])

@@ -63,7 +63,7 @@ def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
 
 
 def _without_detours(edges: Edges, path: Floats) -> Floats:
-    """Return the path in which each waypoint is connected to the last one that a straight line reaches.
+    """Return the path without detours: each waypoint is followed by the last one that a straight line reaches.
 
     If there are many waypoints, ``_MOST_ENDS`` of them are tried.
     """
@@ -156,7 +156,7 @@ class _Place(NamedTuple):
 
 
 class _Shortcut(NamedTuple):
-    """Shortcut between two places of a motion, and its segments, which have one source."""
+    """Shortcut between two places of a motion, and its segments, which have the same source number."""
 
     start: _Place
     end: _Place
