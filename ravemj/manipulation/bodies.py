@@ -100,7 +100,7 @@ class Bodies:
         self._free: set[BodyState] = set()  # bodies whose joints do not move, and which need no self-collision checks
 
     def numbers(self, name: str) -> Floats:
-        """Return the field ``name`` of ``scene.Axis`` for each joint value, (n,); 0 or no limit for other values."""
+        """Return a field of ``scene.Axis`` for each joint value, (n,); 0 or no limit for other values."""
         result = np.zeros(self.dof)
         for part in self.parts:
             axes = part.body.scene.dof_axes

@@ -96,7 +96,7 @@ def _jittered_on(
 def free_configuration(
     conditions: Conditions, space: Space, here: Floats, tries: int, farthest: float
 ) -> Floats | None:
-    """Return a configuration if it is allowed, else an allowed one within ``farthest`` [rad or m], or None."""
+    """Return ``here`` if it is allowed, else an allowed configuration within ``farthest`` [rad or m], or None."""
     with conditions.kept():
         return nearby(space, here, conditions.allowed(), tries, farthest, np.random.default_rng(0))
 

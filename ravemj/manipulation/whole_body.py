@@ -156,7 +156,7 @@ class Moving:
     def limits(
         self, *, values: bool, velocities: bool, accelerations: bool, base_velocity: float | None
     ) -> MotionLimits:
-        """Return the limits of the variables: selected ones of the joints, and ``base_velocity`` of the twist."""
+        """Return the limits of the variables: the selected joint limits, and ``base_velocity`` for the twist."""
         base, all_axes = self._base.shape[1], self.body.scene.dof_axes
         axes: list[Axis] = [all_axes[dof] for dof in self.dofs.tolist()]
         free = np.full(len(axes), np.inf)
@@ -241,7 +241,7 @@ class Moving:
         return near
 
     def _distances(self, keeper: Keeper) -> Inequality | None:
-        """Return constraints that keep near pairs at the minimum distance, and separate closer ones; None for none."""
+        """Return constraints that keep near pairs apart by the minimum distance; None if no pair is near."""
         near = self._near(keeper)
         if not near:
             return None
