@@ -65,7 +65,7 @@ def check(translation: Translation) -> Iterator[Point]:
 
 
 def summary(translation: Translation) -> str:
-    """Summarize in one line how well servos hold the start pose, and which pairs were excluded; may be empty."""
+    """Return one line on how well servos hold the start pose, and which pairs were excluded; may be empty."""
     parts: list[str] = []
     if translation.choices.actuators == "position" and translation.model.nu:
         parts.append(_standing(translation).value if _is_free(translation) else _holding(translation).value)
@@ -115,7 +115,7 @@ def _numbers(translation: Translation) -> Point:
 
 
 def _shapes(translation: Translation) -> Point:
-    """Compare the bounding box of each link's shapes with that of its geoms in the model."""
+    """Compare the bounding boxes of each link's shapes and of its geoms in the model."""
     model, point = translation.model, Point("shapes", f"{translation.model.ngeom} geoms")
     if translation.choices.merge_fixed:
         point.notes.append("fixed links are merged: their shapes are not compared")

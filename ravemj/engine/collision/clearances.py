@@ -37,7 +37,7 @@ _ONES = np.ones(3)  # a product with it is the fastest way to sum rows
 
 
 class Chain(NamedTuple):
-    """Joints that move a shape, by index, from the nearest one to the one at the world."""
+    """Indices of the joints that move a shape, ordered from the shape to the world."""
 
     joints: tuple[int, ...]
 
@@ -176,7 +176,7 @@ class Clearances:
         return Tested(pairs, is_open | is_hopeless, travel, gaps, known.measured)
 
     def put_back(self) -> None:
-        """Restore the geom poses to those of the model's joints."""
+        """Reset the geom poses to those given by the joint values."""
         mujoco.mj_kinematics(self._model, self._data)
 
     def _travel(self, changes: Floats, pairs: Ints) -> Floats:
@@ -259,7 +259,7 @@ class Clearances:
 
 
 def _middles(is_open: Bools) -> tuple[Ints, Ints]:
-    """Return the undecided configuration in the middle of each pair's undecided ones, and the index of the pair."""
+    """Return the middle undecided configuration of each pair that has any, and the index of the pair."""
     counts = np.cumsum(is_open, axis=0)
     pairs = np.flatnonzero(counts[-1])
     rows = (counts[:, pairs] > counts[-1, pairs] // 2).argmax(axis=0)

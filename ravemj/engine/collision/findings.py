@@ -28,7 +28,7 @@ class GeometryOf(NamedTuple):
 
 
 class Collision(NamedTuple):
-    """Colliding pair of geometries, or the first one of two links.
+    """Colliding pair of geometries, or the first colliding pair of two links.
 
     ``contacts`` are the contact points of all geometry pairs, if requested.
     """

@@ -90,7 +90,7 @@ _MANY = 50
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
-    """Return a fast test of values of some joints, or None if links are displaced from their joints.
+    """Return a fast collision test of joint values, or None if links are displaced from their joints.
 
     It tests the moved links and grabbed bodies. While it is used, the world must not change otherwise, and the caller
     holds the lock. The test moves the world's model, and possibly the body's joints: ``body.restore`` restores both.
@@ -102,7 +102,7 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
 
 
 def moved_world(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None] | None:
-    """Return a function that moves some joints and grabbed bodies in the world's model; see ``moving_test``."""
+    """Return a function that moves the joints ``dofs`` and grabbed bodies in the world's model; see ``moving_test``."""
     world = body.simulation.collisions()
     return None if body.kinematics.displaced else _Mover(world, body, dofs)
 

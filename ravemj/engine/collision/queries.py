@@ -89,7 +89,7 @@ def each_other(
 
 
 def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> Pairs:
-    """Return the self-collision pairs of a body and its grabbed bodies, optionally of some links or pairs only."""
+    """Return the self-collision pairs of a body and its grabbed bodies, optionally only of links or link pairs."""
 
     def find() -> tuple[Ints, Ints]:
         wanted = moved_apart(body.scene, asked.dofs) if isinstance(asked, MovedBy) else asked

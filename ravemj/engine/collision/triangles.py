@@ -17,7 +17,7 @@ from ravemj.formats.meshes import area, volume
 from ravemj.model.scene import Mesh
 
 NOT_FILLED = 1e-3
-"""Maximum relative difference of area and volume from those of the convex hull with which a mesh counts as convex."""
+"""Maximum relative difference of area and volume between a mesh that counts as convex and its convex hull."""
 
 _XML = """<mujoco><asset>
 <mesh name="a" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/><mesh name="b" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>

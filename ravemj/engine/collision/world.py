@@ -71,7 +71,7 @@ class CollisionWorld:
         return self.kept(("group", body), lambda: body.simulation.attached(body))
 
     def geoms_of_body(self, body: BodyState, *, enabled_only: bool = True) -> Ints:
-        """Return the collision geoms of a body, optionally with those of disabled links."""
+        """Return the collision geoms of a body, optionally including disabled links."""
         number = self._number.get(body, -2)
         among = self._collides if enabled_only else self._is_solid
         return np.flatnonzero(among & (self._owner == number))
@@ -95,7 +95,7 @@ class CollisionWorld:
         return self.bodies[int(self._owner[geom])], int(self._link[geom])
 
     def geometry(self, geom: int) -> tuple[BodyState, int, int]:
-        """Return the body, the index of the link and that of the geometry that a geom belongs to."""
+        """Return the body, the link index and the geometry index of a geom."""
         known = self._geometries.get(geom)
         if known is None:
             body, link = self.owner(geom)

@@ -37,7 +37,7 @@ class Coupling:
     second: list[tuple[int, int, int, Floats]]  # of P's derivative: coordinate, DOF that changes, DOF of column, value
 
     def forward(self, rates: Floats) -> Floats:
-        """Multiply DOF velocities, shape (dof, ...), by P; return those of the coordinates, (coordinates, ...)."""
+        """Return the coordinate velocities, shape (coordinates, ...), of DOF velocities (dof, ...): P times these."""
         moved = np.zeros((self.count, *rates.shape[1:]))
         moved[self.coordinates] = rates[self.dofs]
         for coordinate, dof, value in self.first:
@@ -45,7 +45,7 @@ class Coupling:
         return moved
 
     def backward(self, forces: Floats) -> Floats:
-        """Multiply forces on coordinates, shape (coordinates, ...), by P^T; return those on DOFs, (dof, ...)."""
+        """Return the DOF forces, shape (dof, ...), of forces on coordinates (coordinates, ...): P^T times these."""
         collected = np.zeros((self.dof, *forces.shape[1:]))
         collected[self.dofs] = forces[self.coordinates]
         for coordinate, dof, value in self.first:

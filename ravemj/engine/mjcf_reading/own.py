@@ -178,7 +178,7 @@ class _OwnBody:
         )
 
     def _geometries(self, index: int, link: Link) -> tuple[Geometry, ...]:
-        """Return the shapes of a link: those of the text if they match the geoms, else the geoms."""
+        """Return the shapes of a link: those in the text if they match the geoms, else shapes made from the geoms."""
         model, number = self._model, self._bodies[index]
         first, count = int(model.body_geomadr[number]), int(model.body_geomnum[number])
         if self._names.decomposed:

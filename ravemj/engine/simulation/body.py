@@ -252,14 +252,14 @@ class BodyState:
         return self._velocities
 
     def set_link_velocities(self, velocities: Floats) -> None:
-        """Set the velocities of the links, shape (links, 6), and those of grabbed bodies."""
+        """Set the velocities of the links, shape (links, 6), and accordingly of grabbed bodies."""
         self._velocities = velocities.copy()
         self._velocities.flags.writeable = False
         for grab in self.grabs:
             self._carry(grab)
 
     def _carry(self, grab: GrabbedBody) -> None:
-        """Set the velocity of a grabbed body to that of the grabbing link."""
+        """Set the velocity of a grabbed body so that it moves rigidly with the grabbing link."""
         carrier = self._velocities[grab.link]
         arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
         grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
@@ -281,7 +281,7 @@ class BodyState:
         self._carry(grab)
 
     def carries(self, body: "BodyState") -> bool:
-        """Return whether a body is this one, or grabbed by it directly or indirectly."""
+        """Return whether ``body`` is this body, or is grabbed by it directly or indirectly."""
         return body is self or any(grab.body.carries(body) for grab in self.grabs)
 
     def release(self, body: "BodyState") -> None:
@@ -293,7 +293,7 @@ class BodyState:
         return SavedConfiguration(self.own_kinematics.configuration(), self.scene)
 
     def restore(self, saved: SavedConfiguration) -> None:
-        """Restore a state returned by ``configuration``, of this body or one of the same structure."""
+        """Restore a state returned by ``configuration``, of this body or of a body with the same structure."""
         self.will_move()
         kinematics = self.own_kinematics
         if not kinematics.restore(saved.configuration):
@@ -329,7 +329,7 @@ class BodyState:
             self._dynamics = self._batch = None  # the value of a multivalued mimic equation depends on the limits
 
     def remake(self, scene: KinBody) -> None:
-        """Replace the description by one with other DOFs, welds or equations; links move when values are next set."""
+        """Replace the description; DOFs, welds or equations may differ. Links move when values are next set."""
         saved = self.configuration()
         self.simulation.forget_model()
         self._forget_kinematics()
