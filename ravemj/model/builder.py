@@ -305,7 +305,7 @@ class BodyBuilder:
     def _asked(
         self, active: Sequence[scene.Joint], values: list[list[float]], diagnostics: Diagnostics
     ) -> list[list[float]]:
-        """Replace measured values by those of ``<jointvalues>``."""
+        """Replace measured values by the values in ``<jointvalues>``."""
         if self.joint_values is None:
             return values
         dof = sum(len(joint.axes) for joint in active)

@@ -154,7 +154,7 @@ def dependency_order(body: KinBody) -> list[int]:
 
 
 def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
-    """Return the loop of each joint that closes one: its links, each with the joint to the next link."""
+    """Return the kinematic loop of each loop-closing joint: its links, each with the joint to the next link."""
     joints, loops = body.all_joints, list[list[tuple[int, int]]]()
     for index, joint in enumerate(joints):
         if joint.places_child:

@@ -171,7 +171,7 @@ def subtracts_in_turns(body: KinBody, joint: Joint) -> bool:
 
 
 def value_differences(body: KinBody, dofs: Iterable[int], values: Floats, others: Floats) -> Floats:
-    """Return ``values - others`` [rad or m] for some DOFs; circular joints take the shorter arc."""
+    """Return ``values - others`` [rad or m] for the DOFs ``dofs``; circular joints take the shorter arc."""
     turns = [axis.circular and subtracts_in_turns(body, joint) for joint in body.joints for axis in joint.axes]
     differences = values - others
     return np.where([turns[dof] for dof in dofs], wrapped_angle(differences), differences)
