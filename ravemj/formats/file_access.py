@@ -12,7 +12,7 @@ from ravemj.formats.data_folders import data_folders
 
 
 class FileAccess:
-    """File access of one reading: permitted files, and files read so far.
+    """File access while reading a model: permitted files, and files read so far.
 
     Attributes:
         diagnostics: Receives diagnostics of the reading.
@@ -61,7 +61,7 @@ class FileAccess:
         return any(is_inside(path, place) for place in places) and self.permits(path)
 
     def candidates(self, name: str, *folders: str) -> list[str]:
-        """Return the paths at which to search a model or mesh file: in some folders, then in ``OPENRAVE_DATA``.
+        """Return the paths at which to search a model or mesh file: in ``folders``, then in ``OPENRAVE_DATA``.
 
         The list is empty if the file must not be read.
         """

@@ -98,7 +98,7 @@ class AxisReader(NamedTuple):
         return -_UNLIMITED_SLIDE, _UNLIMITED_SLIDE, False
 
     def _written_limits(self) -> tuple[float, float] | None:
-        """Return the limits as written [rad or m]: those of the kinematics system, or else those of the axis."""
+        """Return the limits as written [rad or m], in the kinematics system or else in the axis."""
         unit = self._unit(_DEGREE)
         for owner in (self.kinematics, self.element):
             limits = child(owner, "limits")

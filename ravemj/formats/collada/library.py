@@ -1,4 +1,4 @@
-"""The documents of one reading, and the references between their elements."""
+"""COLLADA documents opened while reading a model, and the references between their elements."""
 
 import os
 import posixpath
@@ -52,7 +52,7 @@ class ResolvedReference(NamedTuple):
 
 
 class Library:
-    """The documents opened by one reading.
+    """COLLADA documents opened while reading a model.
 
     Attributes:
         diagnostics: Receives diagnostics.

@@ -55,14 +55,14 @@ class Node:
             node = node.parent
 
     def find(self, path: str) -> "Node | None":
-        """Return the node at a path of names; the last name may be that of a transform in the node."""
+        """Return the node at a path of names; the last name may name a transform in the node."""
         node: Node | None = self
         for name in path.strip().removeprefix("#").split("/"):
             node = None if node is None else node._below().get(name)
         return node
 
     def _below(self) -> dict[str, "Node"]:
-        """Return this node and its descendants by their names and those of their transforms; the nearest win."""
+        """Return this node and its descendants by name, also by the names of their transforms; the nearest win."""
         if self.named is None:
             self.named = {}
             queue: deque[Node] = deque([self])

@@ -287,7 +287,7 @@ class _MjcfWriter:
         return tuple(count for count, _ in written), any(collides for _, collides in written)
 
     def _open_link(self, index: int, body: KinBody, link: int, merging: Merging, *, is_free: bool) -> None:
-        """Open the body of a link, or write the site of one that is merged into another."""
+        """Open the body of a link, or write the site of a merged link."""
         described, pose = body.links[link], merging.pose_in_parent(link)
         self.bodies.comment(self._source_text(described.source), described.source)
         attributes = {"name": merging.names[link], **pose_attributes(pose)}

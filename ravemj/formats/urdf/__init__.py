@@ -30,7 +30,7 @@ GUESSES = "guessed-manipulators"
 
 
 def is_urdf(root: "Element") -> bool:
-    """Return whether a ``<robot>`` is that of URDF and not that of OpenRAVE.
+    """Return whether a ``<robot>`` element is a robot of URDF, not of OpenRAVE.
 
     In a URDF, a joint has a ``<parent link="…">``, or there are links and no ``<kinbody>``.
     """

@@ -101,7 +101,7 @@ class Packages:
 
     @cached_property
     def _above(self) -> list[str]:
-        """The folder of the URDF and those above it, the nearest first."""
+        """The folder of the URDF and its parent folders, the nearest first."""
         folders = [os.path.abspath(self._folder)]
         while len(folders) <= _MOST_ABOVE and os.path.dirname(folders[-1]) != folders[-1]:
             folders.append(os.path.dirname(folders[-1]))
