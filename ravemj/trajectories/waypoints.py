@@ -195,7 +195,7 @@ class Waypoints:
         return configuration
 
     def pieces(self, groups: Sequence[Group], find_body: FindBody = nobody) -> Iterator[tuple[float, float, Floats]]:
-        """Yield the polynomials of some groups between consecutive waypoints.
+        """Yield the interpolating polynomials of the given groups between consecutive waypoints.
 
         Yields:
             Start and end [s], and the coefficients of powers of the fraction of the segment, lowest first, shape
