@@ -12,7 +12,7 @@ Thing = TypeVar("Thing")
 
 
 class _ApiType(type):
-    """Metaclass that makes ``dir`` of a class the same as that of its objects, since IPython completes with both."""
+    """Metaclass that makes ``dir`` of a class equal to ``dir`` of its objects, since IPython completes with both."""
 
     def __dir__(cls) -> list[str]:
         return _listed(cls, super().__dir__())

@@ -143,7 +143,7 @@ class ShortestPaths:
         return [other for other in self._edge[node] if distance.get(other, len(self._edge)) < distance[node]]
 
     def _distances(self, origin: int, wanted: int) -> dict[int, int]:
-        """Return the distances of nodes from an origin, up to that of ``wanted`` (breadth-first search)."""
+        """Return the distances of nodes from an origin, up to the distance of ``wanted`` (breadth-first search)."""
         distance = {origin: 0}
         queue = deque([origin])
         while queue and wanted not in distance:
