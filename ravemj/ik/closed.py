@@ -22,7 +22,7 @@ ACCURATE = 1e-9
 _CHUNK = 1536
 """Maximum number of poses per batch, so that the arrays fit into the processor's cache."""
 _MARGIN = 0.05
-"""Distance from the limits [rad or m] within which solutions are refined; refinement moves them less than that."""
+"""Distance from the limits [rad or m], larger than any refinement, within which solutions are refined."""
 _SAME = 1e-5
 """Tolerance of equal solutions."""
 _STEPS = 12

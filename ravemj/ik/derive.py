@@ -45,7 +45,7 @@ class Validation:
 
 
 def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Validation:
-    """Validate a solver: solve the poses of random configurations, and look for these among the solutions.
+    """Validate a solver: random configurations must be among the solutions for their tool poses.
 
     Angles are in ±pi regardless of limits, since closed-form solvers ignore limits.
     """

@@ -14,7 +14,7 @@ import numpy as np
 from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
 ON_AXIS = 2e-11
-"""Distance of a unit vector from an axis below which it counts as parallel to it, so that any turn is accurate."""
+"""Distance from an axis below which a unit vector counts as parallel to it, so that any turn is accurate."""
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
 

@@ -48,7 +48,7 @@ class Wrist:
         self.side = constant(perpendicular(c))
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return the name of the family and the reason, for joints with these indices."""
+        """Return the name of the family and the reason for membership, for the joint indices ``joints``."""
         return "spherical wrist", f"the axes of joints {_numbers(joints)} meet in a point"
 
     def solve(self, needed: RigidMotion) -> list[Floats]:
@@ -117,7 +117,7 @@ class Planar:
         return tuple((2 - joint if self.backward else joint, count) for joint, count in names)
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return the name of the family and the reason, for joints with these indices."""
+        """Return the name of the family and the reason for membership, for the joint indices ``joints``."""
         return "parallel axes", f"joints {_numbers(joints)} move a plane in itself"
 
     def solve(self, motion: RigidMotion) -> list[Floats]:

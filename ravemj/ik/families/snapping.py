@@ -13,7 +13,7 @@ from ravemj.ik.families.blocks import common_point
 from ravemj.ik.vectors import Bools, Floats, Screw, constant
 
 TOLERANCE = 1e-5
-"""Lengths, divided by the reach, and sines of angles up to this are snapped to 0."""
+"""Maximum length, divided by the reach, and maximum sine of an angle that are snapped to 0."""
 
 
 def nominal(chain: Chain) -> Chain:

@@ -26,7 +26,7 @@ from ravemj.ik.whole_body.tasks import Inequality, TaskRows, WeightedTask
 EXACT = 1e-9
 """Remaining contact error after a step [m or rad]."""
 _NEAR = 1e-5
-"""Contact error of displacements below which Newton steps correct it."""
+"""Maximum contact error of a displacement that Newton steps correct."""
 _NEWTON = 1e-5
 """Contact error from which one Newton step leaves less than ``EXACT``."""
 _TURNS = 3
@@ -168,7 +168,7 @@ class Descent:
                 break
 
     def pressing(self) -> Floats:
-        """Return the descent direction of the cost, shape (n,): a bound that blocks it is active."""
+        """Return the descent direction of the cost, shape (n,); the bounds that block it are active."""
         pull = np.zeros(len(self.limits.lower))
         for task, rows in self._measured():
             if not task.is_met or not np.isfinite(task.tolerance):
