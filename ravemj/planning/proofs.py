@@ -333,7 +333,7 @@ def _examined(
 
 
 def _reach(curves: Sequence[Curve]) -> tuple[Floats, Floats]:
-    """Return the middle of each segment, and the largest difference of its configurations from it; shape (m, n)."""
+    """Return the middle of each segment, and the largest deviation of the segment from it; shape (m, n) each."""
     middles, spreads = np.empty((2, len(curves), curves[0].control.shape[1]))
     numbers = [len(curve.control) for curve in curves]
     for number in set(numbers):

@@ -164,7 +164,7 @@ class _Shortcut(NamedTuple):
 
 
 class ShortenedMotion:
-    """Motion that random shortcuts of constant accelerations make faster; each of them can be removed again.
+    """Motion made faster by random shortcuts of constant accelerations, each of which can be removed again.
 
     Args:
         straight: The motion without shortcuts.
