@@ -83,7 +83,7 @@ class ToolConstraint(NamedTuple):
     threshold: float
 
     def checked(self, T_world_tool: Floats) -> tuple[Floats, Floats, Floats, float]:
-        """Return the checked fields with exact rotations; ``T_tool_point`` follows from the tool pose if it is None.
+        """Return the checked fields with exact rotations; if ``T_tool_point`` is None, it follows from the tool pose.
 
         Raises:
             ArgumentError: the numbers are invalid.

@@ -59,7 +59,7 @@ class Pair(NamedTuple):
 
 
 def pairs(rows: Floats, cast: Cast, friction: float, width: float) -> list[Pair]:
-    """Return for each surface point the opposite points that jaws could hold it with.
+    """Return pairs of a surface point and an opposite point, each with a reason if jaws cannot hold it.
 
     The opposite points are the nearest along a line into the object and, if it differs, the farthest within ``width``:
     a mug can be held by its wall and from both sides. The first line is the normal. If its opposite point is outside
