@@ -148,7 +148,7 @@ def translated(
     model: AnyPath,
     sensors: tuple[AttachedSensor, ...] = (),
 ) -> Translation:
-    """Translate the bodies of a simulation in their present state; raises what ``translate`` raises.
+    """Translate the bodies of a simulation in their present state; raises the errors of ``translate``.
 
     ``model`` is the file that they were read from. ``sensors`` are sensors without a robot, which are stored only for
     reading the document again. Other arguments as for ``translate``.

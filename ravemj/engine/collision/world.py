@@ -77,7 +77,7 @@ class CollisionWorld:
         return np.flatnonzero(among & (self._owner == number))
 
     def geoms_of_link(self, body: BodyState, link: int, *, enabled_only: bool = True) -> Ints:
-        """Return the collision geoms of a link, optionally even if it is disabled."""
+        """Return the collision geoms of a link; none if it is disabled, unless ``enabled_only`` is False."""
         geoms = self.geoms_of_body(body, enabled_only=enabled_only)
         return geoms[self._link[geoms] == link]
 
@@ -167,7 +167,7 @@ class CollisionWorld:
         return batch.bind("ncon")[:count] > 0
 
     def _have_contacts_one_by_one(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Return the result of ``have_contacts`` by one thread; a ``Batch`` computes more, so it is slower."""
+        """Compute ``have_contacts`` in one thread; a ``Batch`` would be slower, since it computes more."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
         counts: list[int] = []

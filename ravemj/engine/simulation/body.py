@@ -136,7 +136,7 @@ class BodyState:
 
     @property
     def dynamics(self) -> "BodyDynamics":
-        """Jacobians and inverse dynamics; raises what ``kinematics`` raises."""
+        """Jacobians and inverse dynamics; raises the errors of ``kinematics``."""
         if self._dynamics is None or not self.index:
             from ravemj.engine.dynamics import BodyDynamics  # noqa: PLC0415 - slow to import
 
@@ -145,7 +145,7 @@ class BodyState:
 
     @property
     def batch(self) -> "Batch":
-        """Chain of links, prepared for many configurations; raises what ``kinematics`` raises."""
+        """Chain of links, prepared for many configurations; raises the errors of ``kinematics``."""
         dynamics = self.dynamics
         if self._batch is None:
             from ravemj.engine.batch import Batch  # noqa: PLC0415 - slow to import
