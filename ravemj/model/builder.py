@@ -71,12 +71,12 @@ class JointBuilder:
 
     @property
     def active(self) -> bool:
-        """Whether it has DOFs."""
+        """Whether the joint has DOFs."""
         return self.enabled and self.equations is None
 
     @property
     def fixed(self) -> bool:
-        """Whether it is a weld."""
+        """Whether the joint is a weld."""
         return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
 
 

@@ -25,7 +25,7 @@ class Equations(NamedTuple):
 
 
 class NamedJoint(NamedTuple):
-    """Joint as mimic equations refer to it.
+    """Joint with the data that are needed to resolve mimic equations.
 
     Attributes:
         name: The name.
