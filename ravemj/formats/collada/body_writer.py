@@ -135,7 +135,7 @@ class BodyWriter:
         return joint.static and joint.kind == "hinge" and len(self._body.joints) > 0
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn of a weld whose axis differs from that which OpenRAVE gives it."""
+        """Warn of a weld whose axis differs from the axis that OpenRAVE assigns to it."""
         if self._is_bare(joint) and not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in COLLADA it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)

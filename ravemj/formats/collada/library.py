@@ -320,7 +320,7 @@ def _reference(element: Element) -> str | None:
 
 
 def label(element: Element) -> str:
-    """Return the name of an element for messages: its tag, and the nearest id, sid or name of it or its ancestors."""
+    """Return a name of an element for messages: its tag, and its own or the nearest ancestor's id, sid or name."""
     tag = f"<{local_name(element)}>"
     for around in (element, *element.iterancestors(etree.Element)):
         for attribute in ("id", "sid", "name"):

@@ -151,7 +151,7 @@ class Traversal:
 
 
 def shape(corners: Callable[[InventorNode, TraversalState], Floats]) -> Handler:
-    """Return the handler of a shape, whose triangles in its frame, shape (n, 3, 3), ``corners`` returns."""
+    """Return the handler of a shape; ``corners`` returns its triangles in its own frame, shape (n, 3, 3)."""
     return lambda traversal, node, state: traversal.add(corners(node, state), node, state)
 
 
