@@ -175,7 +175,7 @@ class ShortestPaths:
 
 
 def nodes_between(edges: Iterable[Pair], count: int, start: int, end: int) -> set[int]:
-    """Return the nodes on simple paths between two nodes, which visit no node twice; none if the two are equal.
+    """Return the nodes on paths between two nodes that visit no node twice; none if the two are equal.
 
     An edge lies on such a path if both of its nodes do. These nodes are in one block (biconnected component) with an
     additional edge from the start to the end.
