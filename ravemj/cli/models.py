@@ -84,7 +84,7 @@ def named_robot(env: Environment, name: str | None) -> Robot | None:
 
 
 def chosen_robots(env: Environment, name: str | None) -> list[Robot]:
-    """Return the robot of ``--robot``, by default all robots; raises what ``named_robot`` raises."""
+    """Return the robot of ``--robot``, by default all robots; raises the errors of ``named_robot``."""
     robot = named_robot(env, name)
     return env.GetRobots() if robot is None else [robot]
 
