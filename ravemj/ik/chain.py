@@ -167,7 +167,7 @@ class Chain:
 
     @cached_property
     def _motions(self) -> Floats:
-        """Coefficients of joint motions for 1, cosine, sine (revolute) or 1, value, 0 (prismatic), shape (n, 3, 16)."""
+        """Matrices A, B, C of each joint's motion, shape (n, 3, 16): A + B cos(q) + C sin(q), if prismatic A + B q."""
         motions = np.zeros((self.dof, 3, 4, 4))
         for motion, axis, point, sliding in zip(motions, self.axes, self.points, self.prismatic.tolist(), strict=True):
             motion[0, 3, 3] = 1

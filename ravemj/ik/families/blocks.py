@@ -52,7 +52,7 @@ class Wrist:
         return "spherical wrist", f"the axes of joints {_numbers(joints)} meet in a point"
 
     def solve(self, needed: RigidMotion) -> list[Floats]:
-        """Return the turns of the three joints, with two branches."""
+        """Return cosines and sines of the three joints, shape (2, B, N) each, with two branches."""
         first, middle, last = self.screws
         tip = needed.turned(last.axis)
         two = self._middle(tip)
@@ -61,7 +61,7 @@ class Wrist:
         return [turn, two, turn_between(last, self.side, middle.turned_back(two, side))]
 
     def _middle(self, tip: Floats) -> Floats:
-        """Return both turns of the middle joint for a direction ``tip`` of the last axis.
+        """Return both solutions of the middle joint, as cosine and sine, for a direction ``tip`` of the last axis.
 
         They are computed from distances of unit vectors, since the cosine of the angle would lose half of the digits
         if the outer axes nearly coincide.
@@ -132,7 +132,7 @@ class Planar:
         return [three, two, one] if self.backward else [one, two, three]
 
     def _solve_between(self, motion: RigidMotion) -> list[Floats]:
-        """Solve for a revolute joint between two prismatic ones: it gives the rotation, and the rest is linear."""
+        """Solve for a revolute joint, given by the rotation, and two prismatic ones around it, by linear equations."""
         first, middle, last = self._order
         turn = turn_between(middle, self._side, motion.turned(self._side))
         way = motion.moved(middle.point) - middle.point

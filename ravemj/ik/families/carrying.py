@@ -32,7 +32,7 @@ class CarryPoint:
     """
 
     def __init__(self, screws: Screws, start: Floats, goal: Floats) -> None:
-        """Find the solution method from examples.
+        """Detect the solution method from example starts and goals.
 
         Raises:
             NoFamilyError: the joints cannot carry points to arbitrary positions.
@@ -83,7 +83,7 @@ class CarryPoint:
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
         """Return the values of the joints, turns (2, B, N) or distances (1, B, N), that carry points (3, B, N).
 
-        Joints shared by all poses must be those of the examples.
+        Joints that are the same for all poses must be those of the examples in ``__init__``.
         """
         first, middle, third = screws
         one, three = self.pair.solve(*self._sides(screws, start, goal))
@@ -103,7 +103,7 @@ class CarryPlane:
     """
 
     def __init__(self, screws: Screws, start: Plane, goal: Plane) -> None:
-        """Find the solution method from examples.
+        """Detect the solution method from example starts and goals.
 
         Raises:
             NoFamilyError: the joints cannot carry planes to arbitrary positions.

@@ -63,7 +63,7 @@ class General:
         return [(self.order[2], _BRANCHES)]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the turns of the joints in ``order``, with 16 branches."""
+        """Return cosines and sines of the joints in ``order``, with 16 branches."""
         needed, back = (motion.inverse(), motion) if self.backward else (motion, motion.inverse())
         count = 6 - self.shift
         screws = [*self._screws[:count], *(screw.carried(back) for screw in self._screws[count:])]

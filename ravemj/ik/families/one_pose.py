@@ -45,7 +45,7 @@ class OnePose:
         return cls(family, family.inside, carry, carry.pair.alone)
 
     def solve(self, motion: Motion) -> list[list[Turn]]:
-        """Return the turns of the six joints for each branch."""
+        """Return cosine and sine of the six joints for each branch."""
         first, middle, third = self._arm
         start, goal = self._centre, self._centre
         tip, side = self._wrist[2], self._side

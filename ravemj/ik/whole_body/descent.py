@@ -32,7 +32,7 @@ _NEWTON = 1e-5
 _TURNS = 3
 """Maximum number of multiplier updates, and of Newton steps on contacts."""
 _EXACTLY = 1e-6
-"""Fraction of a contact error that a displacement may leave, beside the damping of dependent rows."""
+"""Maximum error that a displacement leaves in contacts, as a fraction of the error before."""
 _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
@@ -84,7 +84,7 @@ class DescentResult:
 
 
 class _State(NamedTuple):
-    """Rows of tasks and inequalities, measured in one configuration."""
+    """Errors and Jacobians of tasks, and inequalities, in one configuration."""
 
     measured: Sequence[tuple[WeightedTask, TaskRows]]
     inequalities: Sequence[Inequality]
@@ -213,7 +213,7 @@ class Descent:
         return _on_equalities(problem, gradient, x, jacobian[:first], error[:first])
 
     def _levels(self, measured: Sequence[tuple[WeightedTask, TaskRows]]) -> list[TaskRows]:
-        """Return the weighted rows of each priority; exact contacts come first within their priority."""
+        """Return weighted errors and Jacobians by priority; exact contacts come first within their priority."""
 
         def level(task: tuple[WeightedTask, TaskRows]) -> tuple[int, bool]:
             return task[0].priority, not (task[0].is_contact and self.exact_contacts)

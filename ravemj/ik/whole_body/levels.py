@@ -16,7 +16,7 @@ from ravemj.ik.vectors import Floats
 from ravemj.ik.whole_body.tasks import Inequality, TaskRows
 
 _RANK = 1e-9
-"""Relative singular value below which rows leave a direction free."""
+"""Relative singular value below which a direction counts as part of the null space."""
 _SOLVED = 1
 """Exit flag of daqp for an optimal solution."""
 _CAUTION = 1e-2
