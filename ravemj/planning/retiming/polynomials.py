@@ -21,7 +21,7 @@ class Polynomial:
     merges: bool
 
     def _first_time(self, way: Floats, limits: PathLimits) -> float:
-        """Return the first duration to try [s], by default that from rest to rest. All joints move by ``way``."""
+        """Return the first duration to try [s], by default the minimum from rest to rest; ``way``: displacements."""
         return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
