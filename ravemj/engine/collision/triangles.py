@@ -103,7 +103,7 @@ class TriangleTests:
         return min(distance, limit)
 
     def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
-        """Yield signed distance [m] and ``segment`` of each mesh triangle touching a solid or another triangle."""
+        """Yield signed distance [m] and ``segment``, the nearest points, of each touching pair with a mesh triangle."""
         result, place = fcl.CollisionResult(), _OTHER_TRIANGLE
         if self._is_mesh(other):
             fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)

@@ -53,7 +53,7 @@ class Coupling:
         return collected
 
     def bias(self, rates: Floats) -> Floats:
-        """Return dP/dt dq/dt: the accelerations of the coordinates at constant DOF velocities, shape (dof, ...)."""
+        """Return dP/dt dq/dt, the accelerations at constant DOF velocities, shape (coordinates, ...)."""
         bias = np.zeros((self.count, *rates.shape[1:]))
         for coordinate, along, dof, value in self.second:
             bias[coordinate] += value * rates[along] * rates[dof]
@@ -152,7 +152,7 @@ class _Partials:
 
 
 def first_values(kinematics: BodyKinematics, values: Floats) -> list[Floats]:
-    """Return the first value of each active, then passive joint for DOF values, shape (dof, ...)."""
+    """Return the value of the first axis of each joint, active joints first, for DOF values (dof, ...)."""
     passive = [np.full(values.shape[1:], first) for first in kinematics.first_values(np.zeros(kinematics.dof))]
     return [*(values[first] for first in kinematics.first_dofs), *passive[len(kinematics.first_dofs) :]]
 

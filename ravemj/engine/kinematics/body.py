@@ -262,7 +262,7 @@ class BodyKinematics:
                 self._passive_values[mimic.joint - len(self.first_dofs)][0] = known[mimic.joint]
 
     def first_values(self, values: Floats) -> list[float]:
-        """Return the first value of each active, then passive joint for given DOF values."""
+        """Return the value of the first axis of each joint, active joints first, for given DOF values."""
         plain = values.tolist()
         active = plain if len(self.first_dofs) == self.dof else [plain[first] for first in self.first_dofs]
         passive = [

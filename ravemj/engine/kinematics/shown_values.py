@@ -33,7 +33,7 @@ class ShownValues:
         """Return the values [rad or m], shape (dof,), near ``last_values``.
 
         Values that differ from the last ones only by rounding are not changed, to avoid drift; hinge values are shifted
-        by full turns nearest to the last ones.
+        by full turns towards the last ones.
         """
         values = last_values.copy()
         if len(dofs := self._hinges.dofs):

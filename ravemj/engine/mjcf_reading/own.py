@@ -210,7 +210,7 @@ class _OwnBody:
         return _same_pose(expected, there) and _near(_floats(attributes["rgba"]), rgba, _COLOUR_NEAR)
 
     def _joint(self, number: int, joint: Joint) -> Joint:
-        """Return a joint that places a link, with edits applied."""
+        """Return a joint of the kinematic tree, with edits applied."""
         if not joint.places_child or self._placing.get(joint.child) != number:
             return joint
         T_parent_child, names = self._pose(joint.child), self._names.joints[number]

@@ -215,7 +215,7 @@ class BodyState:
 
         Args:
             T_world_links: Shape (links, 4, 4).
-            last_values: Joint values [rad or m], shape (dof,); hinge values are shifted by the full turns nearest to
+            last_values: Joint values [rad or m], shape (dof,); hinge values are shifted by full turns towards
                 them. Only for a body in the world; None means the present values.
         """
         kinematics = self.own_kinematics if last_values is None else self.kinematics
