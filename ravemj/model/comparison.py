@@ -60,7 +60,7 @@ class Difference(NamedTuple):
 
 
 def compare(first: Scene, second: Scene, tolerance: float = TOLERANCE) -> list[Difference]:
-    """Compare two scenes body by body, in order; ``tolerance`` is as for ``TOLERANCE``."""
+    """Compare two scenes body by body, in order; for ``tolerance``, see ``TOLERANCE``."""
     return list(_Comparison(tolerance).scenes(first, second))
 
 

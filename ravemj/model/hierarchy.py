@@ -1,4 +1,4 @@
-"""Parent links of joints, and the joint that places each link.
+"""Parent links of joints, and the joint that determines the pose of each link ("places" it).
 
 OpenRAVE determines both from an undirected joint graph. The rules, measured on OpenRAVE 0.149: link 0 and static links
 have depth 0, and depths grow along paths from link 0; the shallower link of a joint is its parent; joints act in order
@@ -99,7 +99,7 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
-    """Sort the joints that place a link so that each follows the one that places its parent."""
+    """Sort the joints that place links, so that each follows the joint that places its parent link."""
     placed_by = {ends[index][1]: index for index in placing}
 
     def carrying(index: int) -> list[int]:
