@@ -189,7 +189,7 @@ class Library:
         return document
 
     def metres(self, element: Element) -> float:
-        """Return the length of the unit of an element, scaled [m]."""
+        """Return the length unit of an element [m], times the scale of the reading."""
         return self._scale * self._unit(element)
 
     def _unit(self, element: Element) -> float:

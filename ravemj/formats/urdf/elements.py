@@ -130,7 +130,7 @@ def named(elements: Sequence[Element], what: str) -> dict[str, Element]:
 
 
 def known_name(name: str, known: Mapping[str, object], what: str, element: Element) -> str:
-    """Return a name that an element refers to.
+    """Check that a name to which an element refers is known, and return it.
 
     Raises:
         SourceError: nothing has this name.
