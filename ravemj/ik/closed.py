@@ -166,12 +166,12 @@ class ClosedForm:
         return error
 
     def chain_turns(self, values: Floats) -> list[Floats]:
-        """Convert joint values of shape (n, B, N) to turns (2, B, N) and distances (1, B, N)."""
+        """Convert joint values of shape (n, B, N) to cosines and sines (2, B, N) and distances (1, B, N)."""
         flat = self.chain.turns(values.reshape(len(values), -1).T)
         return [turn.reshape(len(turn), *values.shape[1:]) for turn in flat]
 
     def _turns(self, poses: Floats, locked: Floats, shape: tuple[int, ...]) -> Turns:
-        """Return the family's solution for each joint of the chain, turns (2, B, N) or distances (1, B, N)."""
+        """Return the family's solution for each joint, as cosine and sine (2, B, N) or distances (1, B, N)."""
         if self._one_pose is not None and len(poses) == 1:
             return self._turns_of_one(poses[0], self._one_pose)
         reach = self.chain.reach
@@ -263,7 +263,7 @@ class ClosedForm:
 
 
 def _flat(turns: Turns) -> Turns:
-    """Flatten branches and poses of turns and distances into one axis."""
+    """Flatten branches and poses of joint values (cosine and sine, or distances) into one axis."""
     if isinstance(turns, np.ndarray):
         return turns.reshape(*turns.shape[:2], -1)
     return [turn.reshape(len(turn), -1) for turn in turns]

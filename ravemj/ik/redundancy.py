@@ -37,7 +37,7 @@ def rank(chain: Chain, task: Task) -> int:
 def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
     """Return the Jacobians of a task in configurations (M, n), each of shape (k, n).
 
-    Lengths are divided by the reach. ``goal`` is a pose (4, 4); by default the one that the configuration reaches.
+    Lengths are divided by the reach. ``goal`` is a pose (4, 4); by default the pose of each configuration.
     """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)

@@ -66,12 +66,12 @@ def tile(values: Floats, branches: int) -> Floats:
 
 
 def angle(turn: Floats) -> Floats:
-    """Return the angles of turns in [-pi, pi]."""
+    """Return the angles, in [-pi, pi], of turns (cosine, sine)."""
     return np.arctan2(turn[1], turn[0])
 
 
 def turn_of(angles: Floats) -> Floats:
-    """Return the turns of angles of shape (B, N)."""
+    """Return cosines and sines of angles of shape (B, N)."""
     return np.stack([np.cos(angles), np.sin(angles)])
 
 

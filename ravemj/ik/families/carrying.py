@@ -81,7 +81,7 @@ class CarryPoint:
         return _names(self.pair)
 
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
-        """Return the values of the joints, turns (2, B, N) or distances (1, B, N), that carry points (3, B, N).
+        """Return the joint values, cosine and sine (2, B, N) or distances (1, B, N), that carry points (3, B, N).
 
         Joints that are the same for all poses must be those of the examples in ``__init__``.
         """
@@ -139,7 +139,7 @@ class CarryPlane:
         return [(2 if self.slider != 2 else 1, 2)]
 
     def solve(self, screws: Screws, start: Plane, goal: Plane) -> list[Floats]:
-        """Return the values of the three joints, turns (2, B, N) or distances (1, B, N)."""
+        """Return the values of the three joints, cosine and sine (2, B, N) or distances (1, B, N)."""
         if self.pair is None:
             return self._solve_sliding(screws, start, goal)
         first, middle, third = screws

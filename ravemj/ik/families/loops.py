@@ -16,7 +16,7 @@ from ravemj.ik.families.pairs import Pair
 from ravemj.ik.vectors import Floats, Screw, Transform, tile
 
 Locked = Mapping[int, Floats]
-"""Values of locked joints by their position in the arm, turns (2, 1, N) or distances (1, 1, N)."""
+"""Values of locked joints by position in the arm: cosine and sine (2, 1, N) or distances (1, 1, N)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class Family(Protocol):
         ...
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the values of the joints in ``order``, turns (2, B, N) or distances (1, B, N); B may be 1."""
+        """Return values of the joints in ``order``: cosine and sine (2, B, N) or distances (1, B, N); B may be 1."""
         ...
 
 

@@ -77,7 +77,7 @@ class OnePose:
         ]
 
     def _outer(self, start: Vector, goal: Vector) -> list[tuple[Turn, Turn]]:
-        """Return the first and third turns of three joints that carry the centre from a start to a goal, by branch."""
+        """Return first and third joint (cosine, sine), by branch, of three joints that carry the centre to a goal."""
         sides = self._numbers(self._arm[0], goal, -1.0), self._numbers(self._arm[2], start, 1.0)
         rest = sides[1][0][0] - sides[0][0][0], sides[1][0][1] - sides[0][0][1]
         side, equation = self._alone
@@ -129,7 +129,7 @@ class OnePose:
         return (c * cosine - s * sine, s * cosine + c * sine), (c * cosine + s * sine, s * cosine - c * sine)
 
     def _ends(self, two: Turn, tip: Vector, side: Vector) -> tuple[Turn, Turn, Turn]:
-        """Return the turns of the wrist joints, given the middle one."""
+        """Return cosine and sine of the three wrist joints, given the middle one."""
         first, middle, last = self._wrist
         (along, across, later), (cosine, sine) = self._tips, two
         start = (

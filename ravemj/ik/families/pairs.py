@@ -136,7 +136,7 @@ class Pair:
         return 1 if self.sliding[side] and not (self.sphere and equation == 1) else 2
 
     def solve(self, one: Side, three: Side) -> tuple[Floats, Floats]:
-        """Return the values of the first and the third joint, turns or distances, with all branches."""
+        """Return the values of the first and the third joint, with all branches: cosine and sine, or distances."""
         factors = (one.factors, -three.factors)
         rest = three.constant - one.constant
         if self.alone is not None:
