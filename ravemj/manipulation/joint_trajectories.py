@@ -271,7 +271,7 @@ def check(joints: Joints, points: JointTrajectory, *, moving: bool) -> None:
 
 
 class Excess(NamedTuple):
-    """Largest violation of joint limits: the row of values, and a description."""
+    """Largest violation of joint limits: the index of the row of values, and a description."""
 
     row: int
     text: str

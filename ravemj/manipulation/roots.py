@@ -18,7 +18,7 @@ MOST_DRAWS = 200
 """Maximum number of poses sampled from regions before a search."""
 
 _REPAIRS = 2
-"""Maximum number of solutions of a pose projected onto the constraint; each takes as long as hundreds of tests."""
+"""Maximum number of IK solutions of a pose projected onto the constraint; each takes as long as hundreds of tests."""
 
 Refuse = Callable[[Floats], RefusedError | None]
 """Returns the reason why a configuration cannot be a start or goal, or None."""
