@@ -23,7 +23,7 @@ _FIRST_AXES: dict[JointKind, JointKind] = {"rp": "slider", "pr": "hinge", "pp": 
 
 
 def listed_poses(body: KinBody) -> list[Pose]:
-    """Return the written poses of the links, at which every moving joint has its ``<initial>`` value."""
+    """Return the link poses to write, at which every moving joint has its ``<initial>`` value."""
     if not body.joints:
         return [link.T_world_link for link in body.links]
     joints = enumerate(body.all_joints)
