@@ -270,8 +270,8 @@ def _middles(is_open: Bools) -> tuple[Ints, Ints]:
 class _Supports:
     """Support functions of geoms.
 
-    For a direction l in its own axes, it is ``round + flat |l| + disc |l_xy|`` for a sphere, capsule, cylinder or box,
-    plus ``middle l`` for the bounding box of a mesh.
+    In direction l in the axes of the geom, the function of a sphere, capsule, cylinder or box is ``round + flat |l| +
+    disc |l_xy|``; the bounding box of a mesh adds ``middle l``.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
