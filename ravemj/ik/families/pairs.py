@@ -16,7 +16,7 @@ from ravemj.ik.subproblems import normalized, solve_linear, solve_parabola, solv
 from ravemj.ik.vectors import Floats, Screw, dot, tile
 
 NEGLIGIBLE = 1e-9
-"""Relative size below which a coefficient counts as zero by the arm's geometry, if it is so in all examples."""
+"""Relative size; a coefficient smaller than this in all examples is zero by the arm's geometry."""
 
 
 class Side(NamedTuple):
