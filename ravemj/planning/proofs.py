@@ -261,7 +261,7 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
 
 
 def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_start: bool) -> list[float]:
-    """Return the first time at which each pair is apart, counted from the start or from the goal [s]."""
+    """Return for each pair the time [s] nearest to start or end at which its distance reaches ``APART``."""
     begin, finish = curves[0].start, curves[-1].end
     times = np.linspace(begin, finish, _SEARCH + 1) if is_start else np.linspace(finish, begin, _SEARCH + 1)
     times_apart, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)

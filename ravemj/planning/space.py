@@ -9,7 +9,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 
 ON_LIMIT = 1e-12
-"""Relative rounding tolerance of limits [rad or m]."""
+"""Rounding tolerance of limits: absolute for values below 1 [rad or m], relative above."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,7 +77,7 @@ class Segment(NamedTuple):
 
     @property
     def is_from_rest_to_rest(self) -> bool:
-        """Whether it starts and ends at rest."""
+        """Whether the segment starts and ends at rest."""
         return not self.start_velocity.any() and not self.end_velocity.any()
 
     @property
