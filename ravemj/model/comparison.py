@@ -69,7 +69,7 @@ class _Comparison:
     tolerance: float
 
     def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
-        """Compare bodies and sensors without robots; compare gravity, view and description if both scenes have them."""
+        """Compare bodies, sensors outside robots, and gravity, view and description if both scenes have them."""
         part = "the scene"
         yield from self._same(part, "bodies", _names(first.bodies), _names(second.bodies))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))

@@ -94,7 +94,7 @@ def _motion(joint: Joint, index: int, value: float) -> Pose:
 
 
 def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
-    """Return the axis directions of a joint in its parent at values; the second axis rotates with the first."""
+    """Return a joint's axis directions in its parent link for joint values; the second axis rotates with the first."""
     directions = [axis.direction for axis in joint.axes]
     if joint.kind in {"hinge2", "pr"}:
         first = joint.axes[0]
