@@ -88,7 +88,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
 
 
 class _System(NamedTuple):
-    """An articulated system, outermost part first, or a model outside of systems."""
+    """Elements of an articulated system, the outermost first, or of a model outside of systems."""
 
     systems: list[Element]
     models: list[Element]

@@ -39,12 +39,12 @@ class Node:
 
     @property
     def name(self) -> str:
-        """Its name, else its id, else its sid."""
+        """Name of the node, else its id, else its sid."""
         return self.element.get("name") or self.element.get("id") or self.element.get("sid") or ""
 
     @property
     def world(self) -> Floats:
-        """Its pose in the scene, shape (4, 4)."""
+        """Pose of the node in the scene, shape (4, 4)."""
         return self.transform if self.parent is None else self.parent.world @ self.transform
 
     def around(self) -> Iterator["Node"]:

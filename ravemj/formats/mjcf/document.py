@@ -36,7 +36,7 @@ _LEAST_ROOM = 1e-6
 """Half the written range [rad or m] of a joint without range that is not a weld."""
 
 _LOCK_SOLREF, _LOCK_SOLIMP = (0.004, 1), (0.999, 0.9999, 1e-6)
-"""Limits of a joint without range, as stiff as MuJoCo allows, so that a robot standing on it does not sink."""
+"""Limit parameters of a joint without range, as stiff as MuJoCo allows, so that a standing robot does not sink."""
 
 TIMESTEP = 0.002
 """MuJoCo's time step [s]."""
