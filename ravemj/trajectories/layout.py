@@ -148,7 +148,7 @@ def with_derivatives(groups: Sequence[Group], order: int, deltatime: bool) -> li
 
 
 def derived(groups: Sequence[Group], order: int) -> list[Group]:
-    """Return the layout of the derivatives: renamed positions with reduced interpolations."""
+    """Return the layout of the derivatives: groups of positions are renamed, interpolations reduced in degree."""
     return [
         replace(
             group,
