@@ -46,7 +46,7 @@ class Here(Executor):
     """Executor that calls functions immediately, in this process."""
 
     def submit(self, fn: Callable[..., _Result], /, *args: Any, **kwargs: Any) -> Future[_Result]:  # noqa: ANN401 - as the base class
-        """Call a function."""
+        """Call a function, and return a completed future."""
         future: Future[_Result] = Future()
         future.set_result(fn(*args, **kwargs))
         return future
