@@ -127,7 +127,7 @@ _LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
 
 
 def __getattr__(name: str) -> object:
-    """Import what is asked for, so that ``import ravemj`` does not import all of it, nor MuJoCo."""
+    """Import a name when it is first used, so that ``import ravemj`` is fast and does not import MuJoCo."""
     if name in names.PUBLIC:
         return importlib.import_module(f"ravemj.{name}")
     if name not in _LATE:
@@ -138,5 +138,5 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    """Return what completion shows: the names that are meant for users."""
+    """Return the public names, for tab completion."""
     return __all__

@@ -9,9 +9,9 @@
     ├── ArgumentError           a wrong argument of a call
     ├── OutputError             also an OSError: a file that cannot be written
     ├── RenderingError          no picture can be drawn
-    └── UnsupportedError        also a NotImplementedError: .capability that ravemj does not have
+    └── UnsupportedError        also a NotImplementedError: ravemj lacks .capability
 
-    RavemjWarning               .code .diagnostic: read, but not as the author may think
+    RavemjWarning               .code .diagnostic: read, but perhaps not as its author intended
 """
 
 import os
@@ -48,12 +48,12 @@ class ErrorCode(IntEnum):
 
 
 class Source(NamedTuple):
-    """A place in a file that a user wrote.
+    """Position in a file.
 
     Attributes:
-        file: Path of the file, as the user or the including file gave it.
-        line: Line number, from 1; 0 stands for the file as a whole.
-        included_from: The element that included the file, or None for the file that was loaded.
+        file: Path of the file, as given by the user or the including file.
+        line: Line number, from 1; 0 means the whole file.
+        included_from: Position of the element that included the file; None for the loaded file.
     """
 
     file: str
@@ -64,18 +64,18 @@ class Source(NamedTuple):
         return f"{self.file}:{self.line}" if self.line else self.file
 
     def chain(self) -> str:
-        """Return this place and those that included it, innermost first."""
+        """Return this position and those of the elements that included it, innermost first, as text."""
         if self.included_from is None:
             return str(self)
         return f"{self} (included from {self.included_from.chain()})"
 
 
 class Origin(Source):
-    """A place in a file that a model was converted from; the converted file counts as the one that includes it."""
+    """Position in a file from which a model was converted; ``included_from`` is in the converted file."""
 
 
 class RavemjError(Exception):
-    """The root of ravemj's exceptions; OpenRAVE scripts know it as ``openrave_exception``."""
+    """Base class of ravemj's exceptions; OpenRAVE scripts know it as ``openrave_exception``."""
 
     _code = ErrorCode.Failed
 
@@ -87,7 +87,7 @@ class RavemjError(Exception):
 
     @property
     def message(self) -> str:
-        """What is wrong, in words."""
+        """Description of the error."""
         return self._message
 
     @property
@@ -108,7 +108,7 @@ _LONGEST = 2000  # characters of a message
 
 
 def shortened(message: str) -> str:
-    """Return a message without most of the text that it quotes, which may be megabytes of a damaged file."""
+    """Return a message with long quotations shortened, since a damaged file may cause megabytes."""
     message = _LONG_QUOTATION.sub(r"'\1…'", message)
     return message if len(message) <= _LONGEST else f"{message[: _LONGEST // 2]} … {message[-_LONGEST // 2 :]}"
 
@@ -120,9 +120,9 @@ class SourceError(RavemjError):
     """A file cannot be read as a model.
 
     Attributes:
-        source: The place in the file.
-        hint: What the author can do about it; may be empty.
-        diagnostics: What was found before, from which the failure may have come.
+        source: The position in the file.
+        hint: Advice for the author of the file; may be empty.
+        diagnostics: Earlier diagnostics of the reading, which may explain the failure.
     """
 
     def __init__(self, message: str, source: Source, hint: str = "") -> None:
@@ -136,30 +136,30 @@ class SourceError(RavemjError):
 
     @property
     def cause(self) -> "Diagnostic | None":
-        """The finding that explains the failure: of a file or a number, at the same place or in what it includes."""
+        """The diagnostic of a file or a number that explains the failure, at its source or in a file included there."""
         here = self.source[:2]
         explaining = (finding for finding in self.diagnostics if finding.code in _CAUSES)
         return next((finding for finding in explaining if here in _places(finding.source)), None)
 
 
 class LimitError(SourceError):
-    """A model is larger than what ravemj reads; the message says how large, and what the limit is."""
+    """A model is larger than ravemj reads; the message states its size and the limit."""
 
 
 class UnnamedError(SourceError):
-    """A body has no name; OpenRAVE's ``LoadData`` raises there, where other mistakes make it False (gap-18)."""
+    """A body has no name; OpenRAVE's ``LoadData`` then raises, but returns False for other errors (gap-18)."""
 
 
 class ManipulatorError(SourceError):
-    """A joint of a manipulator does not move its effector; the robot is there all the same (gap-10, gap-39)."""
+    """A joint of a manipulator does not move its effector; the robot is loaded nevertheless (gap-10, gap-39)."""
 
 
 class CompileError(SourceError):
-    """MuJoCo refuses the translated model; ``source`` is the element that the refused part comes from."""
+    """MuJoCo rejects the translated model; ``source`` is the element that causes it."""
 
 
 class ArgumentError(RavemjError):
-    """A wrong argument: its length, its value or its type."""
+    """An argument has a wrong length, value or type."""
 
     _code = ErrorCode.InvalidArguments
 
@@ -172,17 +172,17 @@ class OutputError(RavemjError, OSError):
 
 
 class RenderingError(RavemjError):
-    """No picture can be drawn; the message says what was tried and how to install what is missing."""
+    """No picture can be drawn; the message states causes and remedies."""
 
     def __str__(self) -> str:
         return self.message
 
 
 class UnsupportedError(RavemjError, NotImplementedError):
-    """A name of OpenRAVE's that stands for something ravemj does not do.
+    """A script uses a name of OpenRAVE that ravemj does not support.
 
     Attributes:
-        capability: What is missing, for instance ``inverse kinematics``.
+        capability: The missing feature, for instance ``inverse kinematics``.
     """
 
     _code = ErrorCode.NotImplemented
@@ -194,15 +194,15 @@ class UnsupportedError(RavemjError, NotImplementedError):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding about a file that was read all the same.
+    """A problem found in a file that could be read nevertheless.
 
     Attributes:
-        severity: ``error`` where OpenRAVE's ``Load`` returns False though the bodies are there; ``note``, which only
-            commands print, where something is good to know.
-        code: Stable name of the kind of finding, for instance ``unknown-tag``.
-        message: What was found and what was done about it.
-        source: The place in the file.
-        hint: What the author can do about it; may be empty.
+        severity: ``error`` if OpenRAVE's ``Load`` returns False although the bodies exist; ``note`` for information
+            that only commands print.
+        code: Stable name of the kind of problem, for instance ``unknown-tag``.
+        message: The problem, and how it was handled.
+        source: The position in the file.
+        hint: Advice for the author of the file; may be empty.
     """
 
     severity: Literal["error", "warning", "note"]
@@ -216,11 +216,11 @@ class Diagnostic:
 
 
 class RavemjWarning(UserWarning):
-    """Findings of one code, sent through Python's ``warnings``; filter on this class.
+    """Diagnostics of one code, sent through Python's ``warnings``; filter on this class.
 
     Attributes:
-        diagnostic: The first finding, with its place in the file.
-        diagnostics: All findings of this code from one reading, the first one included.
+        diagnostic: The first one.
+        diagnostics: All of this code from one reading, including the first one.
     """
 
     def __init__(self, diagnostic: Diagnostic, *others: Diagnostic) -> None:
@@ -230,12 +230,12 @@ class RavemjWarning(UserWarning):
 
     @property
     def code(self) -> str:
-        """Stable name of the kind of finding."""
+        """Stable name of the kind of problem."""
         return self.diagnostic.code
 
 
 class Diagnostics:
-    """The findings of one reading or translation, in the order in which they were made."""
+    """The diagnostics of one reading or translation, in order of time."""
 
     def __init__(self) -> None:
         self._found: list[Diagnostic] = []
@@ -247,38 +247,38 @@ class Diagnostics:
         return len(self._found)
 
     def add(self, diagnostic: Diagnostic) -> None:
-        """Record a finding that another collection holds."""
+        """Append a diagnostic."""
         self._found.append(diagnostic)
 
     def warn(self, code: str, message: str, source: Source, hint: str = "") -> None:
-        """Record something that OpenRAVE lets pass in silence or with a log line."""
+        """Record a problem that OpenRAVE ignores or only logs."""
         self._found.append(Diagnostic("warning", code, shortened(message), source, shortened(hint)))
 
     def note(self, code: str, message: str, source: Source, hint: str = "") -> None:
-        """Record something that is good to know and that nobody has to change."""
+        """Record useful information that requires no change."""
         self._found.append(Diagnostic("note", code, shortened(message), source, shortened(hint)))
 
     def error(self, code: str, message: str, source: Source, hint: str = "") -> None:
-        """Record something for which OpenRAVE's ``Load`` returns False though it goes on."""
+        """Record a problem for which OpenRAVE's ``Load`` returns False, although it continues."""
         self._found.append(Diagnostic("error", code, shortened(message), source, shortened(hint)))
 
 
 def _places(source: Source | None) -> Iterator[tuple[str, int]]:
-    """Yield file and line of a place and of those that included it."""
+    """Yield file and line of a position and of the elements that included it."""
     while source is not None:
         yield source.file, source.line
         source = source.included_from
 
 
 def describe(kind: str, message: str, source: Source, hint: str) -> str:
-    """Format a finding as compilers do: ``file:line: kind: message``."""
+    """Format a diagnostic like compilers: ``file:line: kind: message``."""
     tail = f"; {hint}" if hint else ""
     included = f" (included from {source.included_from.chain()})" if source.included_from else ""
     return f"{source}: {kind}: {message}{tail}{included}"
 
 
 def _and_others(first: Diagnostic, others: Sequence[Diagnostic]) -> str:
-    """Return the words for further findings: how many there are, where the first ones are, and what lists them all."""
+    """Return a text about further diagnostics: their number, the first sources, and the command that lists all."""
     if not others:
         return ""
     file = first.source.file
@@ -303,10 +303,10 @@ def send_warnings(diagnostics: Iterable[Diagnostic]) -> None:
 
 
 def send_warning(diagnostic: Diagnostic, *others: Diagnostic) -> None:
-    """Send findings of one code through Python's ``warnings``; the warning points at the user's line.
+    """Send diagnostics of one code through Python's ``warnings``; the warning points at the user's line.
 
-    What ``warnings`` keeps in order to show each text once is kept here, and bounded: a million values outside limits
-    would be a million texts.
+    The registry with which ``warnings`` shows each text once is kept here, with a limited size: a million values
+    outside limits would be a million texts.
     """
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] - what warnings.warn does
     while frame.f_code.co_filename.startswith(_PACKAGE) and frame.f_back is not None:

@@ -28,7 +28,7 @@ def print_error(error: RavemjError) -> None:
 
 
 def print_findings(findings: Iterable[Diagnostic], file: TextIO | None = None) -> None:
-    """Print diagnostics; those that differ only in sources or names share a line.
+    """Print diagnostics; diagnostics that differ only in sources or names share a line.
 
     Args:
         findings: The diagnostics.

@@ -42,7 +42,7 @@ def convert(options: argparse.Namespace) -> int:
 
 
 def choices_of(options: argparse.Namespace) -> TranslationChoices:
-    """Return the translation options to MJCF from those of a command."""
+    """Return the options of a translation to MJCF, given the options of a command."""
     return TranslationChoices(
         base=options.base,
         actuators=options.actuators,

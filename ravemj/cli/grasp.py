@@ -60,7 +60,7 @@ def _hand_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
 
 
 def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[Grasps, str]:
-    """Return the grasps that the arm reaches, or else those of the hand alone with a note that says so."""
+    """Return the grasps that the arm reaches, or else the grasps of the hand alone, and a note about this."""
     find = partial(grasps, robot, target, method=options.method, friction=options.friction, proofs=_SHOWN)
     unsolvable = _unsolvable(robot)
     if unsolvable:

@@ -84,7 +84,7 @@ def named_robot(env: Environment, name: str | None) -> Robot | None:
 
 
 def chosen_robots(env: Environment, name: str | None) -> list[Robot]:
-    """Return the robot of ``--robot``, by default all robots; raises what ``named_robot`` raises."""
+    """Return the robot of ``--robot``, by default all robots; raises the errors of ``named_robot``."""
     robot = named_robot(env, name)
     return env.GetRobots() if robot is None else [robot]
 
@@ -134,7 +134,7 @@ def model_file(name: str, *, download: bool = False) -> str:
 
 
 def xacro_arguments(name: str, own: str) -> dict[str, str]:
-    """Return as an attribute the xacro arguments of a packaged robot, followed by those of the user, ``own``."""
+    """Return the xacro arguments of a packaged robot, followed by the user's ``own``, as an attribute."""
     if os.path.exists(name) or not is_robot_name(name):
         return {}
     words = [f"{key}:={value}" for key, value in robot_file(name).arguments.items()]

@@ -178,7 +178,7 @@ def _segments(plan: Plan, nodes: Floats, lines: Sequence[tuple[int, int]]) -> Fl
 
 
 def _hand(plan: Plan, values: Floats) -> Floats:
-    """Return the tool positions in the world (without an arm, those of the last link) for configurations, (n, 3)."""
+    """Return the tool positions in the world for configurations, shape (n, 3); without an arm, of the last link."""
     if plan.arm is None:
         link = plan.robot.GetLinks()[-1]
         place = np.nan_to_num(link.GetLocalCOM())

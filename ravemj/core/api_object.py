@@ -12,7 +12,7 @@ Thing = TypeVar("Thing")
 
 
 class _ApiType(type):
-    """Metaclass that makes ``dir`` of a class the same as that of its objects, since IPython completes with both."""
+    """Metaclass that makes ``dir`` of a class equal to ``dir`` of its objects, since IPython completes with both."""
 
     def __dir__(cls) -> list[str]:
         return _listed(cls, super().__dir__())
@@ -50,7 +50,7 @@ class ApiObject(metaclass=_ApiType):
 
 
 def published(thing: Thing, module: str) -> Thing:
-    """Return a function or class of a module for users: its errors name arguments, its signature is as written."""
+    """Prepare a public function or class: errors name wrong arguments, signatures are shown as in the source."""
     if isinstance(thing, FunctionType):
         thing = cast("Thing", explained(thing))
         thing.__module__ = module  # where pickle finds it

@@ -23,7 +23,7 @@ from ravemj.errors import ArgumentError, RavemjError
 
 _PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, LookupError, ArithmeticError, MemoryError)
 _OURS = (*map(os.path.dirname, (os.path.dirname(__file__), os.__file__, np.__file__)), "<frozen", "<__array_function__")
-"""Path prefixes of the code of ravemj, Python and numpy; errors from other code, as users' functions, stay as is.
+"""Path prefixes of the code of ravemj, Python and numpy; errors from other code, such as a user's, are not changed.
 
 File names of numpy's compiled code end in ``.pyx``.
 """
@@ -137,7 +137,7 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
 
 
 def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Exception | None:
-    """Return an error of Python with the arguments that caused it; None if it names them, or comes from user code."""
+    """Return an error of Python extended by the given arguments; None if it names one, or comes from user code."""
     files = [frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__)]
     if isinstance(error, RavemjError) or not all(file.startswith(_OURS) or file.endswith(".pyx") for file in files):
         return None

@@ -51,7 +51,7 @@ def checked_numbers(values: ArrayLike, name: str) -> Floats:
 
 
 def _floats(values: ArrayLike, name: str) -> Floats:
-    """Return ``checked_numbers``, or the array itself if it has floats."""
+    """Return the result of ``checked_numbers``, or the array itself if it already has floats."""
     if type(values) is np.ndarray and values.dtype is FLOAT and values.ndim:
         return values
     return checked_numbers(values, name)
@@ -90,7 +90,7 @@ def checked_number(value: float, name: str, least: float = -math.inf, unit: str 
 
 
 def finite_vector(values: ArrayLike, length: int, name: str) -> Floats:
-    """Return ``checked_vector``, or the array itself if it is valid, for read-only use."""
+    """Return the result of ``checked_vector``, or the array itself if it is valid, for read-only use."""
     if (
         type(values) is np.ndarray
         and values.dtype is FLOAT
@@ -210,7 +210,7 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
 
 
 def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
-    """Return rigid transforms, shape (n, 4, 4); accepts and raises for each what ``checked_transform`` does."""
+    """Return rigid transforms, shape (n, 4, 4); see ``checked_transform`` for accepted forms and errors."""
     try:
         given = np.array(transforms, dtype=np.float64)
     except (TypeError, ValueError):

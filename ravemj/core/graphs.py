@@ -127,7 +127,7 @@ class ShortestPaths:
         return nearer[0]
 
     def _largest_inner(self, start: int, end: int, distance: dict[int, int]) -> int:
-        """Return the minimum, over the shortest paths between two nodes, of the largest inner node."""
+        """Return the largest inner node of a shortest path, minimized over all shortest paths between two nodes."""
         layers = [{start}]
         while end not in layers[-1]:
             layers.append({near for node in layers[-1] for near in self._nearer(node, distance)})
@@ -143,7 +143,7 @@ class ShortestPaths:
         return [other for other in self._edge[node] if distance.get(other, len(self._edge)) < distance[node]]
 
     def _distances(self, origin: int, wanted: int) -> dict[int, int]:
-        """Return the distances of nodes from an origin, up to that of ``wanted`` (breadth-first search)."""
+        """Return the distances of nodes from an origin, up to the distance of ``wanted`` (breadth-first search)."""
         distance = {origin: 0}
         queue = deque([origin])
         while queue and wanted not in distance:
@@ -175,7 +175,7 @@ class ShortestPaths:
 
 
 def nodes_between(edges: Iterable[Pair], count: int, start: int, end: int) -> set[int]:
-    """Return the nodes on simple paths between two nodes, which visit no node twice; none if the two are equal.
+    """Return the nodes on paths between two nodes that visit no node twice; none if the two are equal.
 
     An edge lies on such a path if both of its nodes do. These nodes are in one block (biconnected component) with an
     additional edge from the start to the end.

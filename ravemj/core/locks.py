@@ -25,7 +25,7 @@ else:
     _Lock = type(RLock())
 
 LAST_CALL = 1.0
-"""Maximum time [s] that the exit waits for computing threads, and again for those that it ends."""
+"""Maximum time that the exit waits for computing threads, and once more for threads that it ends [s]."""
 
 _EACH = 0.05
 """Minimum waiting time [s] for a thread that the exit has ended; another may have been waiting for the same lock."""

@@ -59,7 +59,7 @@ def check_folder(path: AnyPath, *patterns: str) -> None:
 
 @contextmanager
 def new_file(path: AnyPath) -> Generator[Path]:
-    """Create a file: write it at the yielded temporary path, which the end of the block renames.
+    """Context manager that yields a temporary path for writing a file, and renames the file at the end.
 
     Raises:
         OutputError: ``check_file`` fails, or the temporary file cannot be created or renamed.
@@ -76,7 +76,7 @@ def new_file(path: AnyPath) -> Generator[Path]:
 
 @contextmanager
 def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
-    """Create a folder of files: write them into the yielded temporary folder, which the end of the block renames.
+    """Context manager that yields a temporary folder for writing files, and renames the folder at the end.
 
     Raises:
         OutputError: ``check_folder`` fails, or the temporary folder cannot be created or renamed.
@@ -94,7 +94,7 @@ def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
 
 @contextmanager
 def added_files(path: AnyPath) -> Generator[Path]:
-    """Add files to a folder: write them into the yielded temporary folder.
+    """Context manager that yields a temporary folder for writing files, and moves the files at the end.
 
     The end of the block moves all of them, or none; it creates the folder if necessary. Files of the same names are
     replaced.

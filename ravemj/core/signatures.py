@@ -12,7 +12,7 @@ from typing import Any
 
 
 class _Annotation:
-    """An annotation whose ``repr``, which signatures show, is its source."""
+    """Annotation whose ``repr`` is its source, for display in signatures."""
 
     def __init__(self, source: str) -> None:
         self._source = source

@@ -16,15 +16,15 @@ _SMALL = 1e-4
 
 
 def translation_columns(affinedofs: int) -> list[int]:
-    """Return the components X, Y and Z, counted from 0, among affine DOFs."""
+    """Return the indices of the translational components, 0 for X to 2 for Z, among affine DOFs."""
     return [column for column, part in _TRANSLATIONS if part & affinedofs]
 
 
 class AffineMotion:
     """Motion of a base by its affine DOFs, at one pose.
 
-    ``translations`` are the translational DOFs, counted from 0. ``angular`` is the base's angular velocity in the world
-    per rate of each rotational value, shape (3, 0, 1, 3 or 4).
+    ``translations`` are the indices, 0 to 2, of the translational DOFs. ``angular`` is the base's angular velocity in
+    the world per rate of each rotational value, shape (3, 0, 1, 3 or 4).
     """
 
     def __init__(self, pose: Pose, affinedofs: int, axis: Vec3) -> None:

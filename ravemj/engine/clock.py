@@ -23,7 +23,7 @@ PAUSE = 1e-4
 """Minimum time [s] without the lock between steps, so that other threads can acquire it."""
 
 BEHIND = 0.1
-"""Maximum delay in real time [s] that the thread catches up with; a longer delay is cut to it."""
+"""Maximum delay in real time that the thread makes up [s]; the rest of a longer delay is dropped."""
 
 LAST_STEP = 1.0
 """Time limit [s] for a running step at the exit of Python; a script's controller may block in it."""
@@ -111,7 +111,7 @@ class Clock:
             thread.join()
 
     def lose_thread(self) -> None:
-        """If the calling thread is the clock's, note that it ends; ``wake`` then starts another one."""
+        """Record that the clock's thread ends, if this is the calling thread; ``wake`` then starts another one."""
         with self._starting:
             if self._thread is threading.current_thread():
                 self._thread = None

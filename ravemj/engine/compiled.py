@@ -128,7 +128,7 @@ def compile_text(
 
 
 def _keep_centers(model: mujoco.MjModel) -> None:
-    """Make MuJoCo use every inertial frame; it would replace frames within 1e-6 of the body's frame by the latter."""
+    """Make MuJoCo use every inertial frame; by default it ignores those within 1e-6 of the body frame."""
     moved = (model.body_ipos != 0).any(axis=1) | (model.body_iquat[:, 0] != 1)
     model.body_sameframe[moved] = 0
 

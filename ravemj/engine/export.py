@@ -36,7 +36,7 @@ def _former_mark(model: AnyPath) -> str:
 
 
 def is_folder(path: AnyPath) -> bool:
-    """Return whether a path names a folder: an existing one, or one without suffix or with a final slash."""
+    """Return whether a path names a folder: an existing folder, a name without suffix, or with a final slash."""
     text = os.fspath(path)
     return text.endswith(("/", os.sep)) or os.path.isdir(text) or not os.path.splitext(text)[1]
 

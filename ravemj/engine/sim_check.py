@@ -65,7 +65,7 @@ def check(translation: Translation) -> Iterator[Point]:
 
 
 def summary(translation: Translation) -> str:
-    """Summarize in one line how well servos hold the start pose, and which pairs were excluded; may be empty."""
+    """Return one line on how well servos hold the start pose, and which pairs were excluded; may be empty."""
     parts: list[str] = []
     if translation.choices.actuators == "position" and translation.model.nu:
         parts.append(_standing(translation).value if _is_free(translation) else _holding(translation).value)
@@ -93,7 +93,7 @@ def _names(translation: Translation) -> Point:
 
 
 def _numbers(translation: Translation) -> Point:
-    """Compare masses and inertias with the file's, and count the mimic joints that became equalities."""
+    """Compare the total mass with the file's; report changed inertias, unlimited joints and missing equalities."""
     model, point = translation.model, Point("masses, limits, mimic", "")
     given = sum(link.inertial.mass for body in translation.bodies for link in body.links)
     total = float(model.body_mass.sum())
@@ -115,7 +115,7 @@ def _numbers(translation: Translation) -> Point:
 
 
 def _shapes(translation: Translation) -> Point:
-    """Compare the bounding box of each link's shapes with that of its geoms in the model."""
+    """Compare the bounding boxes of each link's shapes and of its geoms in the model."""
     model, point = translation.model, Point("shapes", f"{translation.model.ngeom} geoms")
     if translation.choices.merge_fixed:
         point.notes.append("fixed links are merged: their shapes are not compared")

@@ -36,7 +36,7 @@ HOME = "home"
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 _LIGHT = 1e-8
-"""Inertia [kg m^2 or kg] below which that of a joint is suspicious."""
+"""Inertia [kg m^2 or kg] of a joint below which a warning is given."""
 
 _LIGHT_DISTANCE = 2.0
 """Distance of lights from the centre of a model, in multiples of its extent."""
@@ -148,7 +148,7 @@ def translated(
     model: AnyPath,
     sensors: tuple[AttachedSensor, ...] = (),
 ) -> Translation:
-    """Translate the bodies of a simulation in their present state; raises what ``translate`` raises.
+    """Translate the bodies of a simulation in their present state; raises the errors of ``translate``.
 
     ``model`` is the file that they were read from. ``sensors`` are sensors without a robot, which are stored only for
     reading the document again. Other arguments as for ``translate``.
@@ -229,7 +229,7 @@ def _check_state(scene: Scene, choices: TranslationChoices) -> None:
 def _gains(
     scene: Scene, starts: Sequence[Floats], choices: TranslationChoices, diagnostics: Diagnostics
 ) -> tuple[Gains | None, ...]:
-    """Return the servo gains of each body; those of a file replace computed ones."""
+    """Return the servo gains of each body: from the gains file if given, else computed."""
     given = [] if choices.gains is None else read_gains(choices.gains)
     check_used(given, [name for body in scene.bodies for name in body.dof_names])
     timestep = choices.timestep or TIMESTEP

@@ -12,7 +12,7 @@ from ravemj.formats.data_folders import data_folders
 
 
 class FileAccess:
-    """File access of one reading: permitted files, and files read so far.
+    """File access while reading a model: permitted files, and files read so far.
 
     Attributes:
         diagnostics: Receives diagnostics of the reading.
@@ -31,12 +31,12 @@ class FileAccess:
 
     @classmethod
     def opened(cls, path: str) -> "FileAccess":
-        """Return the access of a model that its user opens; a text counts as a file in the working folder."""
+        """Return the access for a model that its user opens; a text is treated as a file in the working folder."""
         return cls((os.path.dirname(path), *data_folders()), is_dropped=False)
 
     @classmethod
     def dropped(cls, path: str, others: Iterable[str] = ()) -> "FileAccess":
-        """Return the access of a model that was dropped on a viewer, together with other files."""
+        """Return the access for a model that was dropped on a viewer, together with other files."""
         return cls((os.path.dirname(path), path, *others), is_dropped=True)
 
     def permits(self, path: str) -> bool:
@@ -61,7 +61,7 @@ class FileAccess:
         return any(is_inside(path, place) for place in places) and self.permits(path)
 
     def candidates(self, name: str, *folders: str) -> list[str]:
-        """Return the paths at which to search a model or mesh file: in some folders, then in ``OPENRAVE_DATA``.
+        """Return the paths at which to search a model or mesh file: in ``folders``, then in ``OPENRAVE_DATA``.
 
         The list is empty if the file must not be read.
         """
@@ -115,6 +115,6 @@ class FileAccess:
 
 
 def is_inside(path: str, place: str) -> bool:
-    """Return whether an absolute path is a place or below it; paths are compared as written."""
+    """Return whether an absolute path is ``place`` or below it; symbolic links are not resolved."""
     path, place = os.path.normcase(path), os.path.normcase(place)
     return path == place or path.startswith(os.path.join(place, ""))

@@ -87,7 +87,7 @@ def robot_file(name: str, *, download: bool = False, say: Callable[[str], None] 
 
 
 def _folder(package: str) -> Path | None:
-    """Return the folder of a package that is installed; it is not imported."""
+    """Return the folder of an installed package without importing it, or None."""
     spec = importlib.util.find_spec(package)
     places = None if spec is None else spec.submodule_search_locations
     return Path(next(iter(places))) if places else None

@@ -130,7 +130,7 @@ def is_text(device: Device, tag: SensorTag) -> bool:
 
 
 def written(device: Device, *, collada: bool = False) -> list[tuple[str, str | float | Sequence[float]]]:
-    """Return the elements that describe a device, one name for each field whose value is not the default.
+    """Return tag and content of each element that describes a device, for values other than the defaults.
 
     Args:
         device: The device.

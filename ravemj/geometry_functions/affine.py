@@ -169,7 +169,7 @@ def rotation_values(pose: Pose, part: DOFAffine, axis: Vec3 = Z_AXIS) -> list[fl
 
 
 def pose_with_values(pose: Pose, values: Floats, affinedofs: int, axis: Vec3 = Z_AXIS) -> Pose:
-    """Return the pose with some components replaced."""
+    """Return the pose with the components ``affinedofs`` replaced."""
     position, quaternion = list(pose.position), pose.wxyz
     numbers = iter(values.tolist())
     for part in _parts(affinedofs):

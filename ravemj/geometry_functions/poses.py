@@ -177,7 +177,7 @@ def quatArrayTMult(qarray: ArrayLike, q: ArrayLike) -> Floats:
 
 
 def quatMultArrayT(q: ArrayLike, qarray: ArrayLike) -> Floats:
-    """Return the quaternion ``q`` times each one of ``qarray``, shape (n, 4); shape (n, 4)."""
+    """Return the quaternion ``q`` times each quaternion of ``qarray``, shape (n, 4); shape (n, 4)."""
     return _products(arguments.numbers(q, 4, "q"), arguments.table(qarray, 4, "qarray"))
 
 

@@ -63,7 +63,7 @@ class PoseSet:
         return self._Tw_0 @ T0_s @ self._Te_w
 
     def coordinates(self, T0_s: Floats) -> Floats:
-        """Return the six coordinates of a pose; of equivalent roll, pitch and yaw, those nearest to the bounds."""
+        """Return the six coordinates of a pose; of equivalent angle triples, the one nearest to the bounds."""
         return self._displaced(self.relative(T0_s))[0]
 
     def displacement(self, T0_s: Floats) -> Floats:
@@ -75,7 +75,7 @@ class PoseSet:
         return float(np.linalg.norm(self.displacement(T0_s)))
 
     def nearest(self, T0_s: Floats) -> Floats:
-        """Return the pose of the region whose coordinates are those of another pose, clipped to the bounds."""
+        """Return the pose in the region obtained by clipping the coordinates of another pose to the bounds."""
         coordinates, displacement = self._displaced(self.relative(T0_s))
         return self.poses((coordinates - displacement)[None])[0]
 

@@ -243,7 +243,7 @@ def InterpolateQuatSquad(
         quat2: Control quaternion near the end.
         quat3: Unit quaternion at t = 1.
         t: From 0 to 1.
-        forceshortarc: As for ``quatSlerp``.
+        forceshortarc: As for ``InterpolateQuatSlerp``.
 
     Returns:
         Unit quaternion, shape (4,).

@@ -42,7 +42,7 @@ class _MovingAxis(NamedTuple):
 
 
 def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
-    """Return the joints from the base of a manipulator to its tool; its variables are in the order of ``arm_dofs``.
+    """Return the chain from the base of a manipulator to its tool; its variables are in the order of ``arm_dofs``.
 
     Passive joints without mimic equation keep their loaded values. Joints locked later by equal limits still belong to
     the arm.

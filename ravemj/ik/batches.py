@@ -1,4 +1,4 @@
-"""Batches of goals: all solutions, in the order of ``ArmSolutions.solve_one`` for each goal."""
+"""Inverse kinematics for batches of goals; the order of solutions is that of ``ArmSolutions.solve_one``."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +12,7 @@ from ravemj.ik.vectors import Bools, Floats, Ints
 def solve_each(
     solver: ArmSolutions, goals: ArrayLike, *, free: Floats | None = None, limits: bool = True
 ) -> tuple[Floats, Ints]:
-    """Return the solutions of all goals, with all turns within the limits.
+    """Return all solutions of all goals, including equivalents by whole turns within the limits.
 
     Goals with singular solutions, or with solutions only between the samples of free joints, are solved one by one.
 
@@ -60,10 +60,15 @@ def _joined(solver: ArmSolutions, rows: dict[int, Floats]) -> tuple[Floats, Ints
 
 
 def padded(rows: Floats, sources: Ints, count: int) -> tuple[Floats, Bools]:
-    """Pad the solutions (M, n) of all goals to arrays of equal length.
+    """Group solutions (M, n) by goal, padded with NaN to the same number K for each goal.
+
+    Args:
+        rows: The solutions.
+        sources: The index of the goal of each solution, ascending, shape (M,).
+        count: The number of goals.
 
     Returns:
-        Joint values, shape (count, K, n), padded with NaN, and the mask of valid rows, shape (count, K).
+        Joint values, shape (count, K, n), and the mask of valid rows, shape (count, K).
     """
     numbers = np.bincount(sources, minlength=count)
     most = int(numbers.max(initial=0))

@@ -29,7 +29,7 @@ def nearest_first(
     limits: bool = True,
     fine: bool = True,
 ) -> Iterator[Floats]:
-    """Yield all solutions and their turns within the limits, those nearest to a configuration first.
+    """Yield all solutions and their equivalents by whole turns within the limits, those nearest to ``seed`` first.
 
     Free joints take precedence: all solutions for the nearest free value come first.
 
@@ -48,7 +48,7 @@ def nearest_first(
 
 
 def ranked(solver: ArmSolutions, goal: Floats, start: Floats) -> list[tuple[Floats, str]]:
-    """Return all solutions and their branch names, those nearest to a configuration first.
+    """Return all solutions and their branch names, those nearest to ``start`` first.
 
     They include solutions outside the limits; angles are shifted by whole turns into their limits if possible. If no
     sample of the free joints gives a solution within the limits, solutions between the samples are added.
@@ -86,7 +86,7 @@ def branch_names(solver: ArmSolutions, count: int) -> list[str]:
 def everything(
     solver: ArmSolutions, goal: Floats, *, free: Floats | None = None, limits: bool = True, fine: bool = True
 ) -> Iterator[Floats]:
-    """Yield all solutions of ``solve_one``, shape (K, n), then more batches for callers that rejected all of them.
+    """Yield batches of solutions (K, n): first all of ``solve_one``, then more for callers that reject these.
 
     The arguments are those of ``nearest_first``.
     """
@@ -143,10 +143,11 @@ def beyond_samples(
     limits: bool = True,
     fine: bool = True,
 ) -> Iterator[Floats]:
-    """Yield batches of solutions (K, n) for callers that have rejected those at the samples of the free joints.
+    """Yield batches of solutions (K, n) at free joint values other than the samples.
 
-    First come solutions between samples that have none. Then, if one joint is free, its solvable intervals are tried:
-    in the middle, at the ends, at eight more values, and then at values between these.
+    Callers use it if they rejected the solutions at the samples. First come the solutions of ``solver.between``. Then,
+    if one joint is free, the intervals in which it has solutions are tried: in the middle, at the ends, at eight more
+    values, and then at values between these.
 
     Args:
         solver: A solver in closed form with free joints.

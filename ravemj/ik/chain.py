@@ -18,7 +18,7 @@ Turns = Sequence[Floats] | Floats
 """Cosines and sines, shape (2, …), or distances, (1, …), of each joint; one array if all joints are revolute."""
 _IDENTITY = np.eye(3)
 _EXACT, _NEARLY = 1e-12, 1e-3
-"""Maximum error of a rotation that is a rounding error, and of one that is corrected."""
+"""Maximum errors of a rotation: accepted as rounding error, and corrected to the nearest rotation."""
 _FEW = 128
 """Number of configurations up to which the overhead of numpy calls dominates."""
 
@@ -167,7 +167,7 @@ class Chain:
 
     @cached_property
     def _motions(self) -> Floats:
-        """Joint motions as matrices that multiply 1, cosine and sine, or 1, value and 0, shape (n, 3, 16)."""
+        """Matrices A, B, C of each joint's motion, shape (n, 3, 16): A + B cos(q) + C sin(q), if prismatic A + B q."""
         motions = np.zeros((self.dof, 3, 4, 4))
         for motion, axis, point, sliding in zip(motions, self.axes, self.points, self.prismatic.tolist(), strict=True):
             motion[0, 3, 3] = 1
@@ -240,7 +240,7 @@ class Chain:
         return frames[:, 2].transpose(0, 2, 1), frames[:, 3].transpose(0, 2, 1)
 
     def differences(self, values: Floats, others: Floats) -> Floats:
-        """Return the largest joint difference between configurations (..., n), shape (...), regardless of turns.
+        """Return the largest joint difference between configurations (..., n), ignoring whole turns, shape (...).
 
         Revolute joints are measured by a chord of the unit circle, prismatic ones in units of the reach.
         """

@@ -22,13 +22,16 @@ ACCURATE = 1e-9
 _CHUNK = 1536
 """Maximum number of poses per batch, so that the arrays fit into the processor's cache."""
 _MARGIN = 0.05
-"""Distance from the limits [rad or m] within which solutions are refined; refinement moves them less than that."""
+"""Distance from the limits [rad or m], larger than any refinement, within which solutions are refined."""
 _SAME = 1e-5
 """Tolerance of equal solutions."""
 _STEPS = 12
 """Maximum number of Newton steps."""
 _SETTLED, _SLOWEST = 3, 0.5
-"""Number of steps after which each must reduce the error by a factor; Newton reaches 0.25 at double roots."""
+"""Number of Newton steps before convergence is checked, and the maximum error ratio of a later step.
+
+At double roots, Newton's method reaches a ratio of 0.25.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +86,7 @@ class ClosedForm:
         chain: The true arm.
         task: The constrained components of the pose.
         family: The family.
-        near: Maximum error of the family's solutions that are refined.
+        near: Maximum error up to which a solution of the family is refined.
     """
 
     def __init__(self, chain: Chain, task: Task, family: Family, *, snapped: bool) -> None:
@@ -120,7 +123,7 @@ class ClosedForm:
         return names
 
     def solve(self, poses: Floats, locked: Floats | None = None, *, limits: bool = False) -> Solutions:
-        """Return all solutions; with ``limits``, some outside of the limits may be omitted.
+        """Return all solutions; with ``limits``, solutions outside of the limits may be missing.
 
         Args:
             poses: Poses of the tool in the base, shape (N, 4, 4).
@@ -163,12 +166,12 @@ class ClosedForm:
         return error
 
     def chain_turns(self, values: Floats) -> list[Floats]:
-        """Convert joint values of shape (n, B, N) to turns (2, B, N) and distances (1, B, N)."""
+        """Convert joint values of shape (n, B, N) to cosines and sines (2, B, N) and distances (1, B, N)."""
         flat = self.chain.turns(values.reshape(len(values), -1).T)
         return [turn.reshape(len(turn), *values.shape[1:]) for turn in flat]
 
     def _turns(self, poses: Floats, locked: Floats, shape: tuple[int, ...]) -> Turns:
-        """Return the family's solution for each joint of the chain, turns (2, B, N) or distances (1, B, N)."""
+        """Return the family's solution for each joint, as cosine and sine (2, B, N) or distances (1, B, N)."""
         if self._one_pose is not None and len(poses) == 1:
             return self._turns_of_one(poses[0], self._one_pose)
         reach = self.chain.reach
@@ -216,7 +219,7 @@ class ClosedForm:
         return self._error(tool, poses[:, :3].transpose(2, 1, 0))
 
     def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> None:
-        """Refine solutions with Newton's method, and mark those that reach their pose as valid."""
+        """Refine doubtful solutions with Newton's method, and mark as valid those that reach their goal."""
         branch, pose = np.nonzero(doubtful)
         start = values[:, branch, pose].T
         refined, error = self.refine(start, goal[:, :, pose])
@@ -260,7 +263,7 @@ class ClosedForm:
 
 
 def _flat(turns: Turns) -> Turns:
-    """Flatten branches and poses of turns and distances into one axis."""
+    """Flatten branches and poses of joint values (cosine and sine, or distances) into one axis."""
     if isinstance(turns, np.ndarray):
         return turns.reshape(*turns.shape[:2], -1)
     return [turn.reshape(len(turn), -1) for turn in turns]

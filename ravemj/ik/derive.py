@@ -45,7 +45,7 @@ class Validation:
 
 
 def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Validation:
-    """Validate a solver: solve the poses of random configurations, and look for these among the solutions.
+    """Validate a solver: random configurations must be among the solutions for their tool poses.
 
     Angles are in ±pi regardless of limits, since closed-form solvers ignore limits.
     """
@@ -77,7 +77,7 @@ def derive(
     Args:
         chain: The arm.
         task: The constrained components of the tool pose.
-        locked: Joints whose values will be given; the other joints are at most as many as the task constrains.
+        locked: Joints whose values will be given; at most ``task.dof`` joints remain.
         general: Whether to try the eigenvalue problem of general arms, instead of the special families.
 
     Returns:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.ik.solver import ArmSolutions
 
 _STEEP = 1.0
-"""A minimum of the excess cannot reach 0 if it is larger than this multiple of its difference to adjacent samples."""
+"""Maximum ratio of a minimum of the excess to the rise beside it with which the excess may reach 0."""
 _CLOSE = 0.5
 """Maximum excess from which a descent is started."""
 _ENOUGH = 32

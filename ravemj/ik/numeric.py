@@ -71,7 +71,7 @@ class NumericSolver:
         self._identity = np.eye(chain.dof)
 
     def descend(self, pose: Floats, start: Floats) -> Nearest:
-        """Reduce the error of a pose (4, 4) from a start (n,), until it is solved or stalls."""
+        """Descend from a start (n,) towards a pose (4, 4), until it is reached or the error stalls."""
         values = np.minimum(np.maximum(start, self._lowest), self._highest)
         best, at, stalled, step = np.inf, values, 0, 0
         for step in range(_STEPS):  # noqa: B007 - it is in the result
@@ -86,7 +86,7 @@ class NumericSolver:
         return Nearest(at, float(np.sqrt(best)), step + 1)
 
     def shortfall(self, pose: Floats, values: Floats) -> tuple[float, float]:
-        """Return distance [m] and angle [rad] of the tool at joint values (n,) to a pose, as far as constrained."""
+        """Return distance [m] and angle [rad] of the tool at ``values`` to a pose; free components are ignored."""
         error, _ = self._residual(pose, values, _PLAIN)
         turning = np.array(component_rows(self.task)) > 2
         distance, turn = float(np.linalg.norm(error[~turning])), float(np.linalg.norm(error[turning]))
@@ -98,7 +98,7 @@ class NumericSolver:
         return distance, turn
 
     def _residual(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
-        """Return the tool's error against a pose, and the Jacobian that reduces it, multiplied by ``scale``."""
+        """Return the error of the tool relative to a pose, and the task's Jacobian, both times ``scale``."""
         rotation, place, jacobian = self._kinematics(values)
         if self.task is not Task.TRANSFORM:
             return residual_and_jacobian(self.chain, self.task, pose, ToolState(rotation, place, jacobian), scale)
@@ -119,7 +119,7 @@ class NumericSolver:
         return ahead
 
     def start(self, number: int) -> Floats:
-        """Return start number ``number``, shape (n,), from a low-discrepancy sequence."""
+        """Return start configuration ``number`` of a low-discrepancy sequence, shape (n,)."""
         return self._low + (self._high - self._low) * _evenly(self.chain.dof, number)
 
     def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:
@@ -136,7 +136,7 @@ class NumericSolver:
         return None
 
     def solve_all(self, pose: Floats) -> Floats:
-        """Return the solutions within the limits found from all starts, shape (K, n); it may miss some."""
+        """Return the solutions within the limits found from all starts, shape (K, n); others may exist."""
         rows: list[Floats] = []
         for number in range(self.starts):
             reached = self.descend(pose, self.start(number))

@@ -91,7 +91,7 @@ def _same_line(chain: Chain, joint: int, axis: Floats, place: Floats) -> bool:
 
 
 class ReducedForm:
-    """Closed-form solver through that of a longer arm, with the interface of ``ClosedForm``.
+    """Closed-form solver that uses the solver of a longer arm, with the interface of ``ClosedForm``.
 
     Attributes:
         chain: The arm itself.

@@ -37,7 +37,7 @@ def rank(chain: Chain, task: Task) -> int:
 def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
     """Return the Jacobians of a task in configurations (M, n), each of shape (k, n).
 
-    Lengths are divided by the reach. ``goal`` is a pose (4, 4); by default the one that the configuration reaches.
+    Lengths are divided by the reach. ``goal`` is a pose (4, 4); by default the pose of each configuration.
     """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -121,7 +121,7 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
-    """Return those of configurations (K, n) in which two joints rotate about one line.
+    """Return the configurations among ``rows`` (K, n) in which two joints rotate about one line.
 
     Each item is the configuration, the two joints, and 1 or -1 for equal or opposite directions.
     """
@@ -138,7 +138,7 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 
 
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
-    """Return other configurations (K, n) with the tool pose of a singular one, an item of ``singular_rows``.
+    """Return other configurations (K, n) with the same tool pose as a singular one, an item of ``singular_rows``.
 
     One result has the value of the first of the two joints in ``seed``, another that of the second.
     """

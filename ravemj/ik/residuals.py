@@ -115,7 +115,7 @@ _RESIDUALS: dict[Task, Callable[[Chain, Task, Floats, ToolState], tuple[Floats, 
 
 
 def rotation_between(rotation: Floats, pose: Floats) -> Floats:
-    """Return the rotation vector, in base axes, from a rotation (3, 3) to that of a pose."""
+    """Return the rotation vector, in base axes, from ``rotation`` (3, 3) to the rotation of ``pose``."""
     (a, b, c), (d, e, f), (g, h, i) = (pose[:3, :3] @ rotation.T).tolist()
     x, y, z = h - f, c - g, d - b
     sine, cosine = (x * x + y * y + z * z) ** 0.5, a + e + i - 1  # twice both

@@ -44,9 +44,9 @@ def null_space_path(
     step: float = 0.05,
     length: float = 2 * np.pi,
 ) -> Floats:
-    """Return configurations along a path through the null space that keeps a goal.
+    """Return configurations along a self-motion of the arm, during which the tool keeps its goal.
 
-    It ends at a limit, when it returns to its start, or after ``length``.
+    The path ends at a limit, when it returns to its start, or after ``length``.
 
     Args:
         solver: The solver of the arm.
@@ -114,7 +114,7 @@ def sweep(solver: ArmSolutions, goal: ArrayLike, seed: Floats, *, step: float = 
 
 
 def _followed(solver: ArmSolutions, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
-    """Return configurations for values of the free joint, each nearest to the previous one, until there is none."""
+    """Return a solution for each value of the free joint, nearest to the previous one; stop if there is none."""
     assert solver.closed is not None
     solutions = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])
     rows, last = list[Floats](), start

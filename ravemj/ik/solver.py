@@ -118,7 +118,7 @@ class ArmSolutions:
         return redundancy.affordable(self.chain, self.free, self.steps)
 
     def solve(self, goals: ArrayLike, *, free: Floats | None = None, limits: bool = True) -> Solutions:
-        """Return all solutions of many goals, one turn of each.
+        """Return all solutions of many goals, without their equivalents by whole turns.
 
         Args:
             goals: Poses (N, 4, 4), or other goals of the task, with N as first axis.
@@ -159,9 +159,10 @@ class ArmSolutions:
         return Solutions(values, valid, np.zeros(len(poses), dtype=bool), np.zeros(valid.shape))
 
     def solve_one(self, goal: ArrayLike, *, free: Floats | None = None, limits: bool = True) -> Floats:
-        """Return all solutions of a goal, shape (K, n), with all turns within the limits, and singular ones sampled.
+        """Return all solutions of a goal and their equivalents by whole turns within the limits, shape (K, n).
 
-        The arguments are those of ``solve``, for one goal. Without limits, every solution is returned once.
+        In singular configurations, samples of the infinitely many solutions are returned. The arguments are those of
+        ``solve``, for one goal. Without limits, every solution is returned once.
         """
         pose = goal_poses(self.chain, self.task, goal)
         if self.closed is None:
@@ -195,7 +196,7 @@ class ArmSolutions:
             samples: The samples, shape (K, k).
             solutions: The result of ``at`` for the samples.
             seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
-            limits: Whether to enforce limits; turns are left to the caller.
+            limits: Whether to enforce limits; equivalents by whole turns are left to the caller.
         """
         for row, here in between_samples(self, pose, samples, solutions):
             more = here if here is not None and limits else self.at(pose, row[None, list(self.free)], limits=limits)
@@ -203,7 +204,7 @@ class ArmSolutions:
             yield np.vstack([row, others[self.chain.differences(others, row) > DISTINCT]])
 
     def spread(self, rows: Floats, at: Floats | None = None) -> Floats:
-        """Add equivalent configurations to solutions in which two joints rotate about one line."""
+        """Return solutions, with equivalent ones added if two joints of a solution rotate about one line."""
         if self.task is not Task.TRANSFORM or not len(rows):
             return rows
         extra = [redundancy.spread(self.chain, row, at) for row in redundancy.singular_rows(self.chain, rows)]
@@ -296,7 +297,7 @@ class ArmSolutions:
 
 
 def _solve_alike(closed: ClosedForm | ReducedForm, poses: Floats, values: Floats | None, *, limits: bool) -> Solutions:
-    """Solve poses; a single pose is solved twice at once, since BLAS rounds single poses differently."""
+    """Solve poses; a single pose is passed twice, since BLAS rounds a batch of one differently from larger ones."""
     if len(poses) != 1:
         return closed.solve(poses, values, limits=limits)
     both = closed.solve(

@@ -14,12 +14,12 @@ import numpy as np
 from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
 ON_AXIS = 2e-11
-"""Distance of a unit vector from an axis below which it counts as parallel to it, so that any turn is accurate."""
+"""Distance from an axis below which a unit vector counts as parallel to it, so that any turn is accurate."""
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
 
 def normalized(turn: Floats, least: float = TINY) -> Floats:
-    """Normalize turns to unit length; turns shorter than ``least`` become the turn by 0."""
+    """Normalize turns (cosine, sine) to unit length; those shorter than ``least`` become the turn by 0."""
     length = np.sqrt(turn[0] * turn[0] + turn[1] * turn[1])
     if length.min(initial=np.inf) < least:
         none = length < least
@@ -29,7 +29,7 @@ def normalized(turn: Floats, least: float = TINY) -> Floats:
 
 
 def turn_between(joint: Screw, start: Floats, end: Floats) -> Floats:
-    """Return the turns (2, B, N) of a joint that carry a direction (3, B, N) nearest to another (subproblem 1).
+    """Return cosine and sine (2, B, N) of the turn that carries ``start`` (3, B, N) nearest to ``end`` (subproblem 1).
 
     Directions are relative to the joint's point. If one is along the axis, the result is the turn by 0.
     """
@@ -42,8 +42,8 @@ def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
     """Solve a cos(q) + b sin(q) = d (subproblems 3 and 4).
 
     Returns:
-        Both turns, shape (2, 2 B, N), first those of one sign, then those of the other. Without solution, both are
-            the nearest turn.
+        Cosine and sine of both solutions, shape (2, 2 B, N): the first solutions, then the second ones. Without
+            solution, both are the nearest turn.
     """
     length = np.sqrt(a * a + b * b)
     if length.min(initial=np.inf) < TINY:
@@ -77,7 +77,7 @@ def solve_quadratic(k: Floats, linear: Floats, square: Floats) -> Floats:
         square: The entries S00, S01 = S10, S11, shape (3, B, N).
 
     Returns:
-        Four turns, shape (2, 4 B, N); a complex pair is replaced by its real part, twice.
+        Cosine and sine of four solutions, shape (2, 4 B, N); a complex pair is replaced by its real part, twice.
     """
     a0, a1, b1 = k + (square[0] + square[2]) / 2, linear[0], linear[1]
     a2, b2 = (square[0] - square[2]) / 2, square[1]

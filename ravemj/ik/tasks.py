@@ -193,7 +193,7 @@ def _units(vectors: Floats, what: str) -> Floats:
 
 
 def _pointing(chain: Chain, directions: Floats) -> Floats:
-    """Return tool rotations, shape (..., 3, 3), in which the tool has given directions, shape (..., 3)."""
+    """Return tool rotations, shape (..., 3, 3), that turn the tool's direction to ``directions`` (..., 3)."""
     return _frames(directions) @ _frames(chain.direction).T
 
 

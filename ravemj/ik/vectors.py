@@ -66,12 +66,12 @@ def tile(values: Floats, branches: int) -> Floats:
 
 
 def angle(turn: Floats) -> Floats:
-    """Return the angles of turns in [-pi, pi]."""
+    """Return the angles, in [-pi, pi], of turns (cosine, sine)."""
     return np.arctan2(turn[1], turn[0])
 
 
 def turn_of(angles: Floats) -> Floats:
-    """Return the turns of angles of shape (B, N)."""
+    """Return cosines and sines of angles of shape (B, N)."""
     return np.stack([np.cos(angles), np.sin(angles)])
 
 
@@ -115,7 +115,7 @@ class Screw:
 
     @cached_property
     def shared(self) -> bool:
-        """Whether it is the same for all poses."""
+        """Whether axis and point are the same for all poses."""
         return self.axis.size == 3 and self.point.size == 3
 
     @cached_property
@@ -145,7 +145,7 @@ class Screw:
         return along + value[0] * across - value[1] * later
 
     def split(self, vectors: Floats) -> Floats:
-        """Return components of vectors along the axis, across it, and the latter after a quarter turn, (3, 3, B, N)."""
+        """Return components of vectors along and across the axis, and the latter turned by 90°, (3, 3, B, N)."""
         parts = apply_matrix(self.parts, vectors)
         return parts.reshape(3, 3, *parts.shape[1:])
 

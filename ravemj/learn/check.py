@@ -51,7 +51,7 @@ class Check:
         hints: Three hints; the last one nearly gives the answer.
         kind: Meaning of the answer.
         angles: Indices of the arguments that are angles [rad], which might be mistaken for degrees.
-        mistakes: Further mistakes: a sentence that names the mistake, and a function that makes it.
+        mistakes: Further mistakes: a sentence that names the mistake, and a function that returns the wrong answer.
         judge: Judges answers if several are right: called with the answer and the arguments, it returns None or the
             error as a sentence. The answer is then an array of numbers, float32 if the student's was, with the
             tolerance ``precision``.

@@ -194,7 +194,7 @@ def call_text(check: Check, arguments: Arguments) -> str:
 
 
 def error_text(error: BaseException, path: Path) -> str:
-    """Return an exception with those lines of its traceback that are in the student's file."""
+    """Return an exception with the lines of its traceback that are in the student's file."""
     if path.suffix != ".py":  # a model: its errors name file and line
         return " ".join(str(error).split())
     name = type(error).__name__

@@ -122,7 +122,7 @@ class _Reader:
 
 
 class Progress:
-    """The verdicts on the exercises in a student's folder; those of unchanged files are cached in it."""
+    """The verdicts on the exercises in a student's folder; verdicts on unchanged files are cached there."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

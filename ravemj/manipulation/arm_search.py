@@ -41,7 +41,7 @@ class Checks(NamedTuple):
         itself: Whether to check self-collisions.
         limits: Whether to enforce joint limits. Without them, every branch gives one solution, with angles in [-pi,
             pi].
-        end_and_others: Whether collisions with other bodies include the links beyond the arm.
+        end_and_others: Whether to check the links beyond the arm (end effector, gripper) against other bodies, too.
         end_and_rest: Whether to check the links beyond the arm against links not moved by the arm.
     """
 
@@ -95,7 +95,7 @@ class ArmSearch:
         return True
 
     def solution(self, row: Floats) -> Floats:
-        """Return accepted joint values, or those by which user callbacks replace them."""
+        """Return accepted joint values, or replacements given by user callbacks."""
         return row
 
     def reject(self, reason: Reason, row: Floats, findings: Findings | None) -> None:
@@ -221,7 +221,7 @@ class ArmSearch:
         return self._hits(world, pairs, row, Reason.COLLISION)
 
     def _hits(self, world: CollisionWorld, pairs: Pairs, row: Floats, reason: Reason) -> bool:
-        """Test pairs of geoms, and reject the joint values if one collides."""
+        """Return whether a pair of geoms collides; if so, reject the joint values."""
         findings = self._checker.find(world, pairs) if self.explains else None
         hit = bool(findings.collisions) if findings else self._checker.collides(world, pairs)
         if hit:

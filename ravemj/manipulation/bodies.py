@@ -31,14 +31,13 @@ if TYPE_CHECKING:
     from ravemj.manipulation.certification import Certifier
 
 FREE, ENV_COLLISION, SELF_COLLISION, USER = 0, 1, 2, 0x8000
-"""Reasons for rejecting a configuration: bits of OpenRAVE's ``ConstraintFilterOptions``. ``USER`` is that of user
-callbacks."""
+"""Reasons for rejecting a configuration: bits of OpenRAVE's ``ConstraintFilterOptions``; ``USER``: user callbacks."""
 
 ALL = 0xFFFF
 """All tests that a configuration of a path has to pass."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
-"""Limits of the values of IK goals, and of a pose without a body. Other limits must be set by callers."""
+"""Axis fields of values without limits: IK goals, and poses without a body."""
 
 _NO_BODY = "__dummy__"
 """Body name that ``RaveGetAffineConfigurationSpecification`` uses without a body."""
@@ -58,7 +57,7 @@ class Part:
 
     Attributes:
         body: The body.
-        columns: The columns of a configuration that hold the values.
+        columns: The columns of a configuration that hold the joint values or the pose.
         dofs: The DOF indices of the joints; empty for a pose.
         affine: The components of the pose, bits of ``DOFAffine``; 0 for joints.
         axis: The axis of ``DOFAffine.RotationAxis``.
@@ -100,7 +99,7 @@ class Bodies:
         self._free: set[BodyState] = set()  # bodies whose joints do not move, and which need no self-collision checks
 
     def numbers(self, name: str) -> Floats:
-        """Return a field of ``scene.Axis`` for each joint value, shape (n,); 0 or no limit for other values."""
+        """Return a field of ``scene.Axis`` for each joint value, (n,); 0 or no limit for other values."""
         result = np.zeros(self.dof)
         for part in self.parts:
             axes = part.body.scene.dof_axes
@@ -135,7 +134,7 @@ class Bodies:
         return Coordinates(circular, tuple(translation), tuple(rotation))
 
     def described(self, column: int) -> str:
-        """Return the name of one value of a configuration."""
+        """Return a description of the value in one column, such as ``joint 'elbow'``."""
         part = next((part for part in self.parts if column in range(self.dof)[part.columns]), None)
         if part is None:  # a goal of inverse kinematics, or a pose of no body
             return f"value {column}"

@@ -53,7 +53,7 @@ class Certifier:
             self._spaces.put_back()
 
     def certificate(self, curves: Sequence[Curve], *, whole: bool = True) -> Certificate:
-        """Return the certificate of a motion; unless ``whole``, the first undecided span is the only one."""
+        """Return the certificate of a motion; unless ``whole``, the proof ends at the first undecided span."""
         try:
             exempt = exempt_spans(self._spaces, curves, self._touching)
             proof = prove(self._spaces, curves, exempt, whole=whole)

@@ -1,4 +1,4 @@
-"""Reachable grasps of a grasp table: preshape of the gripper, linear approach, poses to put the target down."""
+"""Reachable grasps of a grasp table: preshape of the gripper, linear approach, destinations of the target."""
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ from ravemj.model.scene import Manipulator
 from ravemj.planning.space import Space
 
 _LINE_STEP = 0.01
-"""The distance of tested poses on the straight approach to a grasp [m]."""
+"""The spacing of tested poses on the straight approach to a grasp [m]."""
 
 _IN_LIMITS = 1e-3
 """The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
@@ -70,7 +70,7 @@ class GraspTable(NamedTuple):
         """Check that the table has grasp poses.
 
         Raises:
-            ArgumentError: there are none.
+            ArgumentError: the table has no grasp poses.
         """
         if all(self.columns.get(name, -1) < 0 for name in (*_POSES, "igraspdir")):
             raise ArgumentError(
@@ -151,7 +151,7 @@ class GraspSearch:
         hand: The arm.
         target: The body to grasp.
         table: The grasps.
-        places: ``T_world_target`` of destinations of the target; a grasp has to reach one of them.
+        places: ``T_world_target`` of destinations of the target; the arm has to reach one of them with a grasp.
         options: The options of the search.
 
     Raises:
@@ -175,7 +175,7 @@ class GraspSearch:
                 yield grasp
 
     def _grasp(self, number: int) -> Grasp | None:
-        """Return a grasp if it is reachable, else None. The robot and the target are moved."""
+        """Return a grasp if it is reachable, else None. The robot and the target are not restored."""
         preshape = self._preshaped(number)
         if preshape is None:
             return None

@@ -92,12 +92,12 @@ def checked_points(
     """Return the points of a motion, after all checks.
 
     Args:
-        active: The joints to return of a ``Motion``, which has all DOFs of the body; a trajectory defines its own.
+        active: The joints to select from a ``Motion``, which has all DOFs of the body; a trajectory defines its own.
         motion: The motion. Linear motions are retimed from rest to rest; if ``moving``, their waypoints are the points,
             without velocities.
         rate: Points per second; None means at the waypoints.
         state: Measured values of all DOFs at the start, shape (dof,), or None.
-        moving: Whether it may start and end with nonzero velocity.
+        moving: Whether the motion may start and end with nonzero velocity.
 
     Raises:
         ArgumentError: A check fails; or the number of joints is wrong, the motion moves a base, another body or no
@@ -156,15 +156,15 @@ def joints_of(body: BodyState, waypoints: Waypoints) -> tuple[Joints, Group]:
 def retimed(joints: Joints, rows: Floats) -> JointTrajectory:
     """Return a fast motion through waypoints within the limits, from rest to rest.
 
-    It stops at waypoints only if it would otherwise deviate more than 0.01 rad or m from the straight lines between
-    them.
+    The motion stops at waypoints only if it would otherwise deviate more than 0.01 rad or m from the straight lines
+    between them.
 
     Args:
         joints: The joints.
         rows: The waypoints, shape (N, n) [rad or m].
 
     Raises:
-        ArgumentError: No joint moves, or one with a limit of 0.
+        ArgumentError: No joint moves, or a moving joint has a limit of 0.
     """
     limits, steps = joints.limits(), np.abs(np.diff(rows, axis=0)).max(axis=1)
     rows = rows[np.append(True, steps > 0)]
@@ -271,7 +271,7 @@ def check(joints: Joints, points: JointTrajectory, *, moving: bool) -> None:
 
 
 class Excess(NamedTuple):
-    """Largest violation of joint limits: the row of values, and a description."""
+    """Largest violation of joint limits: the index of the row of values, and a description."""
 
     row: int
     text: str

@@ -53,8 +53,8 @@ def _spaced(space: Space, path: Floats, spacing: float) -> Floats:
 def jittered(conditions: Conditions, space: Space, configurations: Sequence[Floats], jitter: float) -> list[Floats]:
     """Replace each configuration in collision by an allowed one nearby, if one is found.
 
-    Each value changes by at most ``jitter`` [rad or m]; the straight line between both satisfies the constraint, if
-    any.
+    Each value changes by at most ``jitter`` [rad or m]; the straight line to the replacement satisfies the constraint,
+    if any.
     """
     random, tries = np.random.default_rng(0), _JITTER_TRIES
     with conditions.kept():
@@ -76,7 +76,7 @@ def _jittered_on(
     jitter: float,
     random: np.random.Generator,
 ) -> Floats | None:
-    """Return an allowed configuration on a constraint near another one; None if this one violates the constraint."""
+    """Return an allowed configuration on a constraint near ``configuration``; None if that violates the constraint."""
     if not manifold.has(configuration):
         return None
 
@@ -96,7 +96,7 @@ def _jittered_on(
 def free_configuration(
     conditions: Conditions, space: Space, here: Floats, tries: int, farthest: float
 ) -> Floats | None:
-    """Return a configuration if it is allowed, else an allowed one within ``farthest`` [rad or m], or None."""
+    """Return ``here`` if it is allowed, else an allowed configuration within ``farthest`` [rad or m], or None."""
     with conditions.kept():
         return nearby(space, here, conditions.allowed(), tries, farthest, np.random.default_rng(0))
 
@@ -104,14 +104,14 @@ def free_configuration(
 def place_for_others(
     conditions: Conditions, space: Space, here: Floats, others: Bodies, target: Floats, divisions: int, seed: int
 ) -> Floats | None:
-    """Return a configuration, ``here`` or a random one, from which other joints can move to their target; or None.
+    """Return a configuration from which other joints can move to their target: ``here``, a random one, or None.
 
     Args:
         conditions: The conditions of the configuration.
         space: The configuration space.
         here: The initial configuration.
-        others: The other joints, which are not moved.
-        target: The values of the other joints.
+        others: The other joints, which are restored afterwards.
+        target: The target values of the other joints.
         divisions: The number of tested steps of the other joints' motion.
         seed: The seed of the random numbers.
     """
@@ -155,7 +155,7 @@ def follow_goals(space: Space, first: Floats, count: int, search: Callable[[int]
 def move_until_contact(
     bodies: Bodies, limits: tuple[Floats, Floats], sides: Floats, step: float, touches: Callable[[int], bool]
 ) -> Floats:
-    """Return the values at which joints stop: at the first new contact of their links, or at a limit.
+    """Move joints until a first new contact of their links, or to a limit; return the final values.
 
     Joints move alternately, one step each, like fingers that close simultaneously.
 

@@ -1,6 +1,6 @@
 """Options of motions: each field has OpenRAVE's name, type, default and effect.
 
-Module commands parse text by these types, helpers check keywords by them, and planning receives the options.
+The types serve to parse the text of module commands and to check keyword arguments.
 """
 
 from collections.abc import Mapping

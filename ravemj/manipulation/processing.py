@@ -135,7 +135,7 @@ class Processor:
                 raise RetimingError(f"the trajectory has no group '{group.name}'")
 
     def _is_of_goals(self) -> bool:
-        """Return whether the path consists of tool poses, whose values OpenRAVE retimes like joint values."""
+        """Return whether the path consists of tool poses; OpenRAVE retimes their numbers like joint values."""
         return all(group.name.startswith("ikparam_values") for group in self.groups)
 
     # Retimers

@@ -1,4 +1,4 @@
-"""Reasons for the rejection of starts and goals: single configurations, and statistics of samples."""
+"""Reasons for the rejection of starts and goals: of single configurations, and statistics of samples."""
 
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ _MOST_REGIONS = 6
 
 
 class Cause(Enum):
-    """Cause for which a sampled pose gives no start or goal, in the order of the tests."""
+    """Cause for which a sampled pose is rejected as start or goal, in the order of the tests."""
 
     REACH = "out of reach"
     LIMITS = "outside the joint limits"
@@ -52,7 +52,7 @@ class Tally:
         self._off = (np.inf, 0.0)
 
     def note(self, region: int, refusals: Sequence["RefusedError"]) -> None:
-        """Count a sample that gave starts or goals (no refusals), or the refusals of all its solutions."""
+        """Count a sample: accepted if there are no refusals, else with the refusals of all its solutions."""
         last = max(refusals, key=lambda refused: _ORDER.index(refused.cause), default=None)
         self.counts[region][None if last is None else last.cause] += 1
         if last is None:
@@ -63,18 +63,18 @@ class Tally:
             self._off = min(self._off[0], off), max(self._off[1], off)
 
     def named(self) -> dict[str, dict[str, int]]:
-        """Return the counts by names of regions and causes; samples that gave starts or goals are ``reached``."""
+        """Return the counts by names of regions and causes; accepted samples are counted as ``reached``."""
         return {
             name: {"reached" if cause is None else cause.value: number for cause, number in counts.items()}
             for name, counts in zip(self.names, self.counts, strict=True)
         }
 
     def total(self) -> "Counter[Cause | None]":
-        """Return the counts over all regions; those of samples that gave starts or goals have the key None."""
+        """Return the counts over all regions by cause; accepted samples have the key None."""
         return sum(self.counts, Counter[Cause | None]())
 
     def error(self, name: str) -> "RefusedError":
-        """Return the error that no allowed configuration was sampled, with an example of the most frequent cause."""
+        """Return the error for a region set without any accepted sample, with an example of the most frequent cause."""
         most = max(self.examples, key=lambda cause: self.total()[cause])
         example = self.examples[most]
         error = RefusedError(name, self.described(), most, values=example.values, findings=example.findings)
@@ -204,10 +204,11 @@ def troubles(bodies: Bodies, values: Floats) -> list[str]:
 def allowed_ends(
     conditions: Conditions, space: Space, allowed: Allowed, name: str, ends: Sequence[Floats], *, needed: bool
 ) -> list[Floats]:
-    """Return the allowed ones of starts or goals, called ``name`` in errors. Use it within ``conditions.kept``.
+    """Return the allowed configurations among starts or goals. Use it within ``conditions.kept``.
 
     Raises:
-        RefusedError: none is allowed, there is none although it is needed, or a value has no limits.
+        RefusedError: none is allowed, there is none although one is needed, or a value has no limits. The text calls
+            them ``name``.
     """
     endless = np.flatnonzero(~np.isfinite(space.lower) | ~np.isfinite(space.upper))
     if len(endless):
@@ -228,7 +229,7 @@ def _described(conditions: Conditions, index: int) -> str:
 
 
 def _off(conditions: Conditions, off: float) -> str:
-    """Describe the violated constraint of a configuration, by its error norm."""
+    """Describe the violation of the constraint by its error norm ``off``."""
     manifold = conditions.manifold
     if manifold is None or off <= manifold.threshold:
         return "a constraint does not allow it"

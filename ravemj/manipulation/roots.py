@@ -15,10 +15,10 @@ FIRST_ROOTS = 8
 """Number of roots sampled from regions before a search: OpenRAVE's number of IK solutions as goals."""
 
 MOST_DRAWS = 200
-"""Maximum number of poses sampled before a search."""
+"""Maximum number of poses sampled from regions before a search."""
 
 _REPAIRS = 2
-"""Maximum number of solutions of a pose projected onto the constraint; each takes as long as hundreds of tests."""
+"""Maximum number of IK solutions of a pose projected onto the constraint; each takes as long as hundreds of tests."""
 
 Refuse = Callable[[Floats], RefusedError | None]
 """Returns the reason why a configuration cannot be a start or goal, or None."""
@@ -69,7 +69,7 @@ class FunctionRoots:
     tally: None = None
 
     def first(self, refuse: Refuse, random: np.random.Generator, *, enough: int) -> list[Floats]:
-        """Return none: the callback is only used during the search."""
+        """Return an empty list: the callback is only used during the search."""
         del refuse, random, enough
         return []
 
@@ -97,7 +97,7 @@ class PoseSolutions(NamedTuple):
 
 
 class RegionRoots:
-    """Configurations with the tool in one of several regions: all IK branches and turns of random poses.
+    """Configurations with the tool in one of several regions: all IK solutions of random poses.
 
     Args:
         regions: The regions in the world.

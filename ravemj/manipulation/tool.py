@@ -83,7 +83,7 @@ class ToolConstraint(NamedTuple):
     threshold: float
 
     def checked(self, T_world_tool: Floats) -> tuple[Floats, Floats, Floats, float]:
-        """Return the checked fields with exact rotations; ``T_tool_point`` follows from the tool pose if it is None.
+        """Return the checked fields with exact rotations; if ``T_tool_point`` is None, it follows from the tool pose.
 
         Raises:
             ArgumentError: the numbers are invalid.
@@ -115,7 +115,7 @@ class MovedTool:
 
     @classmethod
     def for_arm(cls, bodies: Bodies, arm: Manipulator, *, gripper: bool = False) -> "MovedTool":
-        """Return the tool of the single moving body.
+        """Return the tool of the only body that moves.
 
         Args:
             bodies: The body.

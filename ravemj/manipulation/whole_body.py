@@ -27,7 +27,7 @@ class Keeper(NamedTuple):
     """Minimum-distance constraint of geom pairs.
 
     Attributes:
-        pairs: Returns the world and the pairs.
+        pairs: Returns the collision world and the geom pairs.
         least: Minimum distance [m].
         seen: Distance below which pairs are considered [m].
     """
@@ -142,7 +142,7 @@ class Moving:
         return com * mass / total + shares @ points, jacobian * mass / total + np.tensordot(shares, moved, 1)
 
     def _of_robot(self) -> tuple[Floats, Floats]:
-        """Return the centre of mass of the robot without grabbed bodies, and its Jacobian, computed by themselves."""
+        """Return the centre of mass of the robot without grabbed bodies, and its Jacobian."""
         jacobian = self._dynamics.com_jacobian()
         com = self._kinematics.data.subtree_com[0].copy()
         if self._all_dofs is not None:
@@ -156,7 +156,7 @@ class Moving:
     def limits(
         self, *, values: bool, velocities: bool, accelerations: bool, base_velocity: float | None
     ) -> MotionLimits:
-        """Return the limits of the variables: selected ones of the joints, and ``base_velocity`` of the twist."""
+        """Return the limits of the variables: the selected joint limits, and ``base_velocity`` for the twist."""
         base, all_axes = self._base.shape[1], self.body.scene.dof_axes
         axes: list[Axis] = [all_axes[dof] for dof in self.dofs.tolist()]
         free = np.full(len(axes), np.inf)
@@ -241,7 +241,7 @@ class Moving:
         return near
 
     def _distances(self, keeper: Keeper) -> Inequality | None:
-        """Return constraints that keep near pairs at the minimum distance, and separate closer ones; None for none."""
+        """Return constraints that keep near pairs apart by the minimum distance; None if no pair is near."""
         near = self._near(keeper)
         if not near:
             return None

@@ -71,12 +71,12 @@ class JointBuilder:
 
     @property
     def active(self) -> bool:
-        """Whether it has DOFs."""
+        """Whether the joint has DOFs."""
         return self.enabled and self.equations is None
 
     @property
     def fixed(self) -> bool:
-        """Whether it is a weld."""
+        """Whether the joint is a weld."""
         return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
 
 
@@ -212,9 +212,10 @@ class BodyBuilder:
         return replace(body, manipulators=manipulators) if manipulators else body
 
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
-        """Return the manipulators, incomplete from the first one with a joint that does not move its effector.
+        """Return the manipulators with links, joints and DOFs resolved.
 
-        That one has no gripper, and those after it have neither links nor gripper, as in OpenRAVE.
+        If a joint of one does not move its effector, this manipulator has no gripper, and the later ones have neither
+        links nor gripper, as in OpenRAVE.
         """
         frozen: list[scene.Manipulator] = []
         names: set[str] = set()
@@ -304,7 +305,7 @@ class BodyBuilder:
     def _asked(
         self, active: Sequence[scene.Joint], values: list[list[float]], diagnostics: Diagnostics
     ) -> list[list[float]]:
-        """Replace measured values by those of ``<jointvalues>``."""
+        """Replace measured values by the values in ``<jointvalues>``."""
         if self.joint_values is None:
             return values
         dof = sum(len(joint.axes) for joint in active)

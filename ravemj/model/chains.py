@@ -51,7 +51,7 @@ class Connections:
 
     @cached_property
     def _placing(self) -> dict[int, int]:
-        """For each link that a joint places, the index of this joint."""
+        """Index of the parent joint of each link that has one in the kinematic tree."""
         return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
 
     def between(self, link: int) -> set[int]:
@@ -61,7 +61,7 @@ class Connections:
         return self._between[link]
 
     def above(self, link: int) -> tuple[int, ...]:
-        """Return the joints that place a link and its ancestors, the nearest first."""
+        """Return the joints from a link up the kinematic tree to its root, the nearest first."""
         if link not in self._above:
             above: list[int] = []
             at = link
@@ -133,7 +133,7 @@ def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
 
 
 def joints_above(body: KinBody, link: int) -> tuple[int, ...]:
-    """Return the joints that place a link and its ancestors, the nearest first."""
+    """Return the joints from a link up the kinematic tree to its root, the nearest first."""
     return connections(body).above(link)
 
 
@@ -143,7 +143,7 @@ def dofs_moving(body: KinBody, link: int) -> frozenset[int]:
 
 
 def dependency_order(body: KinBody) -> list[int]:
-    """Return the active joints, each after those that move its links; others are in the order from the root."""
+    """Return the active joints in the order from the root, so that each follows the joints that move its links."""
 
     def depth(index: int) -> tuple[int, int, int]:
         joint = body.joints[index]
@@ -154,7 +154,7 @@ def dependency_order(body: KinBody) -> list[int]:
 
 
 def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
-    """Return the loop of each joint that closes one: its links, each with the joint to the next link."""
+    """Return the kinematic loop of each loop-closing joint: its links, each with the joint to the next link."""
     joints, loops = body.all_joints, list[list[tuple[int, int]]]()
     for index, joint in enumerate(joints):
         if joint.places_child:

@@ -60,7 +60,7 @@ class Difference(NamedTuple):
 
 
 def compare(first: Scene, second: Scene, tolerance: float = TOLERANCE) -> list[Difference]:
-    """Compare two scenes body by body, in order; ``tolerance`` is as for ``TOLERANCE``."""
+    """Compare two scenes body by body, in order; for ``tolerance``, see ``TOLERANCE``."""
     return list(_Comparison(tolerance).scenes(first, second))
 
 
@@ -69,7 +69,7 @@ class _Comparison:
     tolerance: float
 
     def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
-        """Compare bodies and sensors without robots; compare gravity, view and description if both scenes have them."""
+        """Compare bodies, sensors outside robots, and gravity, view and description if both scenes have them."""
         part = "the scene"
         yield from self._same(part, "bodies", _names(first.bodies), _names(second.bodies))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))

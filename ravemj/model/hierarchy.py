@@ -1,4 +1,4 @@
-"""Parent links of joints, and the joint that places each link.
+"""Parent links of joints, and the joint that determines the pose of each link ("places" it).
 
 OpenRAVE determines both from an undirected joint graph. The rules, measured on OpenRAVE 0.149: link 0 and static links
 have depth 0, and depths grow along paths from link 0; the shallower link of a joint is its parent; joints act in order
@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ravemj.core.graphs import depth_first, topological_order
 
 _UNREACHED = -1
-"""Depth of a link that no path connects to link 0, with which OpenRAVE compares it with others."""
+"""Depth that OpenRAVE uses for a link without path to link 0, when comparing links."""
 
 
 _HIGHEST = (sys.maxsize, sys.maxsize)
@@ -99,7 +99,7 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
-    """Sort the joints that place a link so that each follows the one that places its parent."""
+    """Sort the joints that place links, so that each follows the joint that places its parent link."""
     placed_by = {ends[index][1]: index for index in placing}
 
     def carrying(index: int) -> list[int]:
@@ -141,8 +141,8 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
 def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
     """Return for each link the neighbours that a path from link 0 reaches without passing the link.
 
-    In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. A path always reaches
-    ancestors so, and descendants if the link is not an articulation point of their branch.
+    In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. The ancestors always
+    have such a path; the descendants have one unless the link is an articulation point that separates them from link 0.
     """
     number, above, highest = depth_first(neighbours, 0)
     branches: list[list[int]] = [[] for _ in neighbours]
@@ -173,7 +173,7 @@ def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Se
 def _hangs_on(
     link: int, other: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]], carriers: set[int]
 ) -> bool:
-    """Return whether a link is another link or its descendant; ``carriers`` are the links that have children."""
+    """Return whether ``link`` is ``other`` or its descendant; ``carriers`` are the links that have children."""
     while link != other and other in carriers and link in placed_by:
         link = ends[placed_by[link]][0]
     return link == other

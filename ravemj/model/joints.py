@@ -94,7 +94,7 @@ def _motion(joint: Joint, index: int, value: float) -> Pose:
 
 
 def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
-    """Return the axis directions of a joint in its parent at values; the second axis rotates with the first."""
+    """Return a joint's axis directions in its parent link for joint values; the second axis rotates with the first."""
     directions = [axis.direction for axis in joint.axes]
     if joint.kind in {"hinge2", "pr"}:
         first = joint.axes[0]
@@ -171,7 +171,7 @@ def subtracts_in_turns(body: KinBody, joint: Joint) -> bool:
 
 
 def value_differences(body: KinBody, dofs: Iterable[int], values: Floats, others: Floats) -> Floats:
-    """Return ``values - others`` [rad or m] for some DOFs; circular joints take the shorter arc."""
+    """Return ``values - others`` [rad or m] for the DOFs ``dofs``; circular joints take the shorter arc."""
     turns = [axis.circular and subtracts_in_turns(body, joint) for joint in body.joints for axis in joint.axes]
     differences = values - others
     return np.where([turns[dof] for dof in dofs], wrapped_angle(differences), differences)

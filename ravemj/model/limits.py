@@ -15,7 +15,7 @@ _FEW = 12  # number of values up to which a loop over floats is faster than nump
 
 
 class Limits:
-    """Limits of several axes; circular ones allow every finite number.
+    """Limits of several axes; circular axes allow every finite number.
 
     Attributes:
         lower: Lower limits [rad or m], shape (axes,).

@@ -54,7 +54,7 @@ def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnosti
 
 
 def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
-    """Return the joints from link ``base`` up the tree to link ``effector``, in this order; None if there is no path.
+    """Return the joints from link ``base`` down the tree to link ``effector``, in order; None if there is no path.
 
     Joint indices count active joints, then passive ones.
     """

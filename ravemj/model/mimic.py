@@ -25,7 +25,7 @@ class Equations(NamedTuple):
 
 
 class NamedJoint(NamedTuple):
-    """Joint as mimic equations refer to it.
+    """Joint with the data that are needed to resolve mimic equations.
 
     Attributes:
         name: The name.
@@ -106,7 +106,7 @@ def _followed(index: int, mimics: "dict[int, Expression]") -> set[int]:
 
 
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
-    """Return the mimic joints in order of evaluation, without those in cycles."""
+    """Return the mimic joints in order of evaluation, without mimic joints that form a cycle."""
     moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
     return topological_order(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])
 

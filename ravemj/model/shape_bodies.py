@@ -54,7 +54,7 @@ def sphere_geometries(spheres: Floats, *, visible: bool) -> list[Geometry]:
 
 
 def named_body(name: str, geometries: Iterable[Geometry]) -> KinBody:
-    """Return a body of one static link with these shapes."""
+    """Return a body of one static link with the given shapes."""
     nothing = KinBody(name=name, is_robot=False, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
     return body_of_geometries(nothing, geometries)
 
@@ -65,7 +65,7 @@ def empty_body(body: KinBody) -> KinBody:
 
 
 def body_of_geometries(body: KinBody, geometries: Iterable[Geometry]) -> KinBody:
-    """Return a body of the same name and class with one static link of these shapes."""
+    """Return a body of the same name and class with one static link of the given shapes."""
     base = Link(
         name="base",
         T_world_link=Pose(),

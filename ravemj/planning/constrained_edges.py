@@ -21,7 +21,7 @@ _PROJECTED = 0.1
 """Error norm at which projections stop, as a fraction of the threshold."""
 
 _INSIDE = 0.5
-"""Error norm above which configurations are projected, as a fraction of the threshold, so that edges stay within it."""
+"""Fraction of the threshold above which the error norm of a configuration is reduced by projection."""
 
 _DETOUR = 0.8
 """Maximum length of each half of a projected edge, relative to the edge; a longer half is a jump on the constraint."""

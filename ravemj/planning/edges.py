@@ -172,7 +172,7 @@ def nearby(
     random: np.random.Generator,
     projected: Callable[[Floats], Floats] | None = None,
 ) -> Floats | None:
-    """Return a configuration if it is allowed, else an allowed one nearby; None after ``tries`` random ones.
+    """Return ``configuration`` if it is allowed, else an allowed random one nearby, or None after ``tries`` samples.
 
     Each value changes by at most ``farthest`` [rad or m]; the first tries stay closer. Candidates are then moved by
     ``projected``, if given.

@@ -51,7 +51,8 @@ def search_with_ompl(
     """Find a path with a planner class of OMPL; optimizing planners use up the budget.
 
     Starts and goals must be allowed. An iteration is a termination check of the planner, or a node of a roadmap.
-    ``settings`` maps parameters of the planner, such as ``range`` or ``goal_bias``, to texts; others are ignored.
+    ``settings`` maps parameters of the planner, such as ``range`` or ``goal_bias``, to strings; unknown ones are
+    ignored.
 
     Raises:
         OmplError: the planner does not support the space, or a setting is wrong.

@@ -154,7 +154,7 @@ def is_proved(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = 
 
 
 def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = (), *, whole: bool = True) -> Proof:
-    """Prove what can be proven of a motion; ``exempt`` are the spans on which pairs are ignored.
+    """Prove as much of a motion as possible; pairs are ignored on their spans in ``exempt``.
 
     Unless ``whole``, the first undecided span ends the proof.
     """
@@ -191,7 +191,7 @@ def exempt_spans(spaces: Spaces, curves: Sequence[Curve], touching: Ints) -> lis
 
 
 def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> Floats:
-    """Return the distances of some pairs [m], shape (configurations, pairs); large ones may be underestimated."""
+    """Return the distances of ``pairs`` [m], shape (configurations, pairs); large distances may be underestimated."""
     table = np.zeros((len(configurations), len(pairs)))
     for first in range(0, len(configurations), spaces.most):
         some = np.array(configurations[first : first + spaces.most])
@@ -203,7 +203,7 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
 
 
 def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_start: bool) -> list[float]:
-    """Return the first time at which each pair is apart, counted from the start or from the goal [s]."""
+    """Return for each pair the time [s] nearest to start or end at which its distance reaches ``APART``."""
     begin, finish = curves[0].start, curves[-1].end
     times = np.linspace(begin, finish, _SEARCH + 1) if is_start else np.linspace(finish, begin, _SEARCH + 1)
     times_apart, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)
@@ -249,10 +249,8 @@ def _examined(spaces: Spaces, intervals: Intervals, cases: Cases) -> Iterator[_E
         yield _Examined(some, now, tested, bounds, _spans(some, now, np.flatnonzero(is_lost)))
         left = np.flatnonzero(tested.is_open & ~is_lost)
         parts, cases = _subdivided(some, now, left, tested.travel[left] / np.maximum(tested.gaps[left], _NOTHING))
-        cases = Cases(
-            np.concatenate([later.rows, cases.rows + len(rest.times)]), np.concatenate([later.pairs, cases.pairs])
-        )
-        intervals = rest.with_others(parts)
+        intervals, rows = rest.with_others(parts), cases.rows + len(rest.times)
+        cases = Cases(np.concatenate([later.rows, rows]), np.concatenate([later.pairs, cases.pairs]))
 
 
 def _subdivided(intervals: Intervals, cases: Cases, left: Ints, shares: Floats) -> tuple[Intervals, Cases]:

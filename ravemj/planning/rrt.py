@@ -340,7 +340,7 @@ def _reach(edges: Edges, tree: SearchTree, target: Floats, *, whole: bool = Fals
 def _path(edges: Edges, nodes: Sequence[Floats]) -> Floats:
     """Return a path through tree nodes without repeated or collinear ones.
 
-    An edge must still be allowed after the nodes on it are removed, since it is then tested at other configurations.
+    A collinear node is removed only if the longer edge is still allowed, since it is tested at other configurations.
     """
     space, path = edges.space, np.array(nodes)
     lengths = np.linalg.norm(space.difference(path[1:], path[:-1]), axis=1)

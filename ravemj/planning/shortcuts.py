@@ -76,7 +76,7 @@ def straightened(edges: Edges, points: Floats) -> Floats:
 
 
 def _without_detours(edges: Edges, path: Floats) -> Floats:
-    """Return the path in which each waypoint is connected to the last one that a straight line reaches.
+    """Return the path without detours: each waypoint is followed by the last one that a straight line reaches.
 
     If there are many waypoints, ``_MOST_ENDS`` of them are tried.
     """
@@ -165,14 +165,14 @@ def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) ->
 
 
 class _Place(NamedTuple):
-    """Place on a motion, as a time [s] in a line or shortcut."""
+    """Position on a motion: a time [s] in a line or shortcut."""
 
     source: int
     time: float
 
 
 class _Shortcut(NamedTuple):
-    """Shortcut between two places of a motion, and its segments, which have one source."""
+    """Shortcut between two places of a motion, and its segments, which have the same source number."""
 
     start: _Place
     end: _Place
@@ -180,7 +180,7 @@ class _Shortcut(NamedTuple):
 
 
 class ShortenedMotion:
-    """Motion that random shortcuts of constant accelerations make faster; each of them can be removed again.
+    """Motion made faster by random shortcuts of constant accelerations, each of which can be removed again.
 
     Args:
         straight: The motion without shortcuts.
@@ -224,7 +224,7 @@ class ShortenedMotion:
                 self._insert(shortcut)
 
     def remove_shortcut(self, time: float) -> bool:
-        """Remove the shortcut at a time [s], and those that start or end on it; return whether one is there."""
+        """Remove the shortcut at a time [s], and those that start or end on it; return whether there was one."""
         source = self._at(time, self._ends())[0].source
         others = [shortcut for shortcut in self._shortcuts if shortcut.segments[0].source != source]
         if len(others) == len(self._shortcuts):
@@ -272,14 +272,14 @@ class ShortenedMotion:
         return np.cumsum([piece.duration for piece in self.segments])
 
     def _at(self, time: float, ends: Floats) -> tuple[_Place, tuple[Floats, Floats]]:
-        """Return the place, and values and velocities, at a time; ``ends`` are the end times of the segments."""
+        """Return the place, values and velocities at a time; ``ends`` are the end times of the segments."""
         number = min(int(np.searchsorted(ends, time)), len(ends) - 1)
         piece = self.segments[number]
         after = time - (float(ends[number]) - piece.duration)
         return _Place(piece.source, piece.begins + after), piece.after(after)
 
     def _insert(self, shortcut: _Shortcut) -> bool:
-        """Replace the motion between two places by a shortcut; return whether both places are there."""
+        """Replace the motion between two places by a shortcut; return False if a place is no longer on the motion."""
         first, second = self._find(shortcut.start), self._find(shortcut.end)
         if first is None or second is None or first > second:
             return False

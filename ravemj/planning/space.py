@@ -9,7 +9,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 
 ON_LIMIT = 1e-12
-"""Relative rounding tolerance of limits [rad or m]."""
+"""Rounding tolerance of limits: absolute for values below 1 [rad or m], relative above."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Space:
         return float(np.linalg.norm(self.weights * self.difference(start, other)))
 
     def clamp(self, configuration: Floats) -> Floats:
-        """Return a configuration with each value inside its limits; circular angles have none."""
+        """Return a configuration with each value clamped to its limits, except circular angles."""
         limited = np.minimum(np.maximum(configuration, self.lower), self.upper)
         return np.where(self.coordinates.circular, configuration, limited)
 

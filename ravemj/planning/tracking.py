@@ -19,7 +19,7 @@ Solve = Callable[[int, Floats], Sequence[Floats]]
 """Function that returns configurations that reach a goal, given its index and a configuration to search near."""
 
 Connects = Callable[[int, Floats, Floats], bool]
-"""Test of the connection from a solution of the previous goal to one of a goal, given the goal's index."""
+"""Test whether a solution of the previous goal connects to a solution of the goal with a given index."""
 
 
 class _Layer(NamedTuple):

@@ -82,7 +82,7 @@ class Guard(NamedTuple):
 
 
 UNGUARDED = Guard()
-"""No feedback."""
+"""Guard without feedback: no stop conditions."""
 
 
 @dataclass(eq=False)

@@ -1,4 +1,4 @@
-"""Digests of values that are equal in all processes, unlike those of pickles."""
+"""Digests of values that are equal in all processes, unlike digests of pickles."""
 
 import hashlib
 import inspect

@@ -46,7 +46,7 @@ class Here(Executor):
     """Executor that calls functions immediately, in this process."""
 
     def submit(self, fn: Callable[..., _Result], /, *args: Any, **kwargs: Any) -> Future[_Result]:  # noqa: ANN401 - as the base class
-        """Call a function."""
+        """Call a function, and return a completed future."""
         future: Future[_Result] = Future()
         future.set_result(fn(*args, **kwargs))
         return future
@@ -129,7 +129,7 @@ class Driver:
         self._running[future] = task, time.monotonic()
 
     def _finished(self) -> list[ShardTask]:
-        """Wait until shards end; return those to be computed again."""
+        """Wait until shards end; return the shards to be computed again."""
         wait([*self._running], timeout=_PATIENCE, return_when=FIRST_COMPLETED)
         if any(future.done() for future in self._running):
             return self._collect()
@@ -137,7 +137,7 @@ class Driver:
         return []
 
     def _collect(self) -> list[ShardTask]:
-        """Collect the outcomes of shards that ended; return those to be computed again."""
+        """Collect the outcomes of shards that ended; return the shards to be computed again."""
         again: list[ShardTask] = []
         for future in [future for future in self._running if future.done()]:
             task, _ = self._running.pop(future)

@@ -275,7 +275,7 @@ def _items_of_file(path: str) -> NDArray[Any]:
 
 
 def _shard_size(plan: _SweepInputs, folder: Path, shard: int | None, workers: int) -> int:
-    """Return the number of items per shard: the given one, that of the folder, or an estimate from a first block."""
+    """Return the number of items per shard: as given, as in the folder, or estimated from a first block."""
     task, is_function = plan.first, callable(plan.job.what)
     if shard is None:
         before = read_manifest(folder)

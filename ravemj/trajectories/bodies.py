@@ -12,7 +12,7 @@ from ravemj.trajectories.layout import packed
 
 
 def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolation: str) -> list[Group]:
-    """Return the layout of some joints of a body, then of pose components (``DOFAffine``), without empty groups."""
+    """Return the layout of joints of a body, then of pose components (``DOFAffine``), without empty groups."""
     joints = Group(" ".join([JOINTS[0], name, *map(str, indices)]), 0, len(indices), interpolation)
     if not affinedofs:
         return [joints] if joints.dof else []

@@ -19,7 +19,7 @@ from ravemj.trajectories.groups import AFFINE, JOINTS, Group, affine_parts, join
 from ravemj.trajectories.layout import find_compatible
 
 FindBody = Callable[[str], BodyState | None]
-"""Finds a body by its name; ``Simulation.body`` is one."""
+"""Function that returns a body by its name, or None, such as ``Simulation.body``."""
 
 
 def nobody(name: str) -> None:

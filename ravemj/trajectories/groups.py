@@ -16,7 +16,7 @@ JOINTS = ("joint_values", *(f"joint_{rate}" for rate in _RATES))
 AFFINE = ("affine_transform", *(f"affine_{rate}" for rate in _RATES))
 IK = ("ikparam_values", *(f"ikparam_{rate}" for rate in _RATES))
 FAMILIES = (JOINTS, AFFINE, IK)
-"""Group kinds, each followed by those of its time derivatives."""
+"""Group kinds, each followed by the kinds of its time derivatives."""
 
 DELTATIME = "deltatime"
 INTERPOLATIONS = ("next", "linear", "quadratic", "cubic", "quartic", "quintic", "sextic")
@@ -76,7 +76,7 @@ def is_position(group: Group) -> bool:
 
 
 def derived_interpolation(interpolation: str, order: int) -> str:
-    """Return the interpolation of derivatives of an order, given that of the values; empty if it is unknown."""
+    """Return the interpolation of derivatives, given that of the values; empty if it is unknown."""
     if interpolation not in INTERPOLATIONS:
         return ""
     return INTERPOLATIONS[max(0, INTERPOLATIONS.index(interpolation) - order)]

@@ -1,9 +1,9 @@
 """Interpolation between two waypoints: polynomials through values and derivatives.
 
-Values and derivatives at both ends determine a Hermite polynomial of odd degree. Polynomials of even degree are
-integrals of one for the derivatives, starting at the first waypoint; they reach the second one if its values are
-consistent. A curve is an array of coefficients, lowest power first, of the fraction t from 0 at the first waypoint to 1
-at the second.
+Values and derivatives at both ends determine a Hermite polynomial of odd degree. A polynomial of even degree is the
+integral of such a polynomial for the derivatives, starting at the first waypoint; it reaches the second one if the
+values are consistent. A curve is an array of coefficients, lowest power first, of the fraction t from 0 at the first
+waypoint to 1 at the second.
 """
 
 import math
@@ -18,7 +18,7 @@ Ends = tuple[Floats, Floats]
 """Values at the two waypoints of a segment."""
 
 ROUNDING = 2.3e-16
-"""Tolerance within which a time counts as that of a waypoint [s, or fraction of the segment]."""
+"""Maximum difference of a time from the time of a waypoint that is ignored [s, or fraction of the segment]."""
 
 HELD = ("", "previous", "next", "max")
 """Piecewise-constant interpolations, which use the value of one waypoint."""
@@ -28,7 +28,7 @@ DERIVATIVES = {"linear": 0, "quadratic": 1, "cubic": 1, "quartic": 2, "quintic":
 
 
 def held(interpolation: str, part: float, ends: Ends) -> Floats:
-    """Piecewise-constant interpolation ``HELD`` at fraction ``part`` of a segment."""
+    """Return the value of one waypoint, at fraction ``part`` of a segment, by a piecewise-constant interpolation."""
     first, second = ends
     if interpolation == "previous":
         return second if part > 1 - ROUNDING else first
@@ -38,7 +38,7 @@ def held(interpolation: str, part: float, ends: Ends) -> Floats:
 
 
 def between(ends: Ends, part: float) -> Floats:
-    """Linear interpolation at fraction ``part`` of a segment, clipped against rounding errors."""
+    """Interpolate linearly at fraction ``part`` of a segment; the result is clipped against rounding errors."""
     first, second = ends
     return np.clip((1.0 - part) * first + part * second, np.minimum(first, second), np.maximum(first, second))
 

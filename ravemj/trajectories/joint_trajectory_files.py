@@ -39,7 +39,7 @@ _TIME = "time [s]"
 
 
 def is_joint_trajectory(path: str | os.PathLike[str]) -> bool:
-    """Return whether a file name is that of a ``JointTrajectory``."""
+    """Return whether a file name has a suffix of ``JointTrajectory`` files."""
     return os.fspath(path).lower().endswith(JOINT_TRAJECTORY_SUFFIXES)
 
 

@@ -96,7 +96,7 @@ def _likeness(words: list[str], wanted: list[str]) -> int:
 
 
 def find_shifted(groups: Sequence[Group], name: str, steps: int, exact: bool = False) -> Group | None:
-    """Return the group with the derivative of order ``steps`` of another group, or its integral if negative."""
+    """Return the group with the derivative of order ``steps`` of group ``name``, or its integral if negative."""
     wanted = shifted_name(name, steps)
     return None if wanted is None else find_compatible(groups, wanted, exact)
 
@@ -148,7 +148,7 @@ def with_derivatives(groups: Sequence[Group], order: int, deltatime: bool) -> li
 
 
 def derived(groups: Sequence[Group], order: int) -> list[Group]:
-    """Return the layout of the derivatives: renamed positions with reduced interpolations."""
+    """Return the layout of the derivatives: groups of positions are renamed, interpolations reduced in degree."""
     return [
         replace(
             group,

@@ -67,8 +67,8 @@ class Waypoints:
         Args:
             index: The waypoint before which they are inserted.
             numbers: The configurations, concatenated.
-            groups: Their layout. Existing waypoints keep the values that it lacks; in new ones these are the present
-                values for joints of the same group, else zeros.
+            groups: Their layout. Values that it lacks do not change in overwritten waypoints; in new waypoints they are
+                the present joint values for a group that is partly given, else zeros.
             overwrite: Whether to overwrite waypoints; data beyond the last one is appended.
             find_body: Finds the bodies of the groups.
 
@@ -195,7 +195,7 @@ class Waypoints:
         return configuration
 
     def pieces(self, groups: Sequence[Group], find_body: FindBody = nobody) -> Iterator[tuple[float, float, Floats]]:
-        """Yield the polynomials of some groups between consecutive waypoints.
+        """Yield the interpolating polynomials of the given groups between consecutive waypoints.
 
         Yields:
             Start and end [s], and the coefficients of powers of the fraction of the segment, lowest first, shape
@@ -235,7 +235,10 @@ class Waypoints:
         return first, np.where(circular, second - 2 * np.pi * turns, second)
 
     def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
-        """Return the curve of a group up to waypoint ``index``, or differentiate that of the group's integral."""
+        """Return the curve of a group in the segment before waypoint ``index``.
+
+        If derivatives are missing, it is the time derivative of the curve of the group's integral.
+        """
         if group.kind == IK[0]:
             what = f"'{interpolation}' interpolation of goals of inverse kinematics"
             raise UnsupportedError(f"sampling of '{group.name}'", what)

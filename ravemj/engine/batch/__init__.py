@@ -186,7 +186,7 @@ class Batch:
 
     @cached_property
     def _data(self) -> mujoco.MjData:
-        """Separate state of the body's model; all velocities but those of joints stay 0."""
+        """Separate state of the body's model, in which only joints have velocities."""
         return mujoco.MjData(self._kinematics.model)
 
 

@@ -127,7 +127,7 @@ class LinkChain:
         return np.repeat(frame[:, :, None], count, axis=2)
 
     def _ways(self, values: Floats, chosen: Sequence[int]) -> Floats:
-        """Return the displacements of the chosen steps from their reference frames, shape (len(chosen), N)."""
+        """Return joint angles or displacements of the chosen steps minus their references, shape (len(chosen), N)."""
         ways = np.zeros((len(chosen), values.shape[1]))
         first_values = self._first_values(values)
         for index, step in enumerate(self.steps[number] for number in chosen):
@@ -141,7 +141,7 @@ class LinkChain:
         return ways
 
     def _first_values(self, values: Floats) -> list[Floats]:
-        """Return the first values of all joints if there are mimic joints, each of shape (N,)."""
+        """Return the value of the first axis of each joint, shape (N,) each; empty without mimic joints."""
         mimic = self._kinematics.mimic
         if not mimic.joints:
             return []
@@ -181,7 +181,7 @@ def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floa
 
 
 def _slid(parent: Floats, T_parent_frame: Floats, ways: Floats) -> Floats:
-    """Return the frames behind a slider."""
+    """Return the frames behind a prismatic joint for N displacements ``ways`` [m]."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     frames[3] += ways * frames[2]
     return frames

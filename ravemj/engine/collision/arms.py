@@ -1,4 +1,4 @@
-"""Collision pairs of an arm's end and of links that the arm does not move, also for other tool poses."""
+"""Collision pairs of the links beyond an arm and of links that the arm does not move, also for other tool poses."""
 
 from ravemj.core.graphs import ordered_pair
 from ravemj.core.transforms import Floats
@@ -60,7 +60,7 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
-    """Return ``motion``, (4, 4), for each link beyond an arm and each body held there, as input of ``moved``."""
+    """Return a map from each link beyond an arm, and of bodies held there, to ``motion`` (4, 4); input of ``moved``."""
     end = set(links_beyond(body.scene, arm))
     held = [held_body for grab in body.grabs if grab.link in end for held_body in held_with(grab.body)]
     links = [(held_body, link) for held_body in held for link in range(len(held_body.scene.links))]

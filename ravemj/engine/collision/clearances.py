@@ -37,7 +37,7 @@ _ONES = np.ones(3)  # a product with it is the fastest way to sum rows
 
 
 class Chain(NamedTuple):
-    """Joints that move a shape, by index, from the nearest one to the one at the world."""
+    """Indices of the joints that move a shape, ordered from the shape to the world."""
 
     joints: tuple[int, ...]
 
@@ -156,7 +156,7 @@ class Clearances:
         """
         first, second = self._first[pairs], self._second[pairs]
         places, begins = self._positions.reshape(-1, 3), rows * self._model.ngeom
-        away = places.take(begins + second, axis=0) - places.take(begins + first, axis=0)  # faster than an index
+        away: Floats = places.take(begins + second, axis=0) - places.take(begins + first, axis=0)  # faster than an index
         centers = np.sqrt((away * away) @ _ONES)
         gaps = centers - (self._model.geom_rbound[first] + self._model.geom_rbound[second])
         travel = self._travel(changes, rows, pairs)
@@ -174,7 +174,7 @@ class Clearances:
         return Tested(gaps <= needed, travel, gaps, cases.measured)
 
     def put_back(self) -> None:
-        """Restore the geom poses to those of the model's joints."""
+        """Reset the geom poses to those given by the joint values."""
         mujoco.mj_kinematics(self._model, self._data)
 
     def _travel(self, changes: Floats, rows: Ints, pairs: Ints) -> Floats:
@@ -197,7 +197,8 @@ class Clearances:
         places = np.zeros(len(is_used), dtype=int)
         places[used] = np.arange(len(used))
         first, second = (self._depths[:, pairs] * count + rows) * len(used) + places[which]
-        return sums.take(first) + sums.take(second)
+        travel: Floats = sums.take(first) + sums.take(second)
+        return travel
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
         """Raise the bounds of gaps of some cases by separation along directions, unit vectors or NaN, shape (k, 3).
@@ -258,7 +259,7 @@ class Clearances:
 
 
 def _middles(cases: Ints, pairs: Ints) -> Ints:
-    """Return of each pair the middle one of its undecided ``cases``."""
+    """Return the middle undecided case of each pair that has any."""
     order = np.argsort(pairs[cases], kind="stable")
     _, starts, counts = np.unique(pairs[cases][order], return_index=True, return_counts=True)
     return np.sort(cases[order[starts + counts // 2]])
@@ -267,8 +268,8 @@ def _middles(cases: Ints, pairs: Ints) -> Ints:
 class _Supports:
     """Support functions of geoms.
 
-    For a direction l in its own axes, it is ``round + flat |l| + disc |l_xy|`` for a sphere, capsule, cylinder or box,
-    plus ``middle l`` for the bounding box of a mesh.
+    In direction l in the axes of the geom, the function of a sphere, capsule, cylinder or box is ``round + flat |l| +
+    disc |l_xy|``; the bounding box of a mesh adds ``middle l``.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:

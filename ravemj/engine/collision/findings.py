@@ -28,7 +28,7 @@ class GeometryOf(NamedTuple):
 
 
 class Collision(NamedTuple):
-    """Colliding pair of geometries, or the first one of two links.
+    """Colliding pair of geometries, or the first colliding pair of two links.
 
     ``contacts`` are the contact points of all geometry pairs, if requested.
     """
@@ -39,7 +39,7 @@ class Collision(NamedTuple):
 
 
 Counts = Callable[[Collision], bool]
-"""Function that decides whether a collision counts."""
+"""Function that decides whether a collision is reported."""
 
 
 class Wanted(NamedTuple):

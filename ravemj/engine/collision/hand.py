@@ -114,7 +114,7 @@ class HandTests:
     def __call__(
         self, links: frozenset[int], T_world_base: Floats, values: Floats, against: Against = "anything"
     ) -> str | None:
-        """Return the name of a body, or of a link of the robot, that some links touch; None if there is none.
+        """Return the name of a body, or of a link of the robot, in contact with the given links; None without contact.
 
         Args:
             links: Indices of links of the robot; bodies that they hold are tested, too.
@@ -132,7 +132,7 @@ class HandTests:
     def contacts(
         self, links: frozenset[int], T_world_base: Floats, values: Floats, against: Against = "target"
     ) -> tuple[list[Contact], list[int]]:
-        """Return the contacts of some links, with normals out of the other body, and the link of each contact."""
+        """Return the contacts of the given links, with normals out of the other body, and the link of each contact."""
         self._move(T_world_base, values)
         both = [(a, b) if self._meant.link[a] >= 0 else (b, a) for a, b in self._pairs]
         touching = [pair for pair in sorted(set(both)) if self._name(pair, links, against) and self._touches(pair)]

@@ -47,7 +47,7 @@ class HeldRoots:
 
     @block
     def on_carriers(self) -> Generator[None]:
-        """Context manager that attaches them to the grabbing links; the caller restores their poses afterwards."""
+        """Context manager that attaches the roots to the grabbing links; the caller restores their poses afterwards."""
         with restoring(self._detach):
             self._attach()
             yield
@@ -93,7 +93,7 @@ _MANY = 50
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> "MovingTest | None":
-    """Return a fast test of values of some joints, or None if links are displaced from their joints.
+    """Return a fast collision test of joint values, or None if links are displaced from their joints.
 
     It tests the moved links and grabbed bodies. While it is used, the world must not change otherwise, and the caller
     holds the lock. The test moves the world's model, and possibly the body's joints: ``body.restore`` restores both.
@@ -105,7 +105,7 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> "MovingTest | None":
 
 
 def moved_world(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None] | None:
-    """Return a function that moves some joints and grabbed bodies in the world's model; see ``moving_test``."""
+    """Return a function that moves the joints ``dofs`` and grabbed bodies in the world's model; see ``moving_test``."""
     world = body.simulation.collisions()
     return None if body.kinematics.displaced else _Mover(world, body, dofs)
 
@@ -126,7 +126,7 @@ class Among(NamedTuple):
 
     @property
     def kinds(self) -> tuple[_Kind, ...]:
-        """Return the queries."""
+        """Return the selected kinds of queries."""
         return tuple(kind for kind, counts in zip(_KINDS, (self.others, self.itself), strict=True) if counts)
 
 
@@ -195,7 +195,7 @@ class _Chosen(NamedTuple):
 
     @classmethod
     def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
-        """Select the pairs, for a world in which bodies only move."""
+        """Return the cached selection of pairs, which is valid as long as bodies only move."""
         moved = MovedBy(tuple(dofs))
         return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
 

@@ -163,7 +163,7 @@ class Detection:
 
 
 class Pairs:
-    """Candidate geom pairs of a query: the first geoms, shape (n,), and the second ones."""
+    """Candidate geom pairs of a query: two arrays of geom indices, shape (n,)."""
 
     def __init__(self, first: Ints, second: Ints, detection: Detection, *, once: bool = False) -> None:
         """Store pairs; ``once`` skips preparations for repeated use."""

@@ -19,7 +19,7 @@ from ravemj.engine.collision.world import CollisionWorld
 
 _PARENTS_COUNT = int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
 _MOST = 8
-"""Maximum number of contact points of a pair; further ones lie between those kept."""
+"""Maximum number of contact points of a pair; the others lie between the kept points."""
 
 _SAME = 1e-7  # m; contact points of one pair that are nearer to each other count as one
 
@@ -46,7 +46,7 @@ def _of_pair(world: CollisionWorld, pair: Pair, contacts: list[Contact]) -> list
 
 
 def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Contact]]:
-    """Return those of MuJoCo's last contacts that belong to some pairs; keys have the smaller geom first."""
+    """Return MuJoCo's last contacts of the given pairs, by pair; the smaller geom of a key comes first."""
     wanted = {ordered_pair(*pair): pair for pair in pairs}
     by_pair: dict[Pair, list[Contact]] = {}
     data = world.model.data
@@ -63,7 +63,7 @@ def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Con
 
 
 def spread(contacts: list[Contact]) -> list[Contact]:
-    """Return contacts without duplicates, the deepest first; of many, those that are farthest from each other."""
+    """Return at most ``_MOST`` contacts without duplicates, the deepest first, chosen far from each other."""
     rest, chosen = sorted(contacts, key=lambda contact: -contact.depth), list[Contact]()
     if not rest:
         return chosen
@@ -83,7 +83,7 @@ def contact_rows(contacts: Iterable[Contact]) -> Floats:
 
 @block
 def _all_separate(world: CollisionWorld, bodies: list[int]) -> Generator[Masks]:
-    """Let MuJoCo test all geoms of some bodies against each other during the block; yield the masks of the bodies."""
+    """Context manager that makes MuJoCo test all geoms of ``bodies`` against each other; it yields their masks."""
     model = world.model.model
     welds, dofs, flags = model.body_weldid.copy(), model.body_dofnum.copy(), model.opt.disableflags
 

@@ -69,8 +69,8 @@ def each_other(
 ) -> Pairs:
     """Return the pairs of two bodies, of a link and a body, or of two links.
 
-    There are none if one body has grabbed the other, nor of a link and its own body; two links of one body are tested
-    even if adjacent. ``links`` restricts the first body to these links and their grabbed bodies.
+    The result is empty if one body has grabbed the other, and for a link and its own body; two links of one body are
+    tested even if adjacent. ``links`` restricts the first body to these links and their grabbed bodies.
     """
 
     def find() -> tuple[Ints, Ints]:
@@ -89,7 +89,7 @@ def each_other(
 
 
 def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> Pairs:
-    """Return the self-collision pairs of a body and its grabbed bodies, optionally of some links or pairs only."""
+    """Return the self-collision pairs of a body and its grabbed bodies, optionally only of links or link pairs."""
 
     def find() -> tuple[Ints, Ints]:
         wanted = moved_apart(body.scene, asked.dofs) if isinstance(asked, MovedBy) else asked
@@ -99,7 +99,7 @@ def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> P
 
 
 def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
-    """Return those pairs of ``itself`` that are between a link, with its grabbed bodies, and the rest of its body."""
+    """Return the pairs in ``itself`` of a link, with its grabbed bodies, and the rest of its body."""
     body, index = link
     others = range(len(body.scene.links))
     return itself(world, body, frozenset(ordered_pair(index, other) for other in others))

@@ -50,7 +50,7 @@ class RayCaster:
     def first_hit(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
         """Return the first hit of a ray. A ray that starts inside a solid reports its exit point.
 
-        It starts at ``start`` in the world [m], shape (3,), and its range is the length of ``direction`` [m], shape
+        The ray starts at ``start`` in the world [m], shape (3,); its range is the length of ``direction`` [m], shape
         (3,).
         """
         if math.hypot(*direction.tolist()) <= _SHORTEST:

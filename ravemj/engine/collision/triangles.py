@@ -17,7 +17,7 @@ from ravemj.formats.meshes import area, volume
 from ravemj.model.scene import Mesh
 
 NOT_FILLED = 1e-3
-"""Maximum relative difference of area and volume from those of the convex hull with which a mesh counts as convex."""
+"""Maximum relative difference of area and volume between a mesh that counts as convex and its convex hull."""
 
 _XML = """<mujoco><asset>
 <mesh name="a" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/><mesh name="b" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/>
@@ -73,7 +73,7 @@ class TriangleTests:
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
 
     def _near_solid(self, mesh: int, solid: int, box: tuple[Floats, Floats], touching: float) -> Iterator[_Candidate]:
-        """Yield the triangles that may be within ``touching`` of a solid [m]: by FCL, few more than touch its box."""
+        """Yield the triangles that may be within ``touching`` [m] of a solid: FCL finds those near its bounding box."""
         if touching > _SLACK / 2:
             yield from self._triangles_of(mesh).near(*box, touching)
             return
@@ -103,7 +103,7 @@ class TriangleTests:
         return min(distance, limit)
 
     def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
-        """Yield signed distance [m] and ``segment`` of each mesh triangle touching a solid or another triangle."""
+        """Yield signed distance [m] and ``segment``, the nearest points, of each touching pair with a mesh triangle."""
         result, place = fcl.CollisionResult(), _OTHER_TRIANGLE
         if self._is_mesh(other):
             fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)
@@ -143,9 +143,9 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return ``distance`` of the nearest candidate; they come in the order of lower bounds.
+        """Return ``distance`` of the nearest candidate; candidates are sorted by their lower bounds.
 
-        Triangles are measured against the geom ``place`` of the scratch model, until one is as near as ``enough`` [m].
+        Triangles are measured against the geom ``place`` of the scratch model, until one is within ``enough`` [m].
         """
         best, nearest = limit, np.zeros(6)
         for bound, triangle, other in candidates:

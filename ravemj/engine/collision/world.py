@@ -71,13 +71,13 @@ class CollisionWorld:
         return self.kept(("group", body), lambda: body.simulation.attached(body))
 
     def geoms_of_body(self, body: BodyState, *, enabled_only: bool = True) -> Ints:
-        """Return the collision geoms of a body, optionally with those of disabled links."""
+        """Return the collision geoms of a body, optionally including disabled links."""
         number = self._number.get(body, -2)
         among = self._collides if enabled_only else self._is_solid
         return np.flatnonzero(among & (self._owner == number))
 
     def geoms_of_link(self, body: BodyState, link: int, *, enabled_only: bool = True) -> Ints:
-        """Return the collision geoms of a link, optionally even if it is disabled."""
+        """Return the collision geoms of a link; none if it is disabled, unless ``enabled_only`` is False."""
         geoms = self.geoms_of_body(body, enabled_only=enabled_only)
         return geoms[self._link[geoms] == link]
 
@@ -95,7 +95,7 @@ class CollisionWorld:
         return self.bodies[int(self._owner[geom])], int(self._link[geom])
 
     def geometry(self, geom: int) -> tuple[BodyState, int, int]:
-        """Return the body, the index of the link and that of the geometry that a geom belongs to."""
+        """Return the body, the link index and the geometry index of a geom."""
         known = self._geometries.get(geom)
         if known is None:
             body, link = self.owner(geom)
@@ -167,7 +167,7 @@ class CollisionWorld:
         return batch.bind("ncon")[:count] > 0
 
     def _have_contacts_one_by_one(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Return the result of ``have_contacts`` by one thread; a ``Batch`` computes more, so it is slower."""
+        """Compute ``have_contacts`` in one thread; a ``Batch`` would be slower, since it computes more."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
         counts: list[int] = []

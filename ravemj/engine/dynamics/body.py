@@ -225,7 +225,7 @@ class BodyDynamics:
         return self._of_dofs(self._moving)
 
     def qvel(self, velocities: Floats, rates: Floats) -> Floats:
-        """Return MuJoCo's velocities in the body's own model, shape (nv,), from those of root links and DOFs.
+        """Return MuJoCo's velocities in the body's own model, (nv,), from velocities of root links and of DOFs.
 
         ``rates`` are the DOF velocities [rad/s or m/s], shape (dof,).
         """
@@ -236,7 +236,7 @@ class BodyDynamics:
         return qvel
 
     def _set_roots(self, target: Floats, values: Mapping[int, Floats] | Floats) -> None:
-        """Write velocities or accelerations of roots, by link: linear ones in the world, angular ones in the link."""
+        """Write velocities or accelerations of roots, by link: linear in world axes, angular in link axes."""
         self._kinematics.place()
         for root, first in zip(self._kinematics.roots, self._kinematics.root_qvel, strict=True):
             target[first : first + 3] = values[root][:3]
@@ -336,7 +336,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write DOF accelerations and additional accelerations of roots, (6,), to velocity-dependent ones."""
+        """Write the sum of DOF, velocity-dependent and additional root accelerations (6,) into ``qacc``."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0
@@ -386,7 +386,7 @@ class BodyDynamics:
         gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
-        """Return the components of ``inverse`` due to accelerations, joint velocities, and all else."""
+        """Return the components of ``inverse`` due to accelerations, to joint velocities, and to all else."""
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)

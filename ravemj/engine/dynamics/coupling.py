@@ -37,7 +37,7 @@ class Coupling:
     second: list[tuple[int, int, int, Floats]]  # of P's derivative: coordinate, DOF that changes, DOF of column, value
 
     def forward(self, rates: Floats) -> Floats:
-        """Multiply DOF velocities, shape (dof, ...), by P; return those of the coordinates, (coordinates, ...)."""
+        """Return the coordinate velocities, shape (coordinates, ...), of DOF velocities (dof, ...): P times these."""
         moved = np.zeros((self.count, *rates.shape[1:]))
         moved[self.coordinates] = rates[self.dofs]
         for coordinate, dof, value in self.first:
@@ -45,7 +45,7 @@ class Coupling:
         return moved
 
     def backward(self, forces: Floats) -> Floats:
-        """Multiply forces on coordinates, shape (coordinates, ...), by P^T; return those on DOFs, (dof, ...)."""
+        """Return the DOF forces, shape (dof, ...), of forces on coordinates (coordinates, ...): P^T times these."""
         collected = np.zeros((self.dof, *forces.shape[1:]))
         collected[self.dofs] = forces[self.coordinates]
         for coordinate, dof, value in self.first:
@@ -53,7 +53,7 @@ class Coupling:
         return collected
 
     def bias(self, rates: Floats) -> Floats:
-        """Return dP/dt dq/dt: the accelerations of the coordinates at constant DOF velocities, shape (dof, ...)."""
+        """Return dP/dt dq/dt, the accelerations at constant DOF velocities, shape (coordinates, ...)."""
         bias = np.zeros((self.count, *rates.shape[1:]))
         for coordinate, along, dof, value in self.second:
             bias[coordinate] += value * rates[along] * rates[dof]
@@ -152,7 +152,7 @@ class _Partials:
 
 
 def first_values(kinematics: BodyKinematics, values: Floats) -> list[Floats]:
-    """Return the first value of each active, then passive joint for DOF values, shape (dof, ...)."""
+    """Return the value of the first axis of each joint, active joints first, for DOF values (dof, ...)."""
     passive = [np.full(values.shape[1:], first) for first in kinematics.first_values(np.zeros(kinematics.dof))]
     return [*(values[first] for first in kinematics.first_dofs), *passive[len(kinematics.first_dofs) :]]
 

@@ -164,7 +164,7 @@ class BodyKinematics:
         return SphericalJoint(joint, slice(0), slice(places[0], places[0] + 4))
 
     def describe(self, body: KinBody) -> None:
-        """Replace the description by one with other limits or masses, and the same links and joints."""
+        """Replace the description; limits and masses may differ, links and joints must be the same."""
         before = self.body.links
         self.body = body
         axes = body.dof_axes
@@ -182,7 +182,7 @@ class BodyKinematics:
         return ShownValues(self.body.joints, self.first_dofs)
 
     def _find_mimic_joints(self, body: KinBody) -> None:
-        """Find the mimic joints, and those among them that are affine in a DOF."""
+        """Find the mimic joints, and which of them are affine in one DOF."""
         # A body without DOFs has no mimic joints: OpenRAVE never sets a value there.
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self._mimic_qpos = {
@@ -262,7 +262,7 @@ class BodyKinematics:
                 self._passive_values[mimic.joint - len(self.first_dofs)][0] = known[mimic.joint]
 
     def first_values(self, values: Floats) -> list[float]:
-        """Return the first value of each active, then passive joint for given DOF values."""
+        """Return the value of the first axis of each joint, active joints first, for given DOF values."""
         plain = values.tolist()
         active = plain if len(self.first_dofs) == self.dof else [plain[first] for first in self.first_dofs]
         passive = [
@@ -360,7 +360,7 @@ class BodyKinematics:
             self.qpos[first + 3 : first + 7] = wxyz
 
     def configuration(self) -> Configuration:
-        """Return the state for ``restore``, which may be that of another object for the same body."""
+        """Return the state, as input of ``restore`` of this or another object for the same body."""
         passive = [list(values) for values in self._passive_values]
         model = self.model
         return Configuration(self.qpos.copy(), model.body_pos.copy(), model.body_quat.copy(), passive, self.displaced)

@@ -26,7 +26,7 @@ _ONE_AXIS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 def place_links(kinematics: "BodyKinematics", T_world_links: Floats, last_values: Floats) -> None:
     """Set all link poses, shape (links, 4, 4); joint values are computed from them.
 
-    Hinge values are shifted by full turns nearest to ``last_values`` [rad or m], shape (dof,).
+    Hinge values are shifted by full turns towards ``last_values`` [rad or m], shape (dof,).
     """
     for root, link in enumerate(kinematics.roots):
         kinematics.set_root_transform(root, T_world_links[link])

@@ -33,7 +33,7 @@ class ShownValues:
         """Return the values [rad or m], shape (dof,), near ``last_values``.
 
         Values that differ from the last ones only by rounding are not changed, to avoid drift; hinge values are shifted
-        by full turns nearest to the last ones.
+        by full turns towards the last ones.
         """
         values = last_values.copy()
         if len(dofs := self._hinges.dofs):
@@ -70,7 +70,7 @@ class _SingleAxes:
         return R_parent_world @ T_world_links[self._children, :3, :3] @ self._R_child_parent, R_parent_world
 
     def angles(self, T_world_links: Floats) -> Floats:
-        """Return the values of hinges, within [-pi, pi]."""
+        """Return the values of revolute joints [rad], within [-pi, pi]."""
         turned, _ = self._turned(T_world_links)
         products = turned.reshape(-1, 9) @ _PRODUCTS + _EYE
         largest = products[:, ::5].argmax(axis=1)  # scaled by the squares, for accuracy
@@ -80,7 +80,7 @@ class _SingleAxes:
         return self._references + np.where(np.abs(moved) > ROUNDING, moved, 0.0)
 
     def ways(self, T_world_links: Floats) -> Floats:
-        """Return the values of sliders."""
+        """Return the values of prismatic joints [m]."""
         turned, R_parent_world = self._turned(T_world_links)
         apart = T_world_links[self._children, :3, 3] - T_world_links[self._parents, :3, 3]
         motions = R_parent_world @ apart[:, :, None] + turned @ self._arms[:, :, None]

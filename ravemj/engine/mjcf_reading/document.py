@@ -94,7 +94,7 @@ class MjcfDocument:
         return document
 
     def source(self, name: str, *kinds: str) -> Source:
-        """Return the position of an element, by its name and possible tags; else that of the file."""
+        """Return the position of an element, given its name and possible tags; else the position of the file."""
         for kind in kinds:
             if (kind, name) in self.named:
                 return self.named[kind, name].source

@@ -1,4 +1,4 @@
-"""Conversion of joint equalities, and those of fixed tendons, to mimic joints."""
+"""Conversion of equality constraints of joints and of fixed tendons to mimic joints."""
 
 import math
 from collections.abc import Iterator, Sequence

@@ -178,7 +178,7 @@ class _OwnBody:
         )
 
     def _geometries(self, index: int, link: Link) -> tuple[Geometry, ...]:
-        """Return the shapes of a link: those of the text if they match the geoms, else the geoms."""
+        """Return the shapes of a link: those in the text if they match the geoms, else shapes made from the geoms."""
         model, number = self._model, self._bodies[index]
         first, count = int(model.body_geomadr[number]), int(model.body_geomnum[number])
         if self._names.decomposed:
@@ -210,7 +210,7 @@ class _OwnBody:
         return _same_pose(expected, there) and _near(_floats(attributes["rgba"]), rgba, _COLOUR_NEAR)
 
     def _joint(self, number: int, joint: Joint) -> Joint:
-        """Return a joint that places a link, with edits applied."""
+        """Return a joint of the kinematic tree, with edits applied."""
         if not joint.places_child or self._placing.get(joint.child) != number:
             return joint
         T_parent_child, names = self._pose(joint.child), self._names.joints[number]

@@ -1,4 +1,4 @@
-"""Pairs that MuJoCo never tests become adjacent links."""
+"""Conversion of link pairs that MuJoCo never tests to adjacent links."""
 
 from itertools import combinations
 

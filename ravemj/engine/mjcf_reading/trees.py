@@ -18,7 +18,7 @@ from ravemj.model.scene import Inertial
 from ravemj.model.shape_bodies import MASSLESS
 
 WORLD = "world"
-"""Name of the body with the world's own shapes; its link has another name, since MuJoCo's world body has this one."""
+"""Name of the body with the world's shapes; its link is named otherwise, since MuJoCo's world body has this name."""
 
 
 @dataclass

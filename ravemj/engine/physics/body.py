@@ -50,7 +50,7 @@ class PhysicalBody:
 
     @property
     def can_move(self) -> bool:
-        """Whether it has a moving joint or its base is free."""
+        """Whether the body has a moving joint or a free base."""
         return self.part.is_free or len(self.rows) > 0
 
     def give_velocities(self) -> None:

@@ -42,9 +42,9 @@ class Proof:
 
     Attributes:
         held: Whether the object moved in the hand by less than 5 mm and 5 degrees.
-        moved: Largest translation of its centre of mass in the hand [m].
+        moved: Largest translation of the object's centre of mass in the hand [m].
         turned: Largest rotation in the hand [rad].
-        seconds: Time for which it was held [s]: of 3.5 s, 0.5 s are the lift, and 1 s is the shake along each axis.
+        seconds: Time until the object was lost [s], at most 3.5: a lift of 0.5 s, and a shake of 1 s along each axis.
         mass: Mass of the object [kg].
         friction: Friction coefficient of hand and object.
         forces: Force or torque of each gripper joint [N or N m].
@@ -67,7 +67,7 @@ class Proof:
 
 
 def prove(robot: BodyState, arm: Manipulator, target: BodyState, friction: float, gravity: Floats) -> Proof:
-    """Simulate that the hand presses with its largest forces, lifts the object, and is shaken.
+    """Simulate a hand that presses with its largest forces, lifts the object, and is shaken.
 
     Args:
         robot: The robot, in the configuration of the closed grasp. The caller holds the lock.
@@ -167,7 +167,7 @@ class _Experiment:
         return forces
 
     def run(self, gravity: Floats) -> Proof:
-        """Press the fingers on, lift and shake the object; stop early if it moves too far in the hand."""
+        """Press with the fingers, then lift and shake the object; stop early if it moves too far in the hand."""
         model, data = self._model, self._data
         rotation = self._T_model_world[:3, :3]
         model.opt.gravity[:] = 0.0

@@ -57,7 +57,7 @@ class Loads:
             data.qfrc_applied[body.rows] += np.linalg.lstsq(columns.T, self.torques)[0]
 
     def drive(self, body: PhysicalBody, applied: Floats) -> None:
-        """Apply the torques of the motor with which joints reach their velocities after a time step.
+        """Apply the motor torques with which joints reach their target velocities after a time step.
 
         The accelerations of the model must be computed; ``applied`` are the other joint forces, shape (nv,).
         """

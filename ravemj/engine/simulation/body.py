@@ -37,7 +37,7 @@ class GrabbedBody(NamedTuple):
 
 
 class SavedConfiguration(NamedTuple):
-    """State of joints and links."""
+    """Saved state of joints and links of a body."""
 
     configuration: Configuration  # of MuJoCo's model
     scene: KinBody  # what the model was made of, for a body that has other joints by then
@@ -136,7 +136,7 @@ class BodyState:
 
     @property
     def dynamics(self) -> "BodyDynamics":
-        """Jacobians and inverse dynamics; raises what ``kinematics`` raises."""
+        """Jacobians and inverse dynamics; raises the errors of ``kinematics``."""
         if self._dynamics is None or not self.index:
             from ravemj.engine.dynamics import BodyDynamics  # noqa: PLC0415 - slow to import
 
@@ -145,7 +145,7 @@ class BodyState:
 
     @property
     def batch(self) -> "Batch":
-        """Chain of links, prepared for many configurations; raises what ``kinematics`` raises."""
+        """Chain of links, prepared for many configurations; raises the errors of ``kinematics``."""
         dynamics = self.dynamics
         if self._batch is None:
             from ravemj.engine.batch import Batch  # noqa: PLC0415 - slow to import
@@ -215,7 +215,7 @@ class BodyState:
 
         Args:
             T_world_links: Shape (links, 4, 4).
-            last_values: Joint values [rad or m], shape (dof,); hinge values are shifted by the full turns nearest to
+            last_values: Joint values [rad or m], shape (dof,); hinge values are shifted by full turns towards
                 them. Only for a body in the world; None means the present values.
         """
         kinematics = self.own_kinematics if last_values is None else self.kinematics
@@ -252,14 +252,14 @@ class BodyState:
         return self._velocities
 
     def set_link_velocities(self, velocities: Floats) -> None:
-        """Set the velocities of the links, shape (links, 6), and those of grabbed bodies."""
+        """Set the velocities of the links, shape (links, 6), and accordingly of grabbed bodies."""
         self._velocities = velocities.copy()
         self._velocities.flags.writeable = False
         for grab in self.grabs:
             self._carry(grab)
 
     def _carry(self, grab: GrabbedBody) -> None:
-        """Set the velocity of a grabbed body to that of the grabbing link."""
+        """Set the velocity of a grabbed body so that it moves rigidly with the grabbing link."""
         carrier = self._velocities[grab.link]
         arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
         grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
@@ -281,7 +281,7 @@ class BodyState:
         self._carry(grab)
 
     def carries(self, body: "BodyState") -> bool:
-        """Return whether a body is this one, or grabbed by it directly or indirectly."""
+        """Return whether ``body`` is this body, or is grabbed by it directly or indirectly."""
         return body is self or any(grab.body.carries(body) for grab in self.grabs)
 
     def release(self, body: "BodyState") -> None:
@@ -293,7 +293,7 @@ class BodyState:
         return SavedConfiguration(self.own_kinematics.configuration(), self.scene)
 
     def restore(self, saved: SavedConfiguration) -> None:
-        """Restore a state returned by ``configuration``, of this body or one of the same structure."""
+        """Restore a state returned by ``configuration``, of this body or of a body with the same structure."""
         self.will_move()
         kinematics = self.own_kinematics
         if not kinematics.restore(saved.configuration):
@@ -329,7 +329,7 @@ class BodyState:
             self._dynamics = self._batch = None  # the value of a multivalued mimic equation depends on the limits
 
     def remake(self, scene: KinBody) -> None:
-        """Replace the description by one with other DOFs, welds or equations; links move when values are next set."""
+        """Replace the description; DOFs, welds or equations may differ. Links move when values are next set."""
         saved = self.configuration()
         self.simulation.forget_model()
         self._forget_kinematics()

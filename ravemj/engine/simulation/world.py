@@ -72,7 +72,7 @@ class Simulation:
         return BodyState(scene, self)
 
     def add(self, scene: KinBody) -> BodyState:
-        """Add a new body in its loaded configuration; raises what ``insert`` raises."""
+        """Add a new body in its loaded configuration; raises the errors of ``insert``."""
         body = self.create(scene)
         self.insert(body)
         return body
@@ -227,7 +227,7 @@ class Simulation:
             self.published.put(world.model, world.data)
 
     def compile(self) -> "WorldModel":
-        """Return the model of the present bodies, whose poses may be outdated; raises what ``compiled`` raises."""
+        """Return the model of the present bodies, whose poses may be outdated; raises the errors of ``compiled``."""
         with self.lock:
             if self._world is None:
                 self._world = self._compile()

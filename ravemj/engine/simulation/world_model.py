@@ -63,7 +63,7 @@ class WorldModel(Compiled):
         return self._parts[body]
 
     def take(self, bodies: Iterable[BodyState]) -> None:
-        """Copy changes of some bodies: joint values, poses, masses, colours."""
+        """Copy changes of the given bodies: joint values, poses, masses, colours."""
         parts, described = self._parts, self._described
         for body in bodies:
             part, scene = parts[body], body.scene

@@ -1,6 +1,6 @@
 """COLLADA 1.5 files with kinematics, ``.dae`` and ``.zae``.
 
-A document names a scene of visible nodes, one of kinematics, and one of physics, and binds these to each other.
+A document has a visual scene, a kinematics scene and a physics scene, and binds their elements to each other.
 ``scenes`` traverses it and fills a ``BodyBuilder`` for each robot; the other modules each read one kind of element.
 References may name other files. As in OpenRAVE, elements with broken references are skipped; they are reported.
 """

@@ -16,7 +16,7 @@ _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 """Compression methods that OpenRAVE supports. For others, Python does not limit the unpacked size."""
 _ENTRY = b"PK\1\2"  # begins an entry of the directory
 _DAMAGES = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError)
-"""Exceptions of ``zipfile`` for damaged or encrypted archives, which it does not document."""
+"""Undocumented exceptions of ``zipfile`` for damaged or encrypted archives."""
 
 
 class Archive:

@@ -52,7 +52,7 @@ class AxisReader(NamedTuple):
 
     @property
     def wrap(self) -> float:
-        """The middle of limits that exceed half a turn [rad], to which OpenRAVE wraps values; 0 for other limits."""
+        """The centre of the full turn to which OpenRAVE wraps values [rad]: the middle of limits beyond ±pi, else 0."""
         written = self._written_limits()
         return sum(written) / 2 if written and max(map(abs, written)) > math.pi else 0.0
 
@@ -98,7 +98,7 @@ class AxisReader(NamedTuple):
         return -_UNLIMITED_SLIDE, _UNLIMITED_SLIDE, False
 
     def _written_limits(self) -> tuple[float, float] | None:
-        """Return the limits as written [rad or m]: those of the kinematics system, or else those of the axis."""
+        """Return the limits as written [rad or m], in the kinematics system or else in the axis."""
         unit = self._unit(_DEGREE)
         for owner in (self.kinematics, self.element):
             limits = child(owner, "limits")
@@ -120,7 +120,7 @@ class AxisReader(NamedTuple):
         return default if value is None or not math.isfinite(value) else abs(value * self._speed_unit())
 
     def _unit(self, angle: float) -> float:
-        """Return the conversion factor of this axis's numbers; ``angle`` is the unit of angles [rad]."""
+        """Return the factor from the file's values to metres or radians; ``angle`` is the unit of angles [rad]."""
         return angle if self.is_revolute else self.library.metres(self.element)
 
     def _speed_unit(self) -> float:

@@ -110,7 +110,7 @@ class BodyWriter:
         return f"{self._model_of_joint[index]}/joint{index}"
 
     def _write_joint(self, index: int, joint: Joint) -> None:
-        """Write the type and the axes of a joint, in its frame, which is parallel to that of its parent link."""
+        """Write type and axes of a joint, in the joint's frame, which is parallel to the parent link's."""
         out = self._sections.kinematics_models
         with out.inside("joint", sid=f"joint{index}", name=self._joint_names[index]):
             for place, direction in enumerate(self._directions(joint)):
@@ -135,7 +135,7 @@ class BodyWriter:
         return joint.static and joint.kind == "hinge" and len(self._body.joints) > 0
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn of a weld whose axis differs from that which OpenRAVE gives it."""
+        """Warn of a weld whose axis differs from the axis that OpenRAVE assigns to it."""
         if self._is_bare(joint) and not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in COLLADA it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)
@@ -231,7 +231,10 @@ class BodyWriter:
 
 
 def _joint_names(body: KinBody) -> dict[int, str]:
-    """Return unique joint names by index, also after readers normalize them; names that they change come last."""
+    """Return joint names by index, unique also after readers normalize them.
+
+    Names that normalization does not change have priority.
+    """
     names, used = [joint.name for joint in body.all_joints], Names(())
     order = sorted(range(len(names)), key=lambda index: not names[index] or valid_name(names[index]) != names[index])
     return {index: used.give(valid_name(names[index]) or f"joint{index}") for index in order}

@@ -1,4 +1,4 @@
-"""The COLLADA documents of one model, to which several of its elements may refer."""
+"""Cache of the COLLADA documents to which elements of one model refer."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING

@@ -89,8 +89,8 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
         scheme: Scheme of URIs of files in the folders of ``OPENRAVE_DATA``; None for relative URIs.
 
     Raises:
-        SourceError: It was read from another format or from the file that will be replaced, or its file is missing or
-            lacks names.
+        SourceError: The body was read from another format or from the file that will be replaced, or its file is
+            missing or lacks names.
     """
     file, line = body.source.file, body.source.line
     archive, inside, _ = file.partition(f"{ARCHIVE_SUFFIX}/")
@@ -136,7 +136,7 @@ class _Finder:
         """Return the body whose instance or articulated system is at a line.
 
         Raises:
-            SourceError: There is none, or it lacks names.
+            SourceError: There is no such body, or its parts have no names.
         """
         for kinematics in children(self._scene, "instance_kinematics_scene"):
             scene = self._library.follow(kinematics)

@@ -134,7 +134,7 @@ class _FormulaReader:
         raise _FormulaError(f"<{kind}> is not understood")
 
     def _choice(self, pieces: list[Element], name_of: _NameOf, depth: int) -> str:
-        """Return the expression of a ``<piecewise>``: the first piece whose condition holds, else the rest."""
+        """Return the expression of a ``<piecewise>``: the first piece whose condition holds, else ``<otherwise>``."""
         if not pieces:
             raise _FormulaError("<piecewise> has no piece for every case")
         parts = [self._text(item, name_of, depth) for item in children(pieces[0])]

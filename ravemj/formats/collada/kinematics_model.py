@@ -39,7 +39,7 @@ def valid_name(name: str | None) -> str:
 
 
 Infos = dict[Element, tuple[Element, Element | None]]
-"""For each axis, its ``<axis_info>`` of the kinematics system and that of the motion system."""
+"""For each axis, its ``<axis_info>`` in the kinematics system and in the motion system."""
 
 
 class SceneContext(NamedTuple):

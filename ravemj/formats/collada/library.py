@@ -1,4 +1,4 @@
-"""The documents of one reading, and the references between their elements."""
+"""COLLADA documents opened while reading a model, and the references between their elements."""
 
 import os
 import posixpath
@@ -52,7 +52,7 @@ class ResolvedReference(NamedTuple):
 
 
 class Library:
-    """The documents opened by one reading.
+    """COLLADA documents opened while reading a model.
 
     Attributes:
         diagnostics: Receives diagnostics.
@@ -189,7 +189,7 @@ class Library:
         return document
 
     def metres(self, element: Element) -> float:
-        """Return the length of the unit of an element, scaled [m]."""
+        """Return the length unit of an element [m], times the scale of the reading."""
         return self._scale * self._unit(element)
 
     def _unit(self, element: Element) -> float:
@@ -320,7 +320,7 @@ def _reference(element: Element) -> str | None:
 
 
 def label(element: Element) -> str:
-    """Return the name of an element for messages: its tag, and the nearest id, sid or name of it or its ancestors."""
+    """Return a name of an element for messages: its tag, and its own or the nearest ancestor's id, sid or name."""
     tag = f"<{local_name(element)}>"
     for around in (element, *element.iterancestors(etree.Element)):
         for attribute in ("id", "sid", "name"):

@@ -88,7 +88,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
 
 
 class _System(NamedTuple):
-    """An articulated system, outermost part first, or a model outside of systems."""
+    """Elements of an articulated system, the outermost first, or of a model outside of systems."""
 
     systems: list[Element]
     models: list[Element]
@@ -100,7 +100,7 @@ class _System(NamedTuple):
         return (self.systems or self.models)[0].get("id") or ""
 
     def has(self, name: str) -> bool:
-        """Return whether a name is that of a part or of its instance."""
+        """Return whether a part of the system, or its instance, has this name."""
         parts = (*self.systems, *self.models)
         return any(name in (part.get("id"), part.get("sid"), (part.get("url") or "").lstrip("#")) for part in parts)
 

@@ -39,12 +39,12 @@ class Node:
 
     @property
     def name(self) -> str:
-        """Its name, else its id, else its sid."""
+        """Name of the node, else its id, else its sid."""
         return self.element.get("name") or self.element.get("id") or self.element.get("sid") or ""
 
     @property
     def world(self) -> Floats:
-        """Its pose in the scene, shape (4, 4)."""
+        """Pose of the node in the scene, shape (4, 4)."""
         return self.transform if self.parent is None else self.parent.world @ self.transform
 
     def around(self) -> Iterator["Node"]:
@@ -55,14 +55,14 @@ class Node:
             node = node.parent
 
     def find(self, path: str) -> "Node | None":
-        """Return the node at a path of names; the last name may be that of a transform in the node."""
+        """Return the node at a path of names; the last name may name a transform in the node."""
         node: Node | None = self
         for name in path.strip().removeprefix("#").split("/"):
             node = None if node is None else node._below().get(name)
         return node
 
     def _below(self) -> dict[str, "Node"]:
-        """Return this node and its descendants by their names and those of their transforms; the nearest win."""
+        """Return this node and its descendants by name, also by the names of their transforms; the nearest win."""
         if self.named is None:
             self.named = {}
             queue: deque[Node] = deque([self])

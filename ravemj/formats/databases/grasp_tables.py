@@ -33,7 +33,7 @@ _IN_ORDER = (
 
 @dataclass(frozen=True)
 class Owner:
-    """Hand and body of a grasp table; texts are empty in files of OpenRAVE.
+    """Hand and body of a grasp table; the strings are empty in files of OpenRAVE.
 
     Attributes:
         robot: Name of the robot.

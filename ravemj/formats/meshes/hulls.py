@@ -19,7 +19,10 @@ _MAX_REACH = 1e15  # m; MuJoCo computes areas in single precision
 _SAMPLE = 64  # triangles
 
 _forms: WeakKeyDictionary[Mesh, CollisionForm] = WeakKeyDictionary()
-"""Cache of forms, while their meshes are in use. A lookup hashes the mesh, whose digest all callers need anyway."""
+"""Cache of collision forms by mesh, as long as the mesh exists.
+
+A lookup hashes the mesh, whose digest all callers need anyway.
+"""
 
 _NEEDLE = 1e-7
 """Width of a mesh relative to its length below which rounding cancels the inertia about its axis."""

@@ -140,7 +140,7 @@ def read_written(path: str) -> Mesh | None:
 
 
 def as_written(mesh: Mesh) -> Mesh:
-    """Return a mesh rounded like its file."""
+    """Return a mesh with coordinates rounded as in its OBJ file."""
     return _parsed(write_obj(mesh))
 
 

@@ -64,7 +64,7 @@ def weld(corners: ArrayLike) -> Mesh:
 def welded(
     corners: Floats, source: Source, diffuse: Rgb = WHITE, ambient: Rgb = BLACK, transparency: float = 0.0
 ) -> tuple[MeshPart, ...]:
-    """Return separate triangles as one part, or as no part, without degenerate ones, as in OpenRAVE's importer.
+    """Return separate triangles, except degenerate ones, as one part; no part if there are none, as in OpenRAVE.
 
     Raises:
         SourceError: There are too many triangles, or a coordinate is not finite.

@@ -1,4 +1,4 @@
-"""Reader of PLY, OFF, GLB and glTF, which are rare with OpenRAVE, by trimesh."""
+"""Reader of PLY, OFF, GLB and glTF by trimesh; these formats are rare with OpenRAVE."""
 
 import importlib
 import io
@@ -45,7 +45,7 @@ def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 class _References(Mapping[str, bytes]):
-    """Gives trimesh the buffers that glTF refers to, which are raw data, but no pictures, which are not drawn."""
+    """Resolver that gives trimesh the data buffers of a glTF file, but no pictures, since they are not drawn."""
 
     def __init__(self, file: FileContent) -> None:
         self._file = file

@@ -36,7 +36,7 @@ _LEAST_ROOM = 1e-6
 """Half the written range [rad or m] of a joint without range that is not a weld."""
 
 _LOCK_SOLREF, _LOCK_SOLIMP = (0.004, 1), (0.999, 0.9999, 1e-6)
-"""Limits of a joint without range, as stiff as MuJoCo allows, so that a robot standing on it does not sink."""
+"""Limit parameters of a joint without range, as stiff as MuJoCo allows, so that a standing robot does not sink."""
 
 TIMESTEP = 0.002
 """MuJoCo's time step [s]."""
@@ -287,7 +287,7 @@ class _MjcfWriter:
         return tuple(count for count, _ in written), any(collides for _, collides in written)
 
     def _open_link(self, index: int, body: KinBody, link: int, merging: Merging, *, is_free: bool) -> None:
-        """Open the body of a link, or write the site of one that is merged into another."""
+        """Open the body of a link, or write the site of a merged link."""
         described, pose = body.links[link], merging.pose_in_parent(link)
         self.bodies.comment(self._source_text(described.source), described.source)
         attributes = {"name": merging.names[link], **pose_attributes(pose)}

@@ -14,7 +14,7 @@ class Merging:
     """The link tree of a body, with its merged links.
 
     Attributes:
-        placing: For each link that a joint places, the index of this joint.
+        placing: Index of the parent joint of each link that has one.
         children: The child links of each link.
         names: Names of the links in the MJCF: of their bodies, or of their sites if they are merged.
     """

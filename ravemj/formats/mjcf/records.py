@@ -25,10 +25,10 @@ from ravemj.model.expressions import Expression
 from ravemj.model.scene.record import Record
 
 PREFIX = "ravemj/"
-"""Prefix of the names of texts with bodies."""
+"""Prefix of the names of ``<text>`` elements that contain bodies."""
 
 SCENE = "ravemj"
-"""Name of the text with everything outside bodies."""
+"""Name of the ``<text>`` element that contains everything except bodies."""
 
 _KINDS: dict[str, type] = {
     kind.__name__: kind

@@ -36,7 +36,7 @@ def uncomputable(element: Element) -> SourceError:
 
 
 class Context:
-    """Context of reading one file and the files that it includes.
+    """State while reading a file and the files that it includes.
 
     Attributes:
         access: Controls which files may be read, and records those read.
@@ -100,7 +100,7 @@ class Context:
         self.diagnostics.warn("ignored-tag", f"<{element.spelled}> is left out: {reason}", element.source)
 
     def check_attributes(self, element: Element, known: Mapping[str, str], ignored: Mapping[str, str]) -> None:
-        """Report unknown and ignored attributes of an element; the tables give meanings of known ones and reasons."""
+        """Report unknown and ignored attributes of an element; ``known`` gives meanings, ``ignored`` gives reasons."""
         element.checked = True
         for name, text in element.attributes.items():
             if name in FLAGS and not is_true(text) and not is_false(text):
@@ -165,7 +165,7 @@ class Context:
             self.diagnostics.warn("unread", message, document.unread, "put it all into one <Environment>")
 
     def find(self, name: str, source: Source, *folders: str) -> str | None:
-        """Search for a file in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
+        """Search for a file in ``folders``, beside the file that names it, then in those of ``OPENRAVE_DATA``.
 
         If it is in none of them, as in a cloned repository, the folders above the file that names it are searched.
 
@@ -205,7 +205,7 @@ class Context:
         self.diagnostics.warn("missing-file", message, source, hint)
 
     def with_parameter(self, before: Parameters, element: Element) -> Parameters:
-        """Return ``before`` with that of a ``<parameter>``; a malformed one is skipped, with a warning."""
+        """Return ``before`` with the value of a ``<parameter>`` added; a malformed one is skipped, with a warning."""
         self.check_attributes(element, PARAMETER_ATTRIBUTES, {})
         try:
             return with_parameter(
@@ -273,7 +273,7 @@ PLACEMENT_TAGS: dict[str, Tag[Placed]] = {
 
 
 def _found_above(name: str, folder: str, access: FileAccess) -> str | None:
-    """Return the path of a file in the folder above ``folder`` that contains it; None if several do.
+    """Return the path of a file in a folder above ``folder``; None if no folder or several folders contain it.
 
     The search ends at the root of a repository, or after ``_MOST_ABOVE`` folders.
     """

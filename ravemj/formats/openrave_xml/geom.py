@@ -106,7 +106,7 @@ class _Geom(Placed):
         self.render = self._first(self.render, element)
 
     def _first(self, before: MeshFile | None, element: Element) -> MeshFile:
-        """Return the previous file, if any, else that of an element."""
+        """Return the previous file if any, else the file that an element names."""
         self.context.check_attributes(element, {} if element.tag == "data" else MESH_ATTRIBUTES, {})
         if before is None or not before.name:
             return _mesh_file(element, self.context.diagnostics)

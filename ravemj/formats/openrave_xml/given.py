@@ -1,4 +1,4 @@
-"""Attributes that a caller passes with a file, like those of a body's element.
+"""Attributes passed by the caller together with a file, in addition to those of a body's element.
 
 They are applied after those of the file: a name replaces its name, a prefix is put before its names, scale factors are
 multiplied. OpenRAVE applies them if the root of the file is a body, and not inside an ``<Environment>``.
@@ -75,7 +75,7 @@ def given_scale(given: Attributes) -> Vec3:
 
 
 def give(given: Attributes, bodies: Sequence[BodyBuilder]) -> None:
-    """Apply name, prefix and removal of shapes passed by a caller to bodies; the scale is already applied."""
+    """Apply the caller's name, prefix and ``skipgeometry`` to bodies; the scale is already applied."""
     for body in bodies:
         add_prefix(given.get("prefix", ""), body, Marks(), whole=True)
         if is_true(given.get("skipgeometry", "")):

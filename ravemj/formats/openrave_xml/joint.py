@@ -51,7 +51,7 @@ class _JointElement:
     parameters: Parameters = NO_PARAMETERS
 
     def read_body(self, element: Element) -> None:
-        """Read the name of a link, in any letter case (errors-50): the first, and for later names the second one."""
+        """Read the name of a link, in any letter case (errors-50): of the first link, or else of the second one."""
         name = word(element, self.context.diagnostics)
         link = self.body.find_link_any_case(name)
         if link is None:
@@ -151,7 +151,7 @@ OTHER_NUMBERS = {
     "hardmaxjerk": "hard_max_jerk",
     "wrapoffset": "wrap_offset",
 }
-"""Tags of rare numbers, all but the first ravemj's own, and the fields of an axis for them."""
+"""Fields of ``Axis`` by the tags of rare numbers; all tags but the first are ravemj's own."""
 
 _NUMBERS = {
     "initial": "reference",

@@ -23,7 +23,7 @@ _FIRST_AXES: dict[JointKind, JointKind] = {"rp": "slider", "pr": "hinge", "pp": 
 
 
 def listed_poses(body: KinBody) -> list[Pose]:
-    """Return the written poses of the links, at which every moving joint has its ``<initial>`` value."""
+    """Return the link poses to write, at which every moving joint has its ``<initial>`` value."""
     if not body.joints:
         return [link.T_world_link for link in body.links]
     joints = enumerate(body.all_joints)
@@ -107,7 +107,7 @@ class JointWriter:
                 self._out.element(tag, settled.direction(in_frame))
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn of a weld whose axis is not that which OpenRAVE gives welds in XML files: the z axis of the child."""
+        """Warn if a weld's axis is not z of its child, the axis that OpenRAVE assigns to welds in XML files."""
         if not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in OpenRAVE XML it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)

@@ -112,7 +112,7 @@ class _Scope(Placed):
             self.body.set_parts(before)
 
     def _join_links(self, element: Element) -> None:
-        """Read whether joined links are adjacent, as an integer; the last KinBody that opens has precedence.
+        """Read the flag whether joined links are adjacent; the KinBody that opens last has precedence.
 
         An element that includes a file opens after the root of the file. See gap-17, gap-18 and gap-19.
         """

@@ -1,4 +1,4 @@
-"""Other files as bodies: the first body of a COLLADA file is merged into the open one, a mesh is one link."""
+"""Other files as bodies: the first body of a COLLADA file is merged into the open body, a mesh becomes one link."""
 
 import os
 from dataclasses import replace
@@ -120,7 +120,7 @@ def _join(body: BodyBuilder, other: BodyBuilder) -> None:
 
 
 def is_mesh(name: str) -> bool:
-    """Return whether a file named as a body is a mesh; COLLADA files are robots."""
+    """Return whether a file that serves as a body is a mesh file; COLLADA files count as robots."""
     lowered = name.lower()
     return lowered.endswith(MESH_SUFFIXES) and not lowered.endswith(collada.SUFFIXES)
 

@@ -103,7 +103,7 @@ def device_ignored(kind: SensorKind) -> Mapping[str, str]:
 
 
 def read_device(element: Element, context: Context) -> SensorElement:
-    """Read the ``<Sensor>`` of an ``<AttachedSensor>``; if it has a ``file``, that of the file."""
+    """Read the ``<Sensor>`` of an ``<AttachedSensor>``; if it names a ``file``, read the sensor in that file."""
     return _read(element, context, {}, reasons("the AttachedSensor says where it is", *PLACEMENT_TAGS))
 
 
@@ -134,7 +134,7 @@ def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
 def _read(
     element: Element, context: Context, placement: Mapping[str, Tag[_SensorScope]], ignored: Mapping[str, str]
 ) -> SensorElement:
-    """Read a ``<Sensor>``; if it has a ``file`` and no type, that of the file, at the pose of the element."""
+    """Read a ``<Sensor>``; if it has a ``file`` and no type, read the sensor in it, at the pose of the element."""
     context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
     root = context.include(element)
     from_file = SensorElement() if root is None or root.tag != "sensor" else _read(root, context, placement, ignored)

@@ -30,9 +30,9 @@ GUESSES = "guessed-manipulators"
 
 
 def is_urdf(root: "Element") -> bool:
-    """Return whether a ``<robot>`` is that of URDF and not that of OpenRAVE.
+    """Return whether a ``<robot>`` element is a robot of URDF, not of OpenRAVE.
 
-    It is if a joint names its parent by an attribute, or if it has links and no ``<kinbody>``.
+    In a URDF, a joint has a ``<parent link="…">``, or there are links and no ``<kinbody>``.
     """
     if root.tag != "robot":
         return False

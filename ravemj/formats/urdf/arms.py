@@ -61,7 +61,7 @@ def _rank(link: str) -> int | None:
 
 
 def _longest(tree: RobotTree) -> list[str]:
-    """Return the last moving links of all chains, those with the most DOFs first."""
+    """Return the last moving link of each chain; the chain with the most DOFs comes first."""
     ends = [link for link, joint in tree.above.items() if tree.is_dof(joint) and not any(tree.dofs_below(link))]
     return sorted(ends, key=lambda link: -len(_dofs(link, tree)))
 
@@ -85,6 +85,6 @@ def base_of(tree: RobotTree, link: str) -> str:
 
 
 def _is_beyond(link: str, dofs: dict[str, list[UrdfJoint]], tree: RobotTree) -> bool:
-    """Return whether gripper joints move a link: whether it is below another tool that an arm moves."""
+    """Return whether a link is below another tool that an arm moves, so that gripper joints move it."""
     above = {joint.parent for joint in tree.path(link) or []} & dofs.keys()
     return any(len(dofs[other]) >= _LEAST_DOFS and dofs[other][-1] is not dofs[link][-1] for other in above)

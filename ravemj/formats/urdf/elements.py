@@ -57,7 +57,7 @@ def attribute(element: Element, name: str) -> str:
 
 
 def number_of(element: Element, name: str, default: float) -> float:
-    """Return the number in an attribute, or a default; raises what ``numbers_of`` raises."""
+    """Return the number in an attribute, or a default; raises the errors of ``numbers_of``."""
     return numbers_of(element, name, 1)[0] if name in element.attributes else default
 
 
@@ -76,7 +76,7 @@ def numbers_of(element: Element, name: str, count: int) -> list[float]:
 
 
 def vector_of(element: Element, name: str, default: Vec3) -> Vec3:
-    """Return the three numbers in an attribute, or a default; raises what ``numbers_of`` raises."""
+    """Return the three numbers in an attribute, or a default; raises the errors of ``numbers_of``."""
     if name not in element.attributes:
         return default
     x, y, z = numbers_of(element, name, 3)
@@ -130,7 +130,7 @@ def named(elements: Sequence[Element], what: str) -> dict[str, Element]:
 
 
 def known_name(name: str, known: Mapping[str, object], what: str, element: Element) -> str:
-    """Return a name that an element refers to.
+    """Check that a name to which an element refers is known, and return it.
 
     Raises:
         SourceError: nothing has this name.

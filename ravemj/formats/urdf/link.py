@@ -20,7 +20,7 @@ _KNOWN = ("inertial", "visual", "collision", "geometry_group")
 
 
 def read_link(element: Element, shapes: UrdfShapeReader) -> LinkBuilder:
-    """Read a ``<link>``. Its pose is that of the body."""
+    """Read a ``<link>``; its pose in the body is set later from the joints."""
     context = shapes.context
     check_children(element, _KNOWN, context, ("sensor", "gazebo", "contact"))
     link = LinkBuilder(element.attributes["name"], element.source, inertial=_inertial(element, context))

@@ -101,7 +101,7 @@ class Packages:
 
     @cached_property
     def _above(self) -> list[str]:
-        """The folder of the URDF and those above it, the nearest first."""
+        """The folder of the URDF and its parent folders, the nearest first."""
         folders = [os.path.abspath(self._folder)]
         while len(folders) <= _MOST_ABOVE and os.path.dirname(folders[-1]) != folders[-1]:
             folders.append(os.path.dirname(folders[-1]))
@@ -132,7 +132,7 @@ def given_packages(text: str) -> dict[str, str]:
 
 
 def _below(entry: str, package: str) -> Iterator[str]:
-    """Yield the folders of a package in an entry of a search path: itself, and up to two levels below it."""
+    """Yield possible folders of a package in an entry of a search path: the entry, and up to two levels below it."""
     if os.path.basename(os.path.normpath(entry)) == package:
         yield entry
     yield os.path.join(entry, package)

@@ -245,7 +245,7 @@ class _Srdf:
         return bool(dofs) and set(dofs) <= group.joints.keys()
 
     def _serial_ends(self, group: SrdfGroup) -> tuple[str, str] | None:
-        """Return first and last link of a group whose joints are on one path; None if not, or if all are fixed."""
+        """Return first and last link of a group that is a serial chain; None if it is not, or all joints are fixed."""
         moving = [name for name in group.joints if self._is_dof(name)]
         if not moving:
             return None

@@ -1,7 +1,7 @@
 """Expansion of xacro files to URDF.
 
-It evaluates Python expressions, so it is restricted to files that the user opens, in a separate process, for a limited
-time.
+xacro evaluates Python expressions, so it is restricted to files that the user opens, in a separate process, for a
+limited time.
 """
 
 import importlib.util

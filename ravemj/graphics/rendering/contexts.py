@@ -45,7 +45,7 @@ _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader", "basic
 """Substrings of the names of software OpenGL drivers."""
 
 _DEVICE = "MUJOCO_EGL_DEVICE_ID"
-"""Variable that chooses the GPU by its number."""
+"""Environment variable with the number of the GPU."""
 
 _LOG = logging.getLogger("ravemj")
 

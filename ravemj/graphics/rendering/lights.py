@@ -33,7 +33,7 @@ def place_lights(
     *,
     soft: bool,
 ) -> None:
-    """Replace the lights of a scene by those of a look.
+    """Replace the lights of a scene by the lights of a look.
 
     Args:
         model: The model.
@@ -97,7 +97,7 @@ _FIELDS = [name for name in dir(mujoco.MjvLight) if not name.startswith("_")]
 
 
 class Lights:
-    """The lights of a picture: those of a model, headlight included, or those of a look."""
+    """The lights of a picture: either of the model, headlight included, or of a look."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model

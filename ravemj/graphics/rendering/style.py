@@ -39,7 +39,7 @@ def geom_rgba(model: mujoco.MjModel) -> Floats:
 
 
 def drawn_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
-    """Return a mask of the visible geoms, shape (ngeom,): those of groups 0 to 2 that are not fully transparent."""
+    """Return a mask of the visible geoms, shape (ngeom,): groups 0 to 2, and not fully transparent."""
     groups = np.clip(model.geom_group, 0, len(DRAWN_GROUPS) - 1)
     return (DRAWN_GROUPS[groups] > 0) & (geom_rgba(model)[:, 3] > 0)
 

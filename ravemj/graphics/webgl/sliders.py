@@ -91,7 +91,7 @@ def _shortened(column: Floats) -> list[float]:
 
 
 def _moving(model: mujoco.MjModel, joints: Sequence[int]) -> list[int]:
-    """Return the bodies that some joints move, in MuJoCo's order: parents first."""
+    """Return the bodies that the given joints move, in MuJoCo's order: parents first."""
     moving = {int(model.jnt_bodyid[joint]) for joint in joints}
     for body in range(1, model.nbody):
         if int(model.body_parentid[body]) in moving:

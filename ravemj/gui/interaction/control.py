@@ -15,8 +15,8 @@ class Control:
         lower: Minimum value of a slider.
         upper: Maximum value of a slider.
         is_on: State of a toggle button.
-        group: Position: ``tools``; the row of a motion (``playing``) or of simulation ``time``; or in a panel that
-            opens: ``menu``, ``joints`` or ``tree``, with ``joint tools`` above it, ``help``.
+        group: Location: ``tools``, the row ``playing`` of a motion, the row ``time`` of the simulation, or a panel that
+            opens: ``menu``, ``joints`` (with ``joint tools`` above it), ``tree`` or ``help``.
     """
 
     name: str

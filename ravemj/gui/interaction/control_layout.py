@@ -15,11 +15,11 @@ from ravemj.gui.interaction.mode_buttons import Panel, Rect
 
 _MARGIN, _GAP = 8.0, 4.0
 _LEFT, _RIGHT = 212.0, 62.0
-"""Margins of the bottom row, which the wheels and their labels occupy [points]."""
+"""Margins of the bottom row for the camera wheels and their labels [points]."""
 
 _COLUMN_TOP, _COLUMN_WIDTH, _COLUMN_HEIGHT = 104.0, 44.0, 22.0
 _WHEEL = 180.0
-"""Margin of the column, which the wheel, its label and the row below occupy [points]."""
+"""Margin below the column of buttons for the camera wheel, its label and the bottom row [points]."""
 
 _BAR, _ICON = 26.0, 28.0
 _CLOCK, _SPEED, _PASSED = 110.0, 44.0, 130.0

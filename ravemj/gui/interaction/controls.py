@@ -40,7 +40,7 @@ MENUS = {
 """The menus, besides the joint sliders."""
 
 _WITHOUT_BUTTON = {shortcut.name for menu in MENUS.values() for shortcut in menu.shortcuts} | {*MENUS, "reload"}
-"""Names of controls without a visible button, which keys operate."""
+"""Names of controls that only keys operate, without a visible button."""
 
 
 class Request(Enum):

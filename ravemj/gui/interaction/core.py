@@ -57,7 +57,7 @@ class Interaction:
         return cls(selector, navigation, controls)
 
     def another_view(self, *, has_tools: bool = True) -> "Interaction":
-        """Return the interaction of another view, which shares the selection; ``has_tools``: it has mode buttons."""
+        """Return the interaction of another view with the same selection; ``has_tools``: with mode buttons."""
         navigation = self._navigation.another()
         other = Interaction(self._selector, navigation, self.controls.another(navigation), has_tools=has_tools)
         other._controller.mode = self.mode

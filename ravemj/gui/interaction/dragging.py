@@ -20,7 +20,7 @@ _FLATTEST = 0.02
 """Sine of the angle between ray and plane below which their intersection is ill-conditioned."""
 
 _ASLANT = 0.3
-"""Sine of the angle between ray and plane of a rotation below which the pointer's motion along the rim is used."""
+"""Sine of the angle between ray and rotation plane below which the angle follows the pointer's motion along the rim."""
 
 
 def move_by_face(body: BodyState, cube: Cube, grip: Grip) -> Follow:

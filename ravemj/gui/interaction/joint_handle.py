@@ -36,9 +36,9 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 49)
 
 
 def driving_dof(body: KinBody, link: int) -> int | None:
-    """Return the first DOF of the joint that moves a link: its parent joint, or above welds the next moving one.
+    """Return the first DOF of the joint that moves a link: its parent joint or, above welds, the next moving joint.
 
-    For a mimic joint it is the first DOF that it follows. None if no joint moves the link.
+    For a mimic joint, it is the first DOF that the joint follows. None if no joint moves the link.
     """
     joints = body.all_joints
     for index in joints_above(body, link):
@@ -85,7 +85,7 @@ class JointHandle:
 
     @property
     def center(self) -> Floats:
-        """Its centre, in the world [m], shape (3,)."""
+        """Centre of the handle in the world [m], shape (3,)."""
         return self.T_world_handle[:3, 3]
 
     @property
@@ -102,12 +102,12 @@ class JointHandle:
         return None if distance < 0 else ray.start + distance * ray.direction
 
     def highlight(self) -> Primitives:
-        """Return its highlight, in the world."""
+        """Return the drawing of the highlighted handle, in the world."""
         size = _MARK_MARGIN * self.radius, _MARK_MARGIN * self.height
         return drawing.cylinder(*size, _MARKED).placed(self.T_world_handle)
 
     def primitives(self) -> Primitives:
-        """Return its drawing, in the world; stripes show its rotation."""
+        """Return the drawing of the handle, in the world; stripes show its rotation."""
         ring = self.radius * np.column_stack([np.cos(_CIRCLE), np.sin(_CIRCLE), 0 * _CIRCLE])
         up = np.array([0.0, 0.0, self.height / 2])
         corners = ring[: -1 : len(ring) // _STRIPES]

@@ -19,7 +19,7 @@ _LENS: _Rgba = (0.2, 0.3, 0.5, 1.0)
 
 
 class Rect(NamedTuple):
-    """A rectangle; x and y are those of its top left corner [points]."""
+    """A rectangle; x and y are the position of its top left corner [points]."""
 
     x: float
     y: float

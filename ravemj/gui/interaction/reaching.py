@@ -32,7 +32,7 @@ _CLOSE = 1e-4
 """Tolerance of the joint value [rad or m]."""
 
 _STUCK = 0.1
-"""Fraction of a step below which the motion of the redundant joint shows that other joints' limits stop the arm."""
+"""Minimum motion of the redundant joint, as a fraction of a step; below it, limits of other joints stop the arm."""
 
 _SAME = 0.05
 """Maximum difference of joint values [rad or m] of solutions that are drawn as one."""

@@ -59,7 +59,7 @@ class Viewpoint:
         return ViewRay(self.camera.position, direction / np.linalg.norm(direction))
 
     def turned(self, right: float, down: float) -> "Viewpoint":
-        """Orbit the focus by a drag [points]; the height of the view is half a turn."""
+        """Orbit the focus by a drag [points]; a drag over the height of the view is half a turn."""
         if self.is_upright:
             return self._turned_upright(math.pi * right / self.size[1], math.pi * down / self.size[1])
         angle = math.pi * math.hypot(right, down) / self.size[1]

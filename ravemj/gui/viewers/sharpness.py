@@ -15,7 +15,7 @@ _QUIET = 1.0
 """Time without changes after which the longer polling period is used [s]."""
 
 _SPARE = 0.7
-"""Fraction of the time budget within which a sharper level must stay before it is selected: hysteresis."""
+"""Fraction of the time budget in which a sharper level must be drawn before it is selected (hysteresis)."""
 
 _INERTIA = 0.6
 """Weight of earlier measurements in the moving average of the drawing time."""

@@ -32,7 +32,7 @@ _FIGURES = "SetFiguresInCamera"
 _LARGEST_TEXT = 200  # points that letters are high; larger ones would fill the window
 
 LOCKED, PATIENCE = "Locked by the script", 1.0
-"""Text in a window or page, shown after a script has held the environment's lock for this time [s]."""
+"""Message shown while a script holds the environment's lock, and the time until it appears [s]."""
 
 
 class Viewer(Interactive):
@@ -215,7 +215,7 @@ class Viewer(Interactive):
         return self._thread_callbacks.add(callback)
 
     def RegisterViewerImageCallback(self, callback: Callback) -> Handle:
-        """Register a callback for each frame of the window, in the window's thread, and for those of ``render``.
+        """Register a callback for each frame of the window, in its thread, and for each picture of ``render``.
 
         Args:
             callback: The function; its argument is the picture, (height, width, 3), uint8.
@@ -409,7 +409,7 @@ class Viewer(Interactive):
         return picture
 
     def _format(self, width: int | None, height: int | None, caller: str) -> Format:
-        """Return the format of a picture; a side of None or 0 is that of the viewer."""
+        """Return the format of a picture; None or 0 selects the viewer's own width or height."""
         return Format(*_checked_size(width or self._size[0], height or self._size[1], caller))
 
     def close(self) -> None:

@@ -35,7 +35,7 @@ _FARTHEST = 32767
 """Largest coordinate on an X screen."""
 
 _running: dict[threading.Thread, tuple[Flag, Flag]] = {}
-"""Two flags for each window thread: one closes it, one is set at its end, since Ctrl-C can break ``join``."""
+"""Two flags for each window thread: request to close, and end of the thread (Ctrl-C can break ``join``)."""
 
 
 class WindowViewer(Viewer):

@@ -85,7 +85,7 @@ class WindowRenderer:
         return True
 
     def update_view(self, interaction: Interaction, surface: DrawTarget, line: str, published: Published) -> bool:
-        """Copy the state of the view while other threads hold the simulation's lock, and show ``line``, which says so.
+        """Copy the state of the view while other threads hold the simulation's lock; show the message ``line``.
 
         Bodies keep their last known or published poses.
 

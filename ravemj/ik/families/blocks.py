@@ -30,7 +30,7 @@ class Wrist:
 
     Attributes:
         centre: The point, shape (3, 1, 1).
-        side: A direction perpendicular to the last axis, shape (3, 1, 1), whose required image gives the last joint.
+        side: A direction perpendicular to the last axis, shape (3, 1, 1); its required image determines the last joint.
         phase: Cosine and sine of the middle joint at the smallest angle between the outer axes.
         gaps: 1 - cos of the smallest angle between the outer axes, and 1 + cos of the largest.
     """
@@ -48,11 +48,11 @@ class Wrist:
         self.side = constant(perpendicular(c))
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return the name of the family and the reason, for joints with these indices."""
+        """Return the name of the family and the reason for membership, for the joint indices ``joints``."""
         return "spherical wrist", f"the axes of joints {_numbers(joints)} meet in a point"
 
     def solve(self, needed: RigidMotion) -> list[Floats]:
-        """Return the turns of the three joints, with two branches."""
+        """Return cosines and sines of the three joints, shape (2, B, N) each, with two branches."""
         first, middle, last = self.screws
         tip = needed.turned(last.axis)
         two = self._middle(tip)
@@ -61,7 +61,7 @@ class Wrist:
         return [turn, two, turn_between(last, self.side, middle.turned_back(two, side))]
 
     def _middle(self, tip: Floats) -> Floats:
-        """Return both turns of the middle joint for a direction ``tip`` of the last axis.
+        """Return both solutions of the middle joint, as cosine and sine, for a direction ``tip`` of the last axis.
 
         They are computed from distances of unit vectors, since the cosine of the angle would lose half of the digits
         if the outer axes nearly coincide.
@@ -89,7 +89,7 @@ class Planar:
     """
 
     def __init__(self, screws: Sequence[Screw]) -> None:
-        """Prepare the solution.
+        """Detect which joints are prismatic, and prepare the solution.
 
         Raises:
             NoFamilyError: the joints cannot move the plane freely.
@@ -117,7 +117,7 @@ class Planar:
         return tuple((2 - joint if self.backward else joint, count) for joint, count in names)
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
-        """Return the name of the family and the reason, for joints with these indices."""
+        """Return the name of the family and the reason for membership, for the joint indices ``joints``."""
         return "parallel axes", f"joints {_numbers(joints)} move a plane in itself"
 
     def solve(self, motion: RigidMotion) -> list[Floats]:
@@ -132,7 +132,7 @@ class Planar:
         return [three, two, one] if self.backward else [one, two, three]
 
     def _solve_between(self, motion: RigidMotion) -> list[Floats]:
-        """Solve for a revolute joint between two prismatic ones: it gives the rotation, and the rest is linear."""
+        """Solve for a revolute joint, given by the rotation, and two prismatic ones around it, by linear equations."""
         first, middle, last = self._order
         turn = turn_between(middle, self._side, motion.turned(self._side))
         way = motion.moved(middle.point) - middle.point

@@ -32,7 +32,7 @@ class CarryPoint:
     """
 
     def __init__(self, screws: Screws, start: Floats, goal: Floats) -> None:
-        """Find the solution method from examples.
+        """Detect the solution method from example starts and goals.
 
         Raises:
             NoFamilyError: the joints cannot carry points to arbitrary positions.
@@ -81,9 +81,9 @@ class CarryPoint:
         return _names(self.pair)
 
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
-        """Return the values of the joints, turns (2, B, N) or distances (1, B, N), that carry points (3, B, N).
+        """Return the joint values, cosine and sine (2, B, N) or distances (1, B, N), that carry points (3, B, N).
 
-        Joints shared by all poses must be those of the examples.
+        Joints that are the same for all poses must be those of the examples in ``__init__``.
         """
         first, middle, third = screws
         one, three = self.pair.solve(*self._sides(screws, start, goal))
@@ -103,7 +103,7 @@ class CarryPlane:
     """
 
     def __init__(self, screws: Screws, start: Plane, goal: Plane) -> None:
-        """Find the solution method from examples.
+        """Detect the solution method from example starts and goals.
 
         Raises:
             NoFamilyError: the joints cannot carry planes to arbitrary positions.
@@ -139,7 +139,7 @@ class CarryPlane:
         return [(2 if self.slider != 2 else 1, 2)]
 
     def solve(self, screws: Screws, start: Plane, goal: Plane) -> list[Floats]:
-        """Return the values of the three joints, turns (2, B, N) or distances (1, B, N)."""
+        """Return the values of the three joints, cosine and sine (2, B, N) or distances (1, B, N)."""
         if self.pair is None:
             return self._solve_sliding(screws, start, goal)
         first, middle, third = screws
@@ -208,9 +208,11 @@ def _nearest(first: Screw, other: Screw) -> Floats:
 
 
 def _crossing(screws: Screws) -> tuple[int | None, str]:
-    """Choose directions perpendicular to a prismatic middle joint along which another joint has no effect.
+    """Find a direction along which neither the prismatic middle joint nor the first or third joint moves points.
 
-    A revolute joint does not move points along its own axis; a prismatic one moves them only along it.
+    Returns:
+        The index of the first or third joint, 0 or 2, and ``along`` (the direction of its axis) or ``across``
+        (perpendicular to both axes); None and an empty string if there is no such direction.
     """
     middle = screws[1]
     for index in (0, 2):

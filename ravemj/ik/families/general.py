@@ -63,7 +63,7 @@ class General:
         return [(self.order[2], _BRANCHES)]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the turns of the joints in ``order``, with 16 branches."""
+        """Return cosines and sines of the joints in ``order``, with 16 branches."""
         needed, back = (motion.inverse(), motion) if self.backward else (motion, motion.inverse())
         count = 6 - self.shift
         screws = [*self._screws[:count], *(screw.carried(back) for screw in self._screws[count:])]
@@ -97,7 +97,7 @@ def _left(screws: Sequence[Screw]) -> Floats:
 
 
 def _carried(screws: Sequence[Screw], turns: Sequence[Floats]) -> Floats:
-    """Return the fourteen quantities of the elimination, (14, B, N), after turns (2, B, N) of joints 3, 4 and 5."""
+    """Return the fourteen quantities of the elimination, (14, B, N), for cosines and sines of joints 3, 4 and 5."""
     line, point = screws[5].axis, screws[5].point
     for screw, turn in zip(screws[4:1:-1], turns[::-1], strict=True):
         line, point = screw.turned(turn, line), screw.moved(turn, point)

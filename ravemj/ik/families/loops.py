@@ -16,7 +16,7 @@ from ravemj.ik.families.pairs import Pair
 from ravemj.ik.vectors import Floats, Screw, Transform, tile
 
 Locked = Mapping[int, Floats]
-"""Values of locked joints by their position in the arm, turns (2, 1, N) or distances (1, 1, N)."""
+"""Values of locked joints by position in the arm: cosine and sine (2, 1, N) or distances (1, 1, N)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class Arm:
         return list(range(free[0], free[-1] + 1))
 
     def free(self, places: Sequence[int]) -> list[int]:
-        """Return those positions whose joints are not locked."""
+        """Return the positions in ``places`` whose joints are not locked."""
         return [place for place in places if place not in self.locked]
 
 
@@ -82,11 +82,11 @@ class Family(Protocol):
     shared: bool
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
+        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
         ...
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
-        """Return the values of the joints in ``order``, turns (2, B, N) or distances (1, B, N); B may be 1."""
+        """Return values of the joints in ``order``: cosine and sine (2, B, N) or distances (1, B, N); B may be 1."""
         ...
 
 
@@ -213,7 +213,7 @@ class BlockFamily:
         return points, (Plane(normals[0], points[0]), Plane(normals[1], points[1]))
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
+        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
         around = [(self.circle.places[joint], count) for joint, count in self.carry.names]
         return around + [(self.circle.block[joint], count) for joint, count in self.inside.names]
 
@@ -267,7 +267,7 @@ class PointFamily:
         return screws, _moved(seen, self.tool)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return the joints with several solutions, the one that alternates fastest first: index, and number."""
+        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
         return [(self.order[joint], count) for joint, count in self.carry.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

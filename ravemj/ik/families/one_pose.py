@@ -20,7 +20,7 @@ Motion = tuple[Vector, Vector, Vector, Vector]
 
 
 class OnePose:
-    """Solver of one pose, with the order of the family's joints and branches. ``for_family`` makes it."""
+    """Solver of a single pose; joints and branches are in the family's order. ``for_family`` makes it."""
 
     def __init__(self, family: BlockFamily, wrist: Wrist, carry: CarryPoint, alone: tuple[int, int]) -> None:
         places, block = family.circle.places, family.circle.block
@@ -45,7 +45,7 @@ class OnePose:
         return cls(family, family.inside, carry, carry.pair.alone)
 
     def solve(self, motion: Motion) -> list[list[Turn]]:
-        """Return the turns of the six joints for each branch."""
+        """Return cosine and sine of the six joints for each branch."""
         first, middle, third = self._arm
         start, goal = self._centre, self._centre
         tip, side = self._wrist[2], self._side
@@ -77,7 +77,7 @@ class OnePose:
         ]
 
     def _outer(self, start: Vector, goal: Vector) -> list[tuple[Turn, Turn]]:
-        """Return the first and third turns of three joints that carry the centre from a start to a goal, by branch."""
+        """Return first and third joint (cosine, sine), by branch, of three joints that carry the centre to a goal."""
         sides = self._numbers(self._arm[0], goal, -1.0), self._numbers(self._arm[2], start, 1.0)
         rest = sides[1][0][0] - sides[0][0][0], sides[1][0][1] - sides[0][0][1]
         side, equation = self._alone
@@ -129,7 +129,7 @@ class OnePose:
         return (c * cosine - s * sine, s * cosine + c * sine), (c * cosine + s * sine, s * cosine - c * sine)
 
     def _ends(self, two: Turn, tip: Vector, side: Vector) -> tuple[Turn, Turn, Turn]:
-        """Return the turns of the wrist joints, given the middle one."""
+        """Return cosine and sine of the three wrist joints, given the middle one."""
         first, middle, last = self._wrist
         (along, across, later), (cosine, sine) = self._tips, two
         start = (
@@ -201,7 +201,7 @@ def _about(line: tuple[Vector, Vector], cosine: float, sine: float, point: Vecto
 
 
 def _between(axis: Vector, start: Vector, end: Vector) -> Turn:
-    """Return the turn about an axis that carries a direction nearest to another (``subproblems.turn_between``)."""
+    """Return the turn about an axis that carries ``start`` nearest to ``end`` (``subproblems.turn_between``)."""
     hx, hy, hz = axis
     height = _dot(axis, start)
     x, y, z = start[0] - height * hx, start[1] - height * hy, start[2] - height * hz

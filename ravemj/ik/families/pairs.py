@@ -16,7 +16,7 @@ from ravemj.ik.subproblems import normalized, solve_linear, solve_parabola, solv
 from ravemj.ik.vectors import Floats, Screw, dot, tile
 
 NEGLIGIBLE = 1e-9
-"""Relative size below which a coefficient is 0 by the arm's geometry, if it is in all examples."""
+"""Relative size; a coefficient smaller than this in all examples is zero by the arm's geometry."""
 
 
 class Side(NamedTuple):
@@ -48,7 +48,7 @@ class Measure:
     def side(self, joint: Screw, point: Floats, sign: float) -> Side:
         """Return the invariants of points moved by a joint, or moved backwards if ``sign`` is -1.
 
-        For a normal, the caller omits the joint's point and its distance.
+        To move normals instead of points, pass a joint whose axis goes through the origin.
         """
         if joint.prismatic:
             return self._sliding(joint, point, sign)
@@ -96,7 +96,8 @@ class Pair:
 
     Attributes:
         sliding: Whether the joints of the two sides are prismatic.
-        alone: A side and an equation that contains only its unknown; None if both equations contain both.
+        alone: Indices of a side and of an equation in which only the joint of this side appears; None if both joints
+            appear in both equations.
         sphere: Whether the second equation is of degree two in the value of a prismatic joint.
         branches: The number of solutions.
     """
@@ -107,7 +108,7 @@ class Pair:
 
     @classmethod
     def detect(cls, sides: tuple[Side, Side], sliding: tuple[bool, bool], *, sphere: bool) -> "Pair | None":
-        """Detect the unknowns of each equation from examples; None if a joint is in neither."""
+        """Return the solution method for example equations; None if a joint or an equation has no terms."""
         sizes = np.array([np.abs(side.factors).max(axis=(1, 2, 3)) for side in sides])  # side, equation
         present = sizes > NEGLIGIBLE * np.maximum(sizes.max(axis=0), sizes.max(axis=0).max() * 1e-3)
         if not present.any(axis=1).all() or not present.any(axis=0).all():
@@ -135,7 +136,7 @@ class Pair:
         return 1 if self.sliding[side] and not (self.sphere and equation == 1) else 2
 
     def solve(self, one: Side, three: Side) -> tuple[Floats, Floats]:
-        """Return the values of the first and the third joint, turns or distances, with all branches."""
+        """Return the values of the first and the third joint, with all branches: cosine and sine, or distances."""
         factors = (one.factors, -three.factors)
         rest = three.constant - one.constant
         if self.alone is not None:

@@ -144,7 +144,7 @@ def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
 
 
 def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
-    """Yield arms with a block of existing joints and ``added`` new ones; ``more`` are appended at the tool."""
+    """Yield arms in which existing joints and ``added`` new ones form a block; ``more`` are appended at the tool."""
     size = 3 - added
     for place in range(len(arm.screws) - size + 1):
         around = range(place, place + size)

@@ -13,7 +13,7 @@ from ravemj.ik.families.blocks import common_point
 from ravemj.ik.vectors import Bools, Floats, Screw, constant
 
 TOLERANCE = 1e-5
-"""Lengths, divided by the reach, and sines of angles up to this are snapped to 0."""
+"""Maximum length, divided by the reach, and maximum sine of an angle that are snapped to 0."""
 
 
 def nominal(chain: Chain) -> Chain:
@@ -26,7 +26,7 @@ def nominal(chain: Chain) -> Chain:
 
 
 def _aligned(axes: Floats) -> Floats:
-    """Turn each axis to be parallel to an earlier one, or perpendicular to its neighbour, if it nearly is."""
+    """Make nearly parallel axes parallel, and nearly perpendicular neighbouring axes perpendicular."""
     done = np.eye(3)[:0]
     for axis in axes:
         parallel = [other for other in done if np.linalg.norm(np.cross(axis, other)) < TOLERANCE]
@@ -60,7 +60,7 @@ def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
 
 
 def _nearest(first: Screw, other: Screw) -> Floats | None:
-    """Return the point of an axis nearest to another; None if they are parallel and apart."""
+    """Return the point on the axis of ``first`` nearest to that of ``other``; None if they are parallel and apart."""
     a, b, away = first.axis.ravel(), other.axis.ravel(), (other.point - first.point).ravel()
     square = 1 - (a @ b) ** 2
     if square < TOLERANCE**2:

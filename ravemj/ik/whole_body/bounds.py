@@ -10,7 +10,7 @@ from ravemj.ik.vectors import Floats
 
 @dataclass(frozen=True, eq=False)
 class MotionLimits:
-    """Limits of the variables; infinite for unlimited ones.
+    """Limits of the variables; infinite if a variable is unlimited.
 
     Attributes:
         lower: Lower limits of the values [rad or m], shape (n,).
@@ -47,7 +47,13 @@ class MotionLimits:
         return _within(lowest, highest, below, above)
 
     def _stopping(self, room: Floats, change: Floats, dt: float) -> Floats:
-        """Return the maximum displacement towards a limit that leaves a sufficient stopping distance."""
+        """Return the maximum displacement towards a limit that leaves a sufficient stopping distance.
+
+        Args:
+            room: Distance to the limit [rad or m].
+            change: Largest change of velocity in ``dt`` [rad/s or m/s].
+            dt: Time step [s].
+        """
         with np.errstate(invalid="ignore"):
             speed = np.sqrt(change * change + 2 * self.acceleration * np.maximum(room, 0.0)) - change
         return np.where(np.isfinite(speed) & (room > 0), np.minimum(speed * dt, room), room)

@@ -13,7 +13,7 @@ import numpy as np
 from ravemj.ik.vectors import Bools, Floats
 
 _SCALE = 1e6
-"""Length of the scaled gradient: the solver stops when that of the free variables is below 1e-8."""
+"""Norm to which the gradient is scaled; the solver stops if the norm over free variables is below 1e-8."""
 _SNAP = 1e-9
 _ACCURATE = 1e-9
 """Relative gradient that counts as zero."""
@@ -69,7 +69,7 @@ class BoxProblem:
 
 
 def is_optimal(hessian: Floats, gradient: Floats, lower: Floats, upper: Floats, x: Floats) -> bool:
-    """Return whether the gradient at x is zero for free variables, and points out of the box for those at a bound."""
+    """Return whether x is optimal: the gradient is 0 for free variables, and points out of the box at bounds."""
     slope = hessian.dot(x)
     slope += gradient
     most = _ACCURATE * math.sqrt(float(gradient.dot(gradient)))

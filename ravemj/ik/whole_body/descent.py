@@ -26,13 +26,13 @@ from ravemj.ik.whole_body.tasks import Inequality, TaskRows, WeightedTask
 EXACT = 1e-9
 """Remaining contact error after a step [m or rad]."""
 _NEAR = 1e-5
-"""Contact error of displacements below which Newton steps correct it."""
+"""Maximum contact error of a displacement that Newton steps correct."""
 _NEWTON = 1e-5
 """Contact error from which one Newton step leaves less than ``EXACT``."""
 _TURNS = 3
 """Maximum number of multiplier updates, and of Newton steps on contacts."""
 _EXACTLY = 1e-6
-"""Part of a contact error that a displacement may leave, beside the damping of dependent rows."""
+"""Maximum error that a displacement leaves in contacts, as a fraction of the error before."""
 _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
@@ -86,7 +86,7 @@ class DescentResult:
 
 
 class _State(NamedTuple):
-    """Rows of tasks and inequalities, measured in one configuration."""
+    """Errors and Jacobians of tasks, and inequalities, in one configuration."""
 
     measured: Sequence[tuple[WeightedTask, TaskRows]]
     inequalities: Sequence[Inequality]
@@ -163,7 +163,7 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Correct the drift of all levels but the last, which is damped so strongly that it does not move."""
+        """Correct the drift of all levels but the last; strong damping keeps the last level from moving."""
         for _ in range(_TURNS):
             saved = self._mechanism.saved()
             moved = self._advance(state, _MOST_DAMPING, self.limits.reachable(self._mechanism.values(), longest))
@@ -181,7 +181,7 @@ class Descent:
                 break
 
     def pressing(self) -> Floats:
-        """Return the descent direction of the cost, shape (n,): a bound that blocks it is active."""
+        """Return the descent direction of the cost, shape (n,); the bounds that block it are active."""
         pull = np.zeros(len(self.limits.lower))
         for task, rows in self._measured():
             if not task.is_met or not np.isfinite(task.tolerance):
@@ -226,7 +226,7 @@ class Descent:
         return _on_equalities(problem, gradient, x, jacobian[:first], error[:first])
 
     def _levels(self, measured: Sequence[tuple[WeightedTask, TaskRows]]) -> list[TaskRows]:
-        """Return the weighted rows of each priority; exact contacts come first within their priority."""
+        """Return weighted errors and Jacobians by priority; exact contacts come first within their priority."""
 
         def level(task: tuple[WeightedTask, TaskRows]) -> tuple[int, bool]:
             return task[0].priority, not (task[0].is_contact and self.exact_contacts)
@@ -277,7 +277,7 @@ def _length(error: Floats) -> float:
 
 
 def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> Floats:
-    """Return a short displacement that removes an error; if none is found in the box, the best one inside.
+    """Return a short displacement that removes an error; if none is found, the best displacement in the box.
 
     Variables that leave the box are fixed at their bounds, and the others remove the rest.
     """

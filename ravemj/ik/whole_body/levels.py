@@ -16,7 +16,7 @@ from ravemj.ik.vectors import Floats
 from ravemj.ik.whole_body.tasks import Inequality, TaskRows
 
 _RANK = 1e-9
-"""Relative singular value below which rows leave a direction free."""
+"""Relative singular value below which a direction counts as part of the null space."""
 _SOLVED = 1
 """Exit flag of daqp for an optimal solution."""
 _CAUTION = 1e-2
@@ -87,7 +87,7 @@ _Room = tuple[Floats, Floats, Floats]
 
 
 def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, basis: Floats) -> _Room:
-    """Return constraints of the coordinates: a matrix and bounds of its product, which 0 always satisfies."""
+    """Return the constraints of coordinates z: a matrix and bounds of its product with z. z = 0 satisfies them."""
     below = np.concatenate([np.minimum(lower - x, 0.0), np.minimum(least - rows @ x, 0.0)])
     above = np.concatenate([np.maximum(upper - x, 0.0), np.full(len(least), 1e30)])
     matrix = np.vstack([basis, rows @ basis])

@@ -19,7 +19,7 @@ class TaskRows(NamedTuple):
 
     Attributes:
         error: Goal minus present value, shape (m,).
-        jacobian: Change of the value with displacements, shape (m, n).
+        jacobian: Derivative of the value by the displacements, shape (m, n).
         is_identity: Whether the Jacobian is the identity, for the first m variables.
     """
 
@@ -41,7 +41,7 @@ class WeightedTask:
 
     Attributes:
         name: The name in reports.
-        measure: Returns the rows in the present configuration.
+        measure: Returns error and Jacobian in the present configuration.
         describe: Returns a sentence about a remaining error.
         weight: Factor of the squared error in the cost.
         gain: Fraction of the error that one step removes, 0 to 1.
@@ -64,7 +64,7 @@ class WeightedTask:
     residual: Floats = field(default_factory=lambda: np.zeros(0))
 
     def rows(self) -> TaskRows:
-        """Return the rows in the present configuration, and store the error."""
+        """Return error and Jacobian in the present configuration, and store the error."""
         rows = self.measure()
         self.residual = rows.error
         return rows
@@ -76,7 +76,7 @@ class WeightedTask:
 
 
 def pose_rows(T_world_frame: Floats, jacobian: Floats, T_world_goal: Floats) -> TaskRows:
-    """Return the six rows of a pose: the translation error [m], then the rotation vector error [rad].
+    """Return error and Jacobian of a pose task, six rows: translation [m], then rotation vector [rad].
 
     Plain Python takes a third of the time of numpy for one pose.
     """

@@ -1,8 +1,8 @@
 """Grasps for parallel jaws from pairs of antipodal points on the surface of an object.
 
 Two contacts with friction are in force closure in the plane if the line between them lies inside both friction cones.
-So two jaws need no simulation: only a pair of points whose distance fits between them, and a free approach. Arrays in,
-arrays out; where rays meet the surface is asked of a function.
+So two jaws need no simulation: only a pair of points whose distance fits between them, and a free approach. Input and
+output are arrays; a function casts the rays.
 """
 
 from collections.abc import Callable, Iterator
@@ -14,30 +14,33 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, cross_rows
 
 Cast = Callable[[Floats], tuple[NDArray[np.bool_], Floats]]
-"""Returns which rays (start and direction, as long as the ray, shape (n, 6)) meet the surface, shape (n,), and position
-and outward normal of the first hit of each, shape (n, 6)."""
+"""Function that casts rays: start, and direction times length, shape (n, 6).
+
+It returns the mask of rays that hit the surface, shape (n,), and position and outward normal of the first hit of each
+ray, shape (n, 6).
+"""
 
 _INSIDE = 1e-5
-"""Distance from the surface at which rays through the object begin [m]."""
+"""Depth below the surface at which rays through the object start [m]."""
 
 _ROUNDING = 1e-9
 
 _AROUND = 8
-"""Number of lines that are tried around a normal at each of two angles."""
+"""Number of lines to try around a normal, at each of two angles from it."""
 
 _SAME = 1e-3
-"""Distance up to which pairs count as the same [m]."""
+"""Tolerance of equal points [m]."""
 
 
 class Jaws(NamedTuple):
     """Two fingers that slide towards each other, in the frame of the tool.
 
     Attributes:
-        axis: Unit vector along which they close, shape (3,).
+        axis: Unit vector of the closing motion, shape (3,).
         approach: Unit vector of the approach, perpendicular to the axis, shape (3,).
-        middle: Position of the middle between the fingers on the axis [m].
+        middle: Coordinate along ``axis`` of the middle between the fingers [m].
         width: Largest distance between the fingers [m].
-        depth: Place of the points between the jaws, along ``approach`` from the tool [m].
+        depth: Coordinate along ``approach`` of the grasp points between the jaws [m].
     """
 
     axis: Floats
@@ -48,7 +51,7 @@ class Jaws(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two points on the surface, shape (3,) [m], and the reason why jaws cannot hold there; empty if they can."""
+    """Two surface points, shape (3,) [m], and the reason why jaws cannot hold there; empty if they can."""
 
     first: Floats
     second: Floats
@@ -56,18 +59,18 @@ class Pair(NamedTuple):
 
 
 def pairs(rows: Floats, cast: Cast, friction: float, width: float) -> list[Pair]:
-    """Return for each point of a surface the opposite points, along the line into the object.
+    """Return pairs of a surface point and an opposite point, each with a reason if jaws cannot hold it.
 
-    The opposite points are the nearest and, if it is another one, the farthest within the width: a mug can be held by
-    its wall and from both sides. The first line is that along the normal. If it leaves the object outside the friction
-    cone there, lines around it in the cone of the first point follow, and for each the line in the middle between the
-    two normals, on which a wedge is held if any line holds it.
+    The opposite points are the nearest along a line into the object and, if it differs, the farthest within ``width``:
+    a mug can be held by its wall and from both sides. The first line is the normal. If its opposite point is outside
+    the friction cone, other lines in the cone of the first point are tried, and for each the bisector of both normals,
+    which finds the grasp of a wedge if there is any.
 
     Args:
         rows: Points and outward unit normals, shape (n, 6) [m].
-        cast: Where rays meet the surface.
+        cast: Casts rays against the surface.
         friction: Friction coefficient.
-        width: Largest distance [m].
+        width: Largest distance of the two points [m].
 
     Example:
         >>> pairs([[0.02, 0, 0, 1, 0, 0]], cast, friction=0.4, width=0.08)
@@ -114,9 +117,9 @@ def is_antipodal(first: Floats, second: Floats, friction: float) -> NDArray[np.b
 
 
 def tool_poses(pair: Pair, jaws: Jaws, rolls: int = 8) -> list[Floats]:
-    """Return poses of the tool that take the middle between the jaws to the middle of a pair, each shape (4, 4).
+    """Return tool poses in the frame of the points, shape (4, 4) each, with a pair centred between the jaws.
 
-    They are in the frame of the points, and differ by rotations about the line of the pair.
+    The poses differ by ``rolls`` rotations about the line through the pair.
     """
     line = (pair.second - pair.first) / np.linalg.norm(pair.second - pair.first)
     side = np.zeros(3)
@@ -136,7 +139,7 @@ def tool_poses(pair: Pair, jaws: Jaws, rolls: int = 8) -> list[Floats]:
 
 
 def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
-    """Yield unit vectors, shape (n, 3): the given ones, and then some around them in their friction cones."""
+    """Yield unit vectors, shape (n, 3): the inward normals, then some around each in its friction cone."""
     yield inward.copy()
     side = np.eye(3)[np.abs(inward).argmin(axis=1)]
     side -= inward * (inward * side).sum(axis=1, keepdims=True)
@@ -149,7 +152,7 @@ def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
 
 
 def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bool) -> tuple[NDArray[np.bool_], Floats]:
-    """Return which lines into the object leave it within the width, and where: the nearest or the farthest point."""
+    """Return the mask of lines that leave the object within ``width``, and the nearest or farthest exit points."""
     if near:
         return cast(np.hstack([rows[:, :3] + _INSIDE * lines, (width - _INSIDE) * lines]))
     hit, points = cast(np.hstack([rows[:, :3] + width * lines, -width * lines]))
@@ -158,7 +161,7 @@ def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bo
 
 
 def _distinct(candidates: list[Pair]) -> list[Pair]:
-    """Return pairs without duplicates: (a, b) equals (b, a); refused pairs are equal if they start at one point."""
+    """Return pairs without duplicates: (a, b) equals (b, a); rejected pairs are equal if their first points are."""
     seen: set[tuple[tuple[int, ...], ...]] = set()
     distinct: list[Pair] = []
     for pair in candidates:

@@ -15,7 +15,7 @@ from ravemj.engine.collision.hand import Against
 from ravemj.geometry_functions import quatRotateDirection, rotationMatrixFromAxisAngle, rotationMatrixFromQuat
 
 Kind = Literal["flies past", "touches first", "finger touches", "starts in contact", "avoided link", "self-collision"]
-"""Causes of a failure, for tables of counts."""
+"""Failure causes, under which failed grasps are counted."""
 
 _TEXTS: Mapping[Kind, str] = {
     "flies past": "flies past the target",
@@ -27,42 +27,42 @@ _TEXTS: Mapping[Kind, str] = {
 }
 
 _BACK = 0.05
-"""Step of the hand away from the target before the approach [m]; OpenRAVE's."""
+"""Step by which a hand in contact with the target is moved back before the approach [m]; OpenRAVE's."""
 
 _FINER = 16.0
-"""Fine steps are divided by this to get the tolerance of contacts."""
+"""Ratio of the fine step to the tolerance of contacts."""
 
 _PARALLEL = 1e-9
-"""Cosine below which a plane counts as parallel to the approach, which then never meets it."""
+"""Cosine of the angle between normal and approach below which a plane counts as never reached."""
 
 _IS_PLANE = 0.5
-"""A plane counts if the squared norm of its four numbers is greater; OpenRAVE's."""
+"""Minimum squared norm of the four numbers of a valid plane; OpenRAVE's."""
 
 
 class Touches(Protocol):
-    """Collision test of a robot."""
+    """Protocol of the collision test of a robot."""
 
     def __call__(
         self, links: frozenset[int], T_world_base: Floats, values: Floats, against: Against = "anything"
     ) -> str | None:
-        """Return the name of a body, or of a link of the robot itself, that some links touch; None if none.
+        """Return the name of a body, or of another link of the robot, in contact with the links; None if there is none.
 
         Args:
-            links: Indices of the links.
+            links: Indices of the links to test.
             T_world_base: Pose of the robot.
             values: Values of all its DOFs [rad or m].
-            against: What counts.
+            against: The bodies to test against.
         """
         ...
 
 
 @dataclass(frozen=True)
 class Reason:
-    """Why a grasp failed.
+    """Reason why a grasp failed.
 
     Attributes:
         kind: The cause.
-        name: The body, link or joint that it is about; empty if there is none.
+        name: The body, link or joint concerned; empty if there is none.
         finger: The joint that was closing, for ``finger touches``.
     """
 
@@ -75,7 +75,7 @@ class Reason:
 
 
 class Ball(NamedTuple):
-    """Sphere around a body: centre [m], shape (3,), and radius [m]."""
+    """Bounding sphere of a body: centre [m], shape (3,), and radius [m]."""
 
     center: Floats
     radius: float
@@ -83,12 +83,12 @@ class Ball(NamedTuple):
 
 @dataclass(frozen=True)
 class Finger:
-    """A joint that closes.
+    """Gripper joint that closes.
 
     Attributes:
         dof: Its DOF index.
         name: Its name.
-        side: Sign of the motion; 0: the joint stays.
+        side: Sign of the closing motion; 0: the joint does not move.
         limits: Lower and upper limit [rad or m].
         links: Indices of the links that the joint moves.
         is_slider: Whether values are in metres.
@@ -104,16 +104,16 @@ class Finger:
 
 @dataclass(frozen=True)
 class Hand:
-    """The robot before the approach.
+    """Robot before the approach.
 
     Attributes:
-        values: Values of all DOFs [rad or m], the preshape among them, shape (dof,).
+        values: Values of all DOFs [rad or m], including the preshape of the gripper, shape (dof,).
         T_world_base: Its pose.
         T_base_tool: Pose of the tool in the frame of the robot, at ``values``.
-        fingers: The joints that close, in their order.
+        fingers: The joints that close, in the order of closing.
         links: Indices of the links of the hand: effector, links fixed to it, and fingers.
         all_links: Indices of all links of the robot.
-        ball: Sphere around the robot, in its own frame.
+        ball: Bounding sphere of the robot, in its own frame.
         names: Names of the links.
     """
 
@@ -129,7 +129,7 @@ class Hand:
 
 @dataclass(frozen=True)
 class Target:
-    """The body to grasp: its pose, and a sphere around it in the world."""
+    """Body to grasp: its pose, and its bounding sphere in the world."""
 
     T_world_target: Floats
     ball: Ball
@@ -141,15 +141,15 @@ class Approach:
 
     Attributes:
         direction: Direction of the motion, shape (3,).
-        position: Start of the tool [m], shape (3,).
+        position: Position of the tool at the start [m], shape (3,).
         roll: Rotation about ``tool_direction`` [rad].
-        tool_direction: The direction of the tool that is turned to ``direction``, in the frame of the tool, shape (3,).
-        standoff: Distance back after the contact [m]; negative values count as 0.
-        plane: In place of a standoff, the hand is moved until the tool lies on the plane n.x + d = 0, shape (4,).
+        tool_direction: The direction, in the frame of the tool, that is rotated to ``direction``, shape (3,).
+        standoff: Distance by which the hand retreats after the contact [m]; negative values count as 0.
+        plane: Alternative to ``standoff``: the hand moves until the tool is on the plane n.x + d = 0, shape (4,).
         flies: Whether the hand is placed and moves to the target; otherwise only the fingers move.
         only_target: Whether contact with another body is a failure.
         avoid_contact: Whether fingers stop one fine step before contact, and may not start in contact.
-        avoided: Indices of links that must touch nothing.
+        avoided: Indices of links that must not touch anything.
         leaves_contact: Whether fingers that start in contact may leave it within one coarse step.
     """
 
@@ -167,7 +167,7 @@ class Approach:
 
 
 class Steps(NamedTuple):
-    """Step lengths of OpenRAVE: coarse and fine [rad], and their factor for motions in metres [m/rad]."""
+    """Step lengths of a simulation: coarse and fine [rad], and the factor for motions in metres [m/rad]."""
 
     coarse: float = 0.1
     fine: float = 0.001
@@ -193,7 +193,7 @@ class Closed:
         T_world_base: Last pose of the robot.
         values: Last values of all DOFs [rad or m], shape (dof,).
         path: The start of the approach, its end, and a waypoint for each finger that moved.
-        reason: Why the grasp failed; None if it did not.
+        reason: The reason of the failure; None if the grasp succeeded.
     """
 
     T_world_base: Floats
@@ -208,7 +208,7 @@ class Closed:
 
 
 def tool_start(approach: Approach) -> Floats:
-    """Return ``T_target_tool`` at the start: the least rotation of the tool's direction, after the roll about it."""
+    """Return ``T_target_tool`` at the start: rolled about the tool's direction, then aligned with the approach."""
     along = _unit(approach.tool_direction)
     roll = rotationMatrixFromAxisAngle(along, approach.roll)
     T_target_tool = np.eye(4)
@@ -221,9 +221,8 @@ def tool_start(approach: Approach) -> Floats:
 def displaced(target: Target, noise: float, random: np.random.Generator) -> Target:
     """Return a target with a random error of its pose, OpenRAVE's ``graspingnoise``.
 
-    One random number divides the noise between a translation and a rotation about the centre of the sphere. The angle
-    [rad] is multiplied by the radius [m], as in OpenRAVE; divided by it, the base of a long arm would move by far more
-    than the noise.
+    A random number divides the noise between a translation and a rotation about the centre of the sphere. As in
+    OpenRAVE, the angle [rad] is proportional to the radius [m], not to its inverse.
 
     Args:
         target: The target.
@@ -246,7 +245,7 @@ def close(hand: Hand, target: Target | None, approach: Approach, touches: Touche
     Args:
         hand: The robot.
         target: The body to grasp; None if the hand does not fly.
-        approach: How it comes.
+        approach: The approach of the hand.
         touches: The collision test.
         steps: Step lengths. Contacts are found to a sixteenth of the fine step.
 
@@ -305,7 +304,11 @@ class _ClosingSimulation:
         return None
 
     def _fly(self, target: Target) -> Reason | None:
-        """Place the hand, back it out of the target, fly to the contact, and move back by the standoff."""
+        """Place the hand outside of the target, fly to the contact, and retreat by the standoff.
+
+        Returns:
+            The reason of a failure, or None.
+        """
         hand, T_target_tool = self._hand, tool_start(self._approach)
         start = target.T_world_target @ T_target_tool @ inverse(hand.T_base_tool)
         along = target.T_world_target[:3, :3] @ _unit(self._approach.direction)
@@ -338,11 +341,11 @@ class _ClosingSimulation:
         return None
 
     def _stop(self, hit: float, hidden: float, T_target_tool: Floats) -> float:
-        """Return how far the hand flies, by the plane or the standoff [m].
+        """Return the distance that the hand flies [m], given by the plane or the standoff.
 
         Args:
-            hit: Distance of the contact.
-            hidden: Distance from there to the target, if an obstacle is in between.
+            hit: Distance of the contact [m].
+            hidden: Distance from the contact to the target, if an obstacle is in between [m].
             T_target_tool: Pose of the tool at the start.
         """
         plane, along = self._approach.plane, _unit(self._approach.direction)
@@ -352,7 +355,7 @@ class _ClosingSimulation:
         return hit - max(self._approach.standoff, hidden) if self._approach.standoff > 0 else hit
 
     def _close_finger(self, finger: Finger) -> Reason | None:
-        """Move a finger to its contact or limit; return why that is not allowed."""
+        """Move a finger to its contact or limit; return the reason if that fails, else None."""
         if not finger.side:
             return None
         side, factor = float(np.sign(finger.side)), self._steps.per_radian if finger.is_slider else 1.0
@@ -386,13 +389,13 @@ def _unit(vector: Floats) -> Floats:
 
 
 def _range(finger: Finger, value: float) -> float:
-    """Return how far a joint can move from a value to its limit, at most one turn if it has none [rad or m]."""
+    """Return the distance from a joint value to the limit in the closing direction; 2 pi without limit [rad or m]."""
     most = (finger.limits[1] - value) if finger.side > 0 else (value - finger.limits[0])
     return max(most, 0.0) if np.isfinite(most) else 2 * np.pi
 
 
 def _contact(touches: Callable[[float], bool], start: float, end: float, step: float, tolerance: float) -> float | None:
-    """Return the first position at which something touches, at most ``tolerance`` behind the contact; None if none."""
+    """Return the first position in contact, at most ``tolerance`` beyond the exact one; None if there is none."""
     if touches(start):
         return start
     free = start

@@ -1,4 +1,4 @@
-"""Grippers: in which direction fingers close, and parallel jaws."""
+"""Closing directions of gripper fingers, and detection of parallel jaws."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,10 +15,10 @@ from ravemj.model.bounds import links_bounds
 from ravemj.model.scene import Manipulator
 
 SQUEEZE = 2e-5
-"""Motion of the fingers beyond the first contact [rad or m], at which contacts are looked for."""
+"""Motion of the fingers beyond the first contact, at which all contacts are determined [rad or m]."""
 
 CLEARANCE = 1e-3
-"""Distance that is left between open jaws and the object [m]."""
+"""Gap between open jaws and the object [m]."""
 
 _ROUNDING = 1e-6  # m^2 per rad or m, growth of a spread that counts as none
 
@@ -29,10 +29,9 @@ def closes(arm: Manipulator) -> bool:
 
 
 def with_closing_direction(robot: BodyState, arm: Manipulator) -> Manipulator:
-    """Return a manipulator with a closing direction, found from the shapes of its fingers if it has none, as in URDF.
+    """Return a manipulator with a closing direction; if the file has none, as in URDF, it is found from the fingers.
 
-    A joint closes in the direction in which the links of all fingers come nearer to each other. The caller holds the
-    lock.
+    A joint closes in the direction in which the links of all fingers approach each other. The caller holds the lock.
     """
     if closes(arm) or not arm.gripper_dofs:
         return arm
@@ -55,7 +54,7 @@ def with_closing_direction(robot: BodyState, arm: Manipulator) -> Manipulator:
 
 
 def _spread(robot: BodyState, links: Sequence[int]) -> float:
-    """Return the sum of the squared distances of links' shapes from their middle [m^2]."""
+    """Return the sum of the squared distances of the centres of links from their mean [m^2]."""
     poses = robot.link_transforms()
     boxes = [links_bounds([robot.scene.links[link]], poses[[link]]) for link in links]
     centers = np.array([(np.array(box.low) + np.array(box.high)) / 2 for box in boxes if box is not None])
@@ -66,7 +65,7 @@ def jaws_of(robot: BodyState, arm: Manipulator) -> antipodal.Jaws:
     """Return the parallel jaws of an open gripper.
 
     Raises:
-        ArgumentError: its fingers do not slide towards each other along one line.
+        ArgumentError: the fingers do not slide towards each other along one line.
     """
     assert arm.effector is not None
     values, gripper = robot.kinematics.values(), list(arm.gripper_dofs)
@@ -104,7 +103,7 @@ def _moved(values: Floats, gripper: list[int], arm: Manipulator) -> Floats:
 
 
 def _reach(robot: BodyState, links: Sequence[int] | NDArray[np.int_], T_tool_links: Floats, axis: Floats) -> float:
-    """Return how far the shapes of some links reach along an axis in the frame of the tool [m]."""
+    """Return the largest coordinate of links' shapes along an axis in the frame of the tool [m]."""
     side = np.eye(3)[int(np.abs(axis).argmin())]
     side = np.cross(axis, side) / np.linalg.norm(np.cross(axis, side))
     T = np.eye(4)

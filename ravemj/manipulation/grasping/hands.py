@@ -1,4 +1,4 @@
-"""Robots of a world as hands that grasp: joints and links of a manipulator, and the contacts of its grasp."""
+"""Grasp simulation for robots of a world: conversion of a robot to a hand, and the contacts of its grasp."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -21,7 +21,7 @@ class Grasped(NamedTuple):
     """Result of a grasp simulation with its contacts.
 
     Attributes:
-        closed: Where hand and fingers end, and why it failed.
+        closed: Final configuration, or the reason of the failure.
         contacts: Contact points [m] and unit normals out of the target in the world, shape (n, 6); empty on failure.
         links: Index of the link of the robot at each contact, shape (n,).
     """
@@ -37,7 +37,7 @@ def hand_of(body: BodyState, manipulator: Manipulator, sides: dict[int, float]) 
     Args:
         body: The robot.
         manipulator: The manipulator that grasps.
-        sides: The sign of the motion of each joint that closes, by DOF index, in the order of closing.
+        sides: The sign of the closing motion of each gripper joint, by DOF index, in the order of closing.
 
     Raises:
         ArgumentError: the manipulator has no effector.
@@ -64,7 +64,7 @@ def target_of(body: BodyState) -> Target:
     """Return a body as a target.
 
     Raises:
-        ArgumentError: it has no shapes.
+        ArgumentError: the body has no shapes.
     """
     return Target(body.link_transform(0).copy(), _ball([body]))
 
@@ -79,16 +79,16 @@ def grasp(
     *,
     thought: Target | None = None,
 ) -> Grasped:
-    """Simulate a grasp of a target, and return its contacts; the robot is as before afterwards.
+    """Simulate a grasp of a target, and return its contacts; afterwards the robot is restored.
 
     Args:
         world: The world; the caller holds the lock.
         body: The robot.
-        hand: What ``hand_of`` returns.
+        hand: The robot as a hand; see ``hand_of``.
         target: The body to grasp; None if only fingers close.
-        approach: How the hand comes.
+        approach: The approach of the hand.
         steps: Step lengths.
-        thought: Where the hand takes the target to be; None: where it is.
+        thought: Assumed target, at a wrong pose, to which the hand moves; None means the true one.
     """
     placed = None if target is None else thought or target_of(target)
     with hand_tests(world, body, target) as tests:
@@ -109,7 +109,7 @@ def _finger(body: BodyState, dof: int, side: float) -> Finger:
 
 
 def _ball(bodies: Sequence[BodyState]) -> Ball:
-    """Return a sphere around the shapes of bodies, in the world."""
+    """Return a bounding sphere of bodies, in the world."""
     boxes = [body.bounds.at(body.link_transforms(), [True] * len(body.scene.links)) for body in bodies]
     known = [box for box in boxes if box is not None]
     if not known:

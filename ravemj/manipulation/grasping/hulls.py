@@ -1,7 +1,7 @@
 """Convex hulls in any dimension, without qhull.
 
-A hull grows by the farthest point of one facet at a time. Grown at the facet nearest to the origin only, it yields the
-distance of the origin from the boundary of the hull long before the hull is complete.
+A hull grows by the farthest point of one facet at a time. If only the facet nearest to the origin is extended, the
+distance of the origin from the boundary is known long before the hull is complete.
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class Hull:
 
 @dataclass(frozen=True)
 class Facet:
-    """Facet of a hull that is nearest to the origin.
+    """The facet of a hull nearest to the origin.
 
     Attributes:
         offset: Signed distance of its plane from the origin; negative if the origin is outside.
@@ -67,7 +67,7 @@ def hull(points: Floats) -> Hull | None:
 
 
 def hull_volume(points: Floats) -> float:
-    """Return the volume of the convex hull of points; 0 if they are flat. It takes half of the time of ``hull``.
+    """Return the volume of the convex hull of points; 0 if they are flat. It is twice as fast as ``hull``.
 
     Args:
         points: Shape (n, dim), finite.
@@ -93,7 +93,7 @@ def _complete(points: Floats) -> "_HullGrowth | None":
 def nearest_facet(points: Floats) -> Facet | None:
     """Return the facet of the convex hull that is nearest to the origin, or None if the points are flat.
 
-    If the origin is outside, it is a facet that separates the origin from the points.
+    If the origin is outside, the plane of the facet separates it from the points.
 
     Args:
         points: Shape (n, dim), finite.
@@ -123,29 +123,29 @@ def _nearest(points: Floats, noise: float) -> Facet | None:
 
 
 class _CycleError(ArithmeticError):
-    """A point was taken in twice: rounding makes nearly coplanar facets contradict one another."""
+    """A point was added twice, since rounding errors make nearly coplanar facets inconsistent."""
 
 
 def _joggled(points: Floats, noise: float) -> Floats:
-    """Return points moved by a part of the largest coordinate, so that no facets are nearly coplanar."""
+    """Return points with random displacements, ``noise`` times the largest coordinate, which avoid coplanar facets."""
     if not noise:
         return points
     return points + noise * np.abs(points).max() * np.random.default_rng(2).uniform(-1, 1, points.shape)
 
 
 def missing_direction(points: Floats) -> Floats:
-    """Return the unit direction, shape (dim,), in which points spread least."""
+    """Return the unit direction in which points have the least variance, shape (dim,)."""
     return np.linalg.svd(points - points.mean(axis=0))[2][-1]
 
 
 def _sorted(points: Floats) -> tuple[Floats, Ints]:
-    """Return the points in lexicographic order: of equally far points, the first is then a vertex."""
+    """Return the points in lexicographic order, and the order; the first of equally far points is then a vertex."""
     order = np.lexsort(points.T[::-1])
     return points[order], order
 
 
 class _HullGrowth:
-    """Convex hull of some of the points, made of simplices, that takes in one more point at a time."""
+    """Convex hull of a growing set of points, as simplices."""
 
     def __init__(self, points: Floats, simplex: Ints, tolerance: float) -> None:
         self.points = points
@@ -176,7 +176,7 @@ class _HullGrowth:
         return cls(points, np.array(simplex), tolerance)
 
     def add(self, index: int) -> None:
-        """Replace the facets that see a point by facets between it and their border."""
+        """Add a point: replace the facets that it sees by facets between the point and their border."""
         if index in self._taken:
             raise _CycleError
         self._taken.add(index)
@@ -196,7 +196,7 @@ class _HullGrowth:
         self._final = np.concatenate([self._final[kept], np.zeros(len(facets), bool)])
 
     def complete(self) -> None:
-        """Take in points until none is outside."""
+        """Add points until none is outside."""
         while len(pending := np.flatnonzero(~self._final)[:_CHUNK]):
             heights = self.points @ self.normals[pending].T - self.offsets[pending]
             highest = heights.max(axis=0)
@@ -206,7 +206,7 @@ class _HullGrowth:
                 self.add(int(np.argmax(heights[:, facet] >= highest[facet] - self.tolerance)))
 
     def use_qhull(self) -> bool:
-        """Let Qhull find the facets; return False if SciPy, the extra ``hulls``, is not installed."""
+        """Compute the facets with Qhull; return False if SciPy, the extra ``hulls``, is not installed."""
         try:
             spatial = import_module("scipy.spatial")
         except ImportError:
@@ -232,7 +232,7 @@ class _HullGrowth:
         )
 
     def result(self, order: Ints) -> Hull:
-        """Return the hull with merged planes, and indices of points before they were sorted."""
+        """Return the hull with merged coplanar facets; ``order`` gives the original index of each sorted point."""
         corners = self.points[self.facets] - self.center
         volumes = np.linalg.det(corners)
         facets = self.facets.copy()

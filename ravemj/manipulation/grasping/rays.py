@@ -10,10 +10,10 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import quatRotateDirection, rotationMatrixFromQuat
 
 MARGIN = 0.01
-"""Distance of the grids from the sides of a box [m]."""
+"""Distance of the grids from the sides of the target's bounding box [m]."""
 
 _FAR = 100.0
-"""Range of the rays from planes [m]."""
+"""Length of the rays from planes [m]."""
 
 _MOST_LINES = 1000
 """Maximum number of grid lines on each axis of a side."""
@@ -24,14 +24,14 @@ class Rays(NamedTuple):
 
     Attributes:
         origins: Start points, shape (n, 3) [m].
-        ways: Directions times ranges, shape (n, 3) [m].
+        ways: Directions times lengths, shape (n, 3) [m].
     """
 
     origins: Floats
     ways: Floats
 
     def numbers(self) -> Floats:
-        """Return the rays as ``env.CheckCollisionRays`` takes them, shape (n, 6)."""
+        """Return the rays as input of ``env.CheckCollisionRays``, shape (n, 6)."""
         return np.hstack([self.origins, self.ways])
 
 
@@ -39,8 +39,8 @@ def grid_lines(half: float, delta: float) -> Floats:
     """Return the coordinates of grid lines: 0, and steps of ``delta`` from ``-half`` to 0 and from 0 to ``half``.
 
     Args:
-        half: Half of the side [m].
-        delta: Distance of the lines [m].
+        half: Half of the side length [m].
+        delta: Spacing of the lines [m].
 
     Raises:
         ArgumentError: there would be more than a thousand lines.
@@ -58,9 +58,9 @@ def grid_rays(center: Floats, sides: tuple[Floats, Floats], direction: Floats, d
 
     Args:
         center: Center of the rectangle, shape (3,).
-        sides: Half of each side, shape (3,) [m].
-        direction: Direction times range [m].
-        delta: Distance of the grid lines [m].
+        sides: Vectors of half of each side, shape (3,) [m].
+        direction: Direction times length of the rays [m].
+        delta: Spacing of the grid lines [m].
     """
     lengths = [float(np.linalg.norm(side)) for side in sides]
     if min(lengths) == 0:
@@ -72,12 +72,12 @@ def grid_rays(center: Floats, sides: tuple[Floats, Floats], direction: Floats, d
 
 
 def box_rays(center: Floats, half: Floats, delta: float) -> Rays:
-    """Return rays from grids on the six sides of a grown box, in the order +z, -z, +y, -y, +x, -x.
+    """Return rays from grids on the six sides of an enlarged box, in the order +z, -z, +y, -y, +x, -x.
 
     Args:
         center: Center of the target's box, shape (3,).
-        half: Half of its sides, shape (3,) [m].
-        delta: Distance of the grid lines [m].
+        half: Half of its side lengths, shape (3,) [m].
+        delta: Spacing of the grid lines [m].
     """
     axes = np.diag(half + MARGIN)
     sides: list[Rays] = []
@@ -88,13 +88,13 @@ def box_rays(center: Floats, half: Floats, delta: float) -> Rays:
 
 
 def plane_rays(center: ArrayLike, sidex: ArrayLike, sidey: ArrayLike, delta: float) -> Rays:
-    """Return rays from a grid on a rectangle, towards ``sidex`` x ``sidey``.
+    """Return parallel rays from a grid on a rectangle, in the direction ``sidex`` x ``sidey``.
 
     Args:
         center: Center of the rectangle, shape (3,).
-        sidex: Half of one side, shape (3,) [m].
-        sidey: Half of the other side, shape (3,) [m].
-        delta: Distance of the grid lines [m].
+        sidex: Vector of half of one side, shape (3,) [m].
+        sidey: Vector of half of the other side, shape (3,) [m].
+        delta: Spacing of the grid lines [m].
     """
     sides = np.asarray(sidex, float), np.asarray(sidey, float)
     normal = np.cross(*sides)
@@ -134,12 +134,12 @@ def circle_rays(center: ArrayLike, normalaxis: ArrayLike, radius: float, delta: 
 
 
 def spread(hits: Floats, angle: float, delta: float) -> Floats:
-    """Return hits with several directions around each normal.
+    """Return for each hit several directions in a cone around its normal.
 
     Args:
         hits: Points and unit normals, shape (n, 6).
         angle: Largest angle from the normal [rad]; 0 returns the hits.
-        delta: Angle between neighbours [rad].
+        delta: Angle between neighbouring directions [rad].
 
     Returns:
         Points and unit directions, shape (n * k, 6); the normal alone if no direction is near enough.
@@ -155,7 +155,7 @@ def spread(hits: Floats, angle: float, delta: float) -> Floats:
 
 
 def level_of(delta: float) -> int:
-    """Return the level of `directions` whose neighbours are about an angle [rad] apart, as OpenRAVE chooses it."""
+    """Return the level of ``directions`` whose neighbours are about ``delta`` [rad] apart, by OpenRAVE's rule."""
     if not delta > 0:
         raise ArgumentError(f"delta is {delta:g}; expected an angle above 0")
     return max(0, int(0.5 - np.log2(delta)))

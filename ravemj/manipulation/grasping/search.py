@@ -1,6 +1,6 @@
 """Search for grasps of an object: candidates by approach rays or antipodal points, each kept or rejected with a reason.
 
-Whether the arm reaches a grasp is asked of a function, so that users' filters and the API are not known here.
+A function decides whether the arm reaches a grasp, so that this module does not depend on IK filters or the API.
 """
 
 from collections import Counter
@@ -31,7 +31,7 @@ from ravemj.model.scene import Manipulator
 Method = Literal["fly", "antipodal"]
 
 _FREE = 1e-4
-"""Distance back along the approach at which the open hand does not touch the object any more [m]."""
+"""Distance along the approach from the contact at which the open hand no longer touches the object [m]."""
 
 _BACK = 0.1
 """Length of the straight line by which jaws approach [m]."""
@@ -42,7 +42,7 @@ _STANDOFFS = (0.0, 0.025)
 
 @dataclass(frozen=True, eq=False)
 class Grasp:
-    """A grasp of an object, or a candidate that was rejected.
+    """Grasp of an object, or a candidate that was rejected.
 
     Attributes:
         pose: ``T_target_tool``, shape (4, 4).
@@ -52,13 +52,13 @@ class Grasp:
         epsilon: OpenRAVE's ``mindist``: distance of the origin from the boundary of the wrench hull, with torques about
             the origin of the object's frame; 0 if the grasp is not in force closure.
         quality: The same with torques about the centre of mass, divided by the radius of the object, so that grasps of
-            different objects compare.
+            different objects can be compared.
         limiting: Indices of the contacts that limit the quality.
         weakest: Unit wrench that the grasp resists least: force and torque in the object's frame, shape (6,).
         approach: Unit vector of the motion of the hand in the object's frame, shape (3,).
-        arm: Joint values of the arm at the grasp [rad or m], shape (n,); None if inverse kinematics was not asked.
-        proof: Result of the physics simulation; None if it was not asked for.
-        reason: Why the candidate was rejected; empty if it was not.
+        arm: Joint values of the arm at the grasp [rad or m], shape (n,); None if inverse kinematics was not computed.
+        proof: Result of the physics simulation; None if there was none.
+        reason: The reason of the rejection; empty for accepted grasps.
     """
 
     pose: Floats
@@ -76,7 +76,7 @@ class Grasp:
 
     @property
     def weakness(self) -> str:
-        """The larger part of the weakest wrench in words, such as ``turns about y`` or ``slides along 0.71 0 0.71``."""
+        """Description of the larger part of the weakest wrench: ``turns about y`` or ``slides along 0.71 0 0.71``."""
         if self.weakest is None:
             return ""
         force, torque = self.weakest[:3], self.weakest[3:]
@@ -89,7 +89,7 @@ class Grasp:
 
 
 _TWIN_DISTANCE, _TWIN_ANGLE = 0.015, np.radians(20)
-"""Distance of contacts [m] and angle of approaches [rad] below which one grasp is a near twin of another."""
+"""Maximum distance of contacts [m] and angle of approaches [rad] of two similar grasps."""
 
 
 def _are_twins(grasp: Grasp, other: Grasp) -> bool:
@@ -130,10 +130,10 @@ class Grasps(Sequence[Grasp]):
         return len(self.kept)
 
     def distinct(self, most: int) -> list[Grasp]:
-        """Return at most ``most`` grasps, the best first, without near twins of better ones.
+        """Return at most ``most`` grasps, the best first, without those similar to a better one.
 
-        Twins approach within 20 degrees of each other, and each contact of either is within 1.5 cm of one of the other:
-        a hand moved a little, or turned by half a turn.
+        Grasps are similar if their approaches differ by at most 20 degrees, and each contact of either is within 1.5 cm
+        of a contact of the other.
         """
         chosen: list[Grasp] = []
         for grasp in self.kept:
@@ -143,11 +143,11 @@ class Grasps(Sequence[Grasp]):
 
     @property
     def counts(self) -> dict[str, int]:
-        """Number of rejected candidates for each reason, the most frequent first."""
+        """Number of rejected candidates by reason, the most frequent first."""
         return dict(Counter(grasp.reason for grasp in self.rejected).most_common())
 
     def __str__(self) -> str:
-        """Return the table of counts."""
+        """Return a table of the numbers of rejected candidates by reason."""
         total = len(self.kept) + len(self.rejected)
         rows = [(f"{len(self.kept)}", f"grasps of {total} candidates, friction {self.friction:g}")]
         rows += [(str(count), reason) for reason, count in self.counts.items()]
@@ -162,7 +162,7 @@ class Choices(NamedTuple):
         method: ``fly`` moves the hand along approach rays until it touches; ``antipodal`` places parallel jaws at pairs
             of opposite points.
         friction: Friction coefficient.
-        delta: Distance of the approach rays [m].
+        delta: Spacing of the approach rays [m].
         rolls: Number of rotations of the hand about each approach, or about the line of each pair.
     """
 
@@ -173,14 +173,17 @@ class Choices(NamedTuple):
 
 
 Reach = Callable[[Floats], Floats | str]
-"""Returns for ``T_world_tool`` the joint values of the arm, or the reason why there are none; the gripper is open."""
+"""Function that returns the arm's joint values for ``T_world_tool``, or the reason why there are none.
+
+The gripper is open during the call.
+"""
 
 
 def count_candidates(robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> int:
     """Return the number of candidates of a search; the caller holds the lock.
 
     Raises:
-        ArgumentError: as `search`.
+        ArgumentError: under the same conditions as in ``search``.
     """
     with _opened(robot, arm):
         return len(_CandidateSearch(robot, arm, target, choices).candidates())
@@ -196,16 +199,16 @@ def search(
     span: tuple[int, int] | None = None,
     progress: Callable[[int], object] | None = None,
 ) -> list[Grasp]:
-    """Return the grasps of an object, and the rejected candidates; robot and object are as before afterwards.
+    """Return the grasps of an object, and the rejected candidates; robot and object are restored afterwards.
 
     Args:
         robot: The robot; the caller holds the lock.
         arm: Its manipulator.
         target: The object.
-        choices: How candidates are made.
-        reach: Whether the arm reaches a pose; None: the hand alone counts.
-        span: First and one past the last index of the candidates to try; None: all.
-        progress: Called with the number of candidates that were tried.
+        choices: Settings of the search.
+        reach: Test whether the arm reaches a pose; None: only the hand is tested.
+        span: First index, and one past the last index, of the candidates to try; None: all.
+        progress: Called with the number of candidates tried so far.
 
     Raises:
         ArgumentError: the manipulator has no gripper joints that close, no effector, or no parallel jaws that
@@ -217,7 +220,7 @@ def search(
 
 
 def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, friction: float) -> Grasp:
-    """Return a grasp with the result of its simulation; the robot is as before. The caller holds the lock."""
+    """Return a grasp with the result of its physics simulation; the robot is restored. The caller holds the lock."""
     saved = robot.configuration()
     try:
         values = robot.kinematics.values()
@@ -235,7 +238,7 @@ def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, 
 
 @contextmanager
 def _at_origin(body: BodyState) -> Generator[None]:
-    """Move a body to the origin of the world, and restore it afterwards."""
+    """Context manager that moves a body to the origin of the world, and restores its pose afterwards."""
     saved = body.configuration()
     body.set_transform(np.eye(4))
     try:
@@ -246,7 +249,7 @@ def _at_origin(body: BodyState) -> Generator[None]:
 
 @contextmanager
 def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
-    """Open the gripper as far as its limits go, and restore the robot afterwards."""
+    """Context manager that opens the gripper to its limits, and restores the robot afterwards."""
     saved = robot.configuration()
     try:
         _open(robot, arm)
@@ -268,7 +271,7 @@ def _open(robot: BodyState, arm: Manipulator) -> None:
 
 
 class _Candidate(NamedTuple):
-    """A hand that has arrived: its pose, the direction of the approach, and what happened."""
+    """Simulated candidate: pose of the robot, approach direction, result of closing, and reason of a failure."""
 
     T_world_base: Floats
     approach: Floats
@@ -277,11 +280,11 @@ class _Candidate(NamedTuple):
 
 
 _Make = Callable[[HandTests], _Candidate]
-"""A candidate that is not tried yet."""
+"""Function that simulates a candidate."""
 
 
 class _CandidateSearch:
-    """Candidates of one robot, one object and one choice."""
+    """Search for grasps by one robot of one object."""
 
     def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> None:
         self._robot, self._arm, self._target, self._choices = robot, arm, target, choices
@@ -302,7 +305,7 @@ class _CandidateSearch:
         self._center, self._radius = self._mass_center(T_target_links)
 
     def _mass_center(self, T_target_links: Floats) -> tuple[Floats, float]:
-        """Return the centre of mass in the object's frame, and the radius of the object about it [m]."""
+        """Return the centre of mass in the object's frame, and the distance of the farthest point from it [m]."""
         links = self._target.scene.links
         masses = np.array([link.inertial.mass for link in links])
         centers = np.array(
@@ -312,9 +315,9 @@ class _CandidateSearch:
         return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
 
     def candidates(self) -> list[_Make]:
-        """Return the candidates, which are not tried yet.
+        """Return functions that simulate the candidates.
 
-        The target is at the origin meanwhile, so that rounding does not change them where the target stands.
+        The target is temporarily moved to the origin, so that rounding errors do not depend on its pose.
         """
         with _at_origin(self._target):
             return list((self._flown if self._choices.method == "fly" else self._jawed)(self._surface()))
@@ -343,7 +346,7 @@ class _CandidateSearch:
         return self._robot.simulation.collisions().rays.first_hits(rays, self._geoms)
 
     def _flown(self, surface: Floats) -> Iterator[_Make]:
-        """Yield flights against each point of the surface, with each roll and standoff."""
+        """Yield candidates that fly to each surface point, with each roll and standoff."""
         tool_direction = np.array(self._arm.direction)
         for row in surface:
             for roll in 2 * np.pi * np.arange(self._choices.rolls) / self._choices.rolls:
@@ -356,7 +359,7 @@ class _CandidateSearch:
         return _Candidate(closed.T_world_base, approach.direction, closed, reason)
 
     def _jawed(self, surface: Floats) -> Iterator[_Make]:
-        """Yield poses of the jaws at each pair of opposite points."""
+        """Yield candidates that place the jaws at each pair of opposite points."""
         jaws = jaws_of(self._robot, self._arm)
         for pair in antipodal.pairs(surface, self._cast, self._choices.friction, jaws.width - CLEARANCE):
             if pair.reason:
@@ -381,7 +384,7 @@ class _CandidateSearch:
         return _Candidate(T_world_base, along, closed, "" if closed.reason is None else str(closed.reason))
 
     def _approach(self, T_world_base: Floats, along: Floats, tests: HandTests) -> str | None:
-        """Return what the open hand touches at the grasp or on the straight line to it."""
+        """Return the name of a body that the open hand touches at the grasp or on the straight line to it, or None."""
         for distance in np.arange(0.0, _BACK + _STEP / 2, _STEP):
             T = T_world_base.copy()
             T[:3, 3] -= distance * along
@@ -391,7 +394,7 @@ class _CandidateSearch:
         return None
 
     def _judged(self, candidate: _Candidate, tests: HandTests) -> Grasp:
-        """Return a candidate with its contacts and their quality, or with the reason for its rejection."""
+        """Return a candidate as a grasp, with contacts and quality, or with the reason for its rejection."""
         pose = inverse(self._T_world_target) @ candidate.T_world_base @ self._hand.T_base_tool
         preshape, closed = self._hand.values[self._gripper], candidate.closed
         values = self._hand.values if closed is None else closed.values
@@ -415,7 +418,7 @@ class _CandidateSearch:
         )
 
     def _stuck(self, values: Floats, candidate: _Candidate, tests: HandTests) -> str:
-        """Return a reason if a finger touches the object before it closes."""
+        """Return a reason for rejection if an unmoved finger touches the object; else an empty string."""
         for finger in self._hand.fingers:
             is_open = finger.side and values[finger.dof] == self._hand.values[finger.dof]
             if is_open and tests(finger.links, candidate.T_world_base, values, "target"):
@@ -423,7 +426,7 @@ class _CandidateSearch:
         return ""
 
     def _reached(self, grasp: Grasp, reach: Reach) -> Grasp:
-        """Return a grasp with joint values of the arm, or with the reason why there are none."""
+        """Return a grasp with joint values of the arm, or with the reason why the arm does not reach it."""
         T_world_tool = self._T_world_target @ grasp.pose
         T_world_tool[:3, 3] -= _FREE * self._T_world_target[:3, :3] @ grasp.approach
         reached = reach(T_world_tool)

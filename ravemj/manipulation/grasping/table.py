@@ -20,15 +20,15 @@ SIZES: Mapping[str, int | None] = {
     "approachdirectionmanip": 3,
     "igrasptranslationoffset": 3,
 }
-"""Number of columns of each property of a grasp; None: one for each gripper joint."""
+"""Number of columns of each property of a grasp; None means one for each gripper joint."""
 
 
 def table_columns(joints: int, more: Mapping[str, int] | None = None) -> tuple[dict[str, range], int]:
-    """Return the columns of each property of a grasp, and the number of all columns.
+    """Return the columns of each property of a grasp, and the total number of columns.
 
     Args:
         joints: Number of gripper joints.
-        more: Properties of the user's, with their numbers of columns.
+        more: User-defined properties, with their numbers of columns.
     """
     columns: dict[str, range] = {}
     start = 0

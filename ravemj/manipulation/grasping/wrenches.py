@@ -18,7 +18,7 @@ EDGES = 8
 """The number of edges of a friction cone in OpenRAVE."""
 
 _ROUNDING = 1e-12
-"""Below this distance the origin counts as on the boundary of the hull."""
+"""Distance from the boundary of the hull below which the origin counts as on it."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Resistance:
 
     Attributes:
         epsilon: Distance of the origin from the boundary of the wrench hull; 0 if the grasp is not in force closure.
-        direction: Unit wrench, force and torque, shape (6,), along which the contacts push least.
+        direction: Unit wrench, force and torque, shape (6,), in whose direction the contacts push least.
         contacts: Indices of the contacts that limit ``epsilon``: those with a wrench on the nearest facet, ascending.
     """
 
@@ -68,14 +68,14 @@ def wrenches(positions: Floats, cones: Floats) -> Floats:
 
     Args:
         positions: Contact points, shape (n, 3).
-        cones: Forces at each, shape (n, edges, 3).
+        cones: Forces at each contact, shape (n, edges, 3).
     """
     forces = cones.reshape(-1, 3)
     return np.hstack([forces, cross_rows(np.repeat(positions, cones.shape[1], axis=0), forces)])
 
 
 def resistance(positions: ArrayLike, normals: ArrayLike, friction: float, edges: int = EDGES) -> Resistance:
-    """Return how contacts resist the worst unit disturbance, with torques about the origin.
+    """Return the resistance of contacts against the worst unit disturbance, with torques about the origin.
 
     Args:
         positions: Contact points, shape (n, 3) [m].
@@ -101,8 +101,8 @@ def resistance(positions: ArrayLike, normals: ArrayLike, friction: float, edges:
 def epsilon(positions: ArrayLike, normals: ArrayLike, friction: float, edges: int = EDGES) -> float:
     """Return the distance of the origin from the boundary of the wrench hull: OpenRAVE's ``mindist``.
 
-    It mixes newtons and newton metres, and depends on where the object stands in the world. See `quality` for a number
-    that does not. It is 0 if the grasp is not in force closure.
+    The value mixes newtons and newton metres, and depends on the object's pose in the world; ``quality`` does not. It
+    is 0 if the grasp is not in force closure.
 
     Args:
         positions: Contact points in the world, shape (n, 3) [m].
@@ -120,17 +120,17 @@ def epsilon(positions: ArrayLike, normals: ArrayLike, friction: float, edges: in
 def quality(
     positions: ArrayLike, normals: ArrayLike, friction: float, center: Floats, radius: float, edges: int = EDGES
 ) -> Resistance:
-    """Return the resistance with torques about the centre of mass, in units of the object's radius.
+    """Return the resistance with torques about the centre of mass, divided by the object's radius.
 
     It does not change if the object moves or is scaled, so grasps of different objects can be compared. The torque part
-    of the direction is in the same units.
+    of ``direction`` has the same scale.
 
     Args:
         positions: Contact points, shape (n, 3) [m].
         normals: Unit normals, shape (n, 3).
         friction: Friction coefficient.
         center: Centre of mass of the object, shape (3,), in the frame of the contacts [m].
-        radius: Distance of its farthest point from there [m].
+        radius: Distance of the object's farthest point from the centre of mass [m].
         edges: Number of edges of a friction cone.
     """
     return resistance((np.asarray(positions, float).reshape(-1, 3) - center) / radius, normals, friction, edges)

@@ -51,7 +51,7 @@ def substitute(text: str, names: Mapping[str, str]) -> str:
 
 
 def before_substitution(error: ExpressionError, text: str, names: Replacements) -> ExpressionError:
-    """Convert an error in a substituted equation to one in the original text of ``substitute``."""
+    """Convert an error in a substituted equation to an error at the position in the original text."""
     problem, grown = error.problem, 0
     position = error.position
     for at, name in names.found_in(text):

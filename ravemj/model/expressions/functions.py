@@ -62,7 +62,7 @@ def opposite_angle(a: float, b: float, c: float) -> tuple[float, ...]:
 
 
 def next_angle(a: float, gamma: float, b: float) -> tuple[float, ...]:
-    """Return the angle opposite to side a, of a triangle whose sides a and b enclose ``gamma`` [rad] (``SASA``)."""
+    """Return the angle opposite to side a of a triangle whose sides a and b enclose ``gamma`` [rad] (``SASA``)."""
     if not (math.isfinite(gamma) and math.isfinite(a) and math.isfinite(b)):
         return ()
     return (math.atan2(a * math.sin(gamma), b - a * math.cos(gamma)),)

@@ -46,7 +46,7 @@ def affine(nodes: list[Node]) -> Affine | None:
 
 
 def _polynomial(nodes: list[Node]) -> _Polynomial | None:
-    """Return the last of ``nodes`` as a polynomial, or None if it is not one syntactically."""
+    """Return the last of ``nodes`` as a polynomial, or None if it does not have the form of a polynomial."""
     polynomials: dict[Node, _Polynomial | None] = {}
     for node in nodes:
         match node:

@@ -22,7 +22,7 @@ AXES: dict[JointKind, str] = {
     "pr": "RP",
     "pp": "PP",
 }
-"""Axes of each joint kind, R revolute or P prismatic, the carrying one first; ``rp`` and ``pr`` name it last."""
+"""Axes of each joint kind, R revolute or P prismatic, the carrying axis first (last in the names ``rp`` and ``pr``)."""
 
 OWN_SHAPES = "self"
 """Name of the group of a link's own shapes, stored while another group replaces them."""

@@ -184,7 +184,7 @@ class Cylinder(Shape):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Capsule(Shape):
-    """Capsule along z, centred; ``height`` is that of the cylindrical part."""
+    """Capsule along z, centred; ``height`` is the height of the cylindrical part."""
 
     radius: float
     height: float
@@ -357,5 +357,5 @@ class Geometry(Record):
     source: Source
 
     def triangulated(self) -> Mesh:
-        """Return the triangles for scripts in the geometry frame: ``collision_mesh``, or else those of the shape."""
+        """Return the triangles for scripts in the geometry frame: ``collision_mesh`` if given, else of the shape."""
         return self.shape.triangulated() if self.collision_mesh is None else self.collision_mesh

@@ -21,7 +21,7 @@ class Polynomial:
     merges: bool
 
     def _first_time(self, way: Floats, limits: PathLimits) -> float:
-        """Return the first duration to try [s], by default that from rest to rest. All joints move by ``way``."""
+        """Return the first duration to try [s], by default the minimum from rest to rest; ``way``: displacements."""
         return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
@@ -166,7 +166,7 @@ class Linear:
 
 
 def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
-    """Return distances and maximum speeds, with one of each for a base's translation and one for its rotation."""
+    """Return distances and maximum speeds, with a single value each for translation and rotation of a base."""
     parts = limits.coordinates
     translation, rotation = list(parts.translation), list(parts.rotation)
     rest = [column for column in range(len(step)) if column not in parts.translation + parts.rotation]

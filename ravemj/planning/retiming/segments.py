@@ -77,7 +77,7 @@ class Segment(NamedTuple):
 
     @property
     def is_from_rest_to_rest(self) -> bool:
-        """Whether it starts and ends at rest."""
+        """Whether the segment starts and ends at rest."""
         return not self.start_velocity.any() and not self.end_velocity.any()
 
     @property
@@ -123,7 +123,7 @@ class Profile(Interpolated, Protocol):
 
 
 _QUATERNION = 4
-"""Number of columns of a rotation that is a quaternion."""
+"""Number of columns of a quaternion."""
 
 
 class Timed(NamedTuple):
@@ -204,7 +204,7 @@ def _duration(needed: float, given: float | None, time_step: float) -> float:
 
 
 def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: float, attempts: int) -> SegmentRows:
-    """Return the rows of a segment; given end velocities allow no longer duration, as in OpenRAVE."""
+    """Return the rows of a segment; only from rest to rest, up to ``attempts`` longer durations are tried."""
     if duration < _SHORTEST and profile.merges:
         return SegmentRows(np.zeros(1), ())
     for _ in range(attempts if segment.is_from_rest_to_rest else 1):

@@ -132,7 +132,7 @@ class _Flattening:
         return None
 
     def _material_of(self, symbol: str, bound: dict[str, str]) -> str:
-        """Return the id of the material bound to a symbol, else any bound one, else the first."""
+        """Return the id of the material bound to a symbol, else of any bound material, else of the first material."""
         url = bound.get(symbol, bound[min(bound)] if bound else symbol)
         name = url.strip().removeprefix("#")
         return name if name in self._materials else min(self._materials, default="")

@@ -11,7 +11,7 @@ _LUMINANCE = (0.212671, 0.71516, 0.072169)  # of red, green and blue, as COLLADA
 
 @dataclass(frozen=True, slots=True)
 class ColladaMaterial:
-    """A material's colours; None for those that the file does not specify.
+    """A material's colours; None for colours that the file does not specify.
 
     Attributes:
         diffuse: Colour.

@@ -99,7 +99,7 @@ def _mesh(geometry: Element) -> Element | None:
 
 
 def _positions(document: ColladaDocument, mesh: Element) -> Floats:
-    """Return the points of VERTEX inputs: those of the mesh's own ``<vertices>``, regardless of its id."""
+    """Return the points of VERTEX inputs, from the mesh's own ``<vertices>`` regardless of its id."""
     inputs = children(child(mesh, "vertices"), "input")
     url = next((item.get("source", "") for item in inputs if item.get("semantic") == "POSITION"), "")
     wanted = url.strip().removeprefix("#")

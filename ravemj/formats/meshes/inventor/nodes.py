@@ -40,7 +40,7 @@ class NumberText:
 
 @dataclass(frozen=True, slots=True)
 class Is:
-    """Field in a PROTO whose value is that of the prototype's field ``name``."""
+    """Field in a PROTO whose value is taken from the prototype's field ``name``."""
 
     name: str
 

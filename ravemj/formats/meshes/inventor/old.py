@@ -64,7 +64,7 @@ def _include(traversal: Traversal, node: InventorNode, state: TraversalState) ->
 
 
 def _moving(matrix: Callable[[InventorNode], Floats]) -> Handler:
-    """Return the handler of a transform, whose 4x4 matrix ``matrix`` returns."""
+    """Return the handler of a transform; ``matrix`` returns its 4x4 matrix."""
     return lambda _traversal, node, state: moved(state, matrix(node))
 
 

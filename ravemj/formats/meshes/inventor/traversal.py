@@ -97,7 +97,7 @@ class Traversal:
         return state
 
     def collect_materials(self, nodes: Iterable[InventorNode], state: TraversalState) -> None:
-        """Traverse nodes for their materials only: in OpenRAVE, those of hidden levels of detail are used, too."""
+        """Traverse nodes for their materials only; OpenRAVE also uses those of hidden levels of detail."""
         before, self._shapes_count = self._shapes_count, False
         self.visit(nodes, state)
         self._shapes_count = before
@@ -122,7 +122,7 @@ class Traversal:
     def include(
         self, names: Iterable[str], node: InventorNode, state: TraversalState, with_materials: bool
     ) -> TraversalState:
-        """Traverse the first readable file of those that a node names, if any, and return the state at its end.
+        """Traverse the first readable file that a node names, if any, and return the state at its end.
 
         Its materials are used only ``with_materials``.
         """
@@ -151,7 +151,7 @@ class Traversal:
 
 
 def shape(corners: Callable[[InventorNode, TraversalState], Floats]) -> Handler:
-    """Return the handler of a shape, whose triangles in its frame, shape (n, 3, 3), ``corners`` returns."""
+    """Return the handler of a shape; ``corners`` returns its triangles in its own frame, shape (n, 3, 3)."""
     return lambda traversal, node, state: traversal.add(corners(node, state), node, state)
 
 

@@ -3,13 +3,13 @@
 Text messages are JSON objects with the changed fields; ``changed`` has the changed fields of controls, with their
 names. Binary messages begin with their kind, a 32-bit number:
 
-- ``FRAME``: the page draws all updates since the last frame. The message continues, little endian: the numbers of
+* ``FRAME``: the page draws all updates since the last frame. The message continues, little endian: the numbers of
   acknowledged messages, of the following bodies and of the following shapes, and whether a camera follows (32 bits
   each); the camera's position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 if the
   page must not predict drags (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16
   bits each; 32767 is 1), their indices (32 bits each); the shapes' indices (32 bits each), their colours (4 bytes
-  each). - ``DRAWINGS``, ``FIGURES``: the drawings of scripts, and those of the overlay, in the format of
-  ``pack_drawings``.
+  each).
+* ``DRAWINGS``, ``FIGURES``: the drawings of scripts, and those of the overlay, in the format of ``pack_drawings``.
 """
 
 import json

@@ -11,7 +11,7 @@ MOST_PAGES = 64
 """Maximum number of open pages."""
 
 MOST_STRANGERS = 32
-"""Maximum number of connections that have not sent the secret yet, in addition to those of pages."""
+"""Maximum number of connections that have not sent the secret yet; pages are counted separately."""
 
 _MOST_GUESSES = 20
 _MINUTE = 60.0
