@@ -156,7 +156,9 @@ class Clearances:
         """
         first, second = self._first[pairs], self._second[pairs]
         places, begins = self._positions.reshape(-1, 3), rows * self._model.ngeom
-        away: Floats = places.take(begins + second, axis=0) - places.take(begins + first, axis=0)  # faster than an index
+        away = np.take(places, begins + second, axis=0) - np.take(
+            places, begins + first, axis=0
+        )  # faster than indexing
         centers = np.sqrt((away * away) @ _ONES)
         gaps = centers - (self._model.geom_rbound[first] + self._model.geom_rbound[second])
         travel = self._travel(changes, rows, pairs)
@@ -197,8 +199,7 @@ class Clearances:
         places = np.zeros(len(is_used), dtype=int)
         places[used] = np.arange(len(used))
         first, second = (self._depths[:, pairs] * count + rows) * len(used) + places[which]
-        travel: Floats = sums.take(first) + sums.take(second)
-        return travel
+        return np.take(sums, first) + np.take(sums, second)
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
         """Raise the bounds of gaps of some cases by separation along directions, unit vectors or NaN, shape (k, 3).
