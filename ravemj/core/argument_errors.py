@@ -146,7 +146,7 @@ def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwar
     except TypeError:
         return None
     given = {name: value for name, value in given.items() if name not in {"self", "cls"}}
-    if not given or any(name in str(error) for name in given):
+    if not given or any(re.search(rf"\b{name}\b", str(error)) for name in given):
         return None
     values = ", ".join(f"{name}={reprlib.repr(value)}" for name, value in given.items())
     kind = next(base for base in type(error).__mro__ if base.__module__ == "builtins")  # numpy's take other arguments

@@ -144,7 +144,7 @@ def checked_point(values: ArrayLike, name: str) -> Floats:
     return checked_vector(given, 3, name)
 
 
-def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:
+def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "indices") -> Ints:
     """Return indices as an array; None means no index, ``...`` all.
 
     Raises:
