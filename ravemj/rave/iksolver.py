@@ -4,6 +4,7 @@
 
 import logging
 import operator
+import weakref
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 
 
 _LOG = logging.getLogger("ravemj")
+_SAME = 1e-7
+"""Largest difference of joint values [rad or m] of one posture."""
 _NEAR = 1e-4
 """Largest squared distance between the goal and the configuration that ``CallFilters`` accepts."""
 
@@ -126,6 +129,7 @@ class FilteredSearch(ArmSearch):
         self._started = 0 if failures is None else len(failures)
         self._action = 0
         self._answer = IkReturn(IkReturnAction.Success)
+        self._seen: list[Floats] = []
 
     @cached_property
     def _goal_of_users(self) -> IkParameterization:
@@ -148,7 +152,16 @@ class FilteredSearch(ArmSearch):
         """Call the filters with a priority above 0 if ``before_collisions``, else the others."""
         if before_collisions:
             self._answer = IkReturn(IkReturnAction.Success)
+            self._seen.append(row)
         return self._pass([filter_ for filter_ in self._filters if (filter_.priority > 0) == before_collisions], row)
+
+    def is_repeated(self) -> bool:
+        """Return whether the present joint values differ by whole turns alone from values that filters saw before."""
+        if not self._seen:
+            return False
+        moved = np.reshape(self._seen[:-1], (-1, len(self._seen[-1]))) - self._seen[-1]
+        turned = np.where(self.solver.chain.prismatic, moved, np.remainder(moved + np.pi, 2 * np.pi) - np.pi)
+        return bool((np.abs(turned) < _SAME).all(axis=1).any())
 
     def _pass(self, filters: Iterable[Filter], row: Floats) -> bool:
         """Call filters for a solution, and collect the data that they attach."""
@@ -283,6 +296,7 @@ class IkSolver(Interface):
         self._custom_filter: Handle | None = None
         self._robot: Robot | None = None
         self._arm_name = ""
+        self._latest: Callable[[], FilteredSearch | None] = lambda: None
 
     # Commands
 
@@ -302,11 +316,13 @@ class IkSolver(Interface):
         return ""
 
     def _repeat_count(self, arguments: str) -> str:
-        """Return 0, the count of equal link poses between two filter calls: the links always move."""
+        """Return 1 in a filter that was called with the same link poses before in this search, else 0."""
         del arguments
-        return "0"
+        search = self._latest()
+        return str(int(search is not None and search.is_repeated()))
 
     def _solution_indices(self, arguments: str) -> str:
+        """Raise: the numbers are those of the branches in the C++ code that OpenRAVE's ikfast generates for an arm."""
         del arguments
         remedy = "solutions are told apart by their joint values: FindIKSolutions returns them all"
         raise UnsupportedError(f"GetSolutionIndices ({remedy})", "numbering of the branches of a solver")
@@ -411,7 +427,9 @@ class IkSolver(Interface):
     ) -> FilteredSearch:
         solver, numbers = self.derived(), self._numbers(goal)
         free = self._free_values(solver, shares)
-        return FilteredSearch(self._arm, solver, Goal(goal, numbers), free, options, self._filters, failures)
+        search = FilteredSearch(self._arm, solver, Goal(goal, numbers), free, options, self._filters, failures)
+        self._latest = weakref.ref(search)
+        return search
 
     def find_one(
         self,
