@@ -73,7 +73,8 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
 def explained(function: FunctionType) -> Callable[..., Any]:
     """Wrap a function so that an error of Python caused by a wrong argument type becomes a ``TypeError`` that names it.
 
-    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31).
+    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31). It takes numpy's arrays without dimensions for
+    numbers, so a call with such arrays that fails is repeated with their numbers.
     """
     if hasattr(function, _MARK):
         return function
@@ -83,6 +84,8 @@ def explained(function: FunctionType) -> Callable[..., Any]:
         try:
             return function(*args, **kwargs)
         except _PYTHONS_ERRORS as error:
+            if any(map(_is_scalar_array, (*args, *kwargs.values()))):
+                return call(*map(_plain, args), **{name: _plain(value) for name, value in kwargs.items()})
             message = None if isinstance(error, RavemjError) else _message(function, args, kwargs)
             if message is not None:
                 raise TypeError(message) from error
@@ -93,6 +96,15 @@ def explained(function: FunctionType) -> Callable[..., Any]:
 
     setattr(call, _MARK, True)
     return call
+
+
+def _is_scalar_array(value: object) -> bool:
+    return isinstance(value, np.ndarray) and value.ndim == 0
+
+
+def _plain(value: object) -> object:
+    """Return the number of an array without dimensions; other values as they are."""
+    return cast("np.ndarray[Any, Any]", value).item() if _is_scalar_array(value) else value
 
 
 def explain_methods(kind: type, skipped: Collection[str] = ()) -> None:

@@ -63,7 +63,7 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     Raises:
         ArgumentError: it has another length, or a number is not finite.
     """
-    if type(values) is np.ndarray and values.dtype is FLOAT:
+    if type(values) is np.ndarray and values.dtype is FLOAT and values.ndim:
         vector: Floats = values.copy()
     else:
         vector = checked_numbers(values, name)
