@@ -83,16 +83,13 @@ def explained(function: FunctionType) -> Callable[..., Any]:
     def call(*args: Any, **kwargs: Any) -> Any:  # noqa: ANN401 - those of the function
         try:
             return function(*args, **kwargs)
-        except _PYTHONS_ERRORS as error:
+        except (ArgumentError, *_PYTHONS_ERRORS) as error:
             if any(map(_is_scalar_array, (*args, *kwargs.values()))):
                 return call(*map(_plain, args), **{name: _plain(value) for name, value in kwargs.items()})
-            message = None if isinstance(error, RavemjError) else _message(function, args, kwargs)
-            if message is not None:
-                raise TypeError(message) from error
-            named = _named(error, function, args, kwargs)
-            if named is None:
+            clearer = _clearer(error, function, args, kwargs)
+            if clearer is None:
                 raise
-            raise named from error
+            raise clearer from error
 
     setattr(call, _MARK, True)
     return call
@@ -126,8 +123,20 @@ def _takes(method: FunctionType) -> bool:
     return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
 
 
-def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str | None:
-    """Return the message about the first argument with a wrong type; None if there is none."""
+def _clearer(
+    error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
+) -> Exception | None:
+    """Return an error that names the wrong argument; None if there is none, or if the error names it."""
+    if isinstance(error, ArgumentError):
+        known = {_caller(function, args), *signature(function).parameters} - {"self", "cls"}
+        wrong = None if _is_in(known, error) else _wrong_type(function, args, kwargs)
+        return None if wrong is None else ArgumentError(f"{wrong[0]}: {error.message}", error.errortype)
+    wrong = None if isinstance(error, RavemjError) else _wrong_type(function, args, kwargs)
+    return _named(error, function, args, kwargs) if wrong is None else TypeError(": ".join(wrong))
+
+
+def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[str, str] | None:
+    """Return the names of the function and of its first argument of a wrong type, and its description; else None."""
     try:
         given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
@@ -144,7 +153,7 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
             wanted = " or ".join(
                 dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else _with_article(kind) for kind in kinds)
             )
-            return f"{_caller(function, args)}: {name}: is {description}, and should be {wanted}"
+            return f"{_caller(function, args)}: {name}", f"is {description}, and should be {wanted}"
     return None
 
 
@@ -158,11 +167,16 @@ def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwar
     except TypeError:
         return None
     given = {name: value for name, value in given.items() if name not in {"self", "cls"}}
-    if not given or any(re.search(rf"\b{name}\b", str(error)) for name in given):
+    if not given or _is_in(given, error):
         return None
     values = ", ".join(f"{name}={reprlib.repr(value)}" for name, value in given.items())
     kind = next(base for base in type(error).__mro__ if base.__module__ == "builtins")  # numpy's take other arguments
     return kind(f"{_caller(function, args)}: {error}; given {values}")
+
+
+def _is_in(names: Iterable[str], error: Exception) -> bool:
+    """Return whether the message of an error has one of the names as a word."""
+    return any(re.search(rf"\b{name}\b", str(error)) for name in names)
 
 
 def _caller(function: FunctionType, args: tuple[Any, ...]) -> str:

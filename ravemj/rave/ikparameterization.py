@@ -63,7 +63,8 @@ def _with_angles(goals: type["GoalValues"]) -> type["GoalValues"]:
 
 def _point_and_angle(kind: IkParameterizationType) -> tuple[Callable[..., None], Callable[..., tuple[Floats, float]]]:
     def set_(self: "GoalValues", translation: ArrayLike, angle: float) -> None:
-        self._set(kind, [translation, angle])
+        point = checked_numbers(translation, f"Set{kind.name}: translation")
+        self._set(kind, [point, *checked_numbers(angle, f"Set{kind.name}: angle")])
 
     def get(self: "GoalValues") -> tuple[Floats, float]:
         values = self._of(kind)

@@ -101,6 +101,15 @@ MISTAKES = {
     ),
     "when": (lambda env, robot: trajectory(env, robot).GetFirstWaypointIndexAfterTime(math.nan), "time: is nan"),
     "which": (lambda env, robot: trajectory(env, robot).GetWaypoint("0"), "GetWaypoint: index: is of type str"),
+    "link of a chain": (lambda env, robot: robot.GetChain(0, None), "GetChain: linkindex2: linkindex: is None"),
+    "affine speeds": (lambda env, robot: robot.SetAffineTranslationMaxVels(None), "MaxVels: vels: is None"),
+    "affine weights": (lambda env, robot: robot.SetAffineRotation3DWeights([1]), r"weights: has shape \(1,\)"),
+    "heading": (
+        lambda env, robot: ravemj.IkParameterization().SetTranslationXAxisAngle4D([0, 0, 0], "x"),
+        "SetTranslationXAxisAngle4D: angle: 'x' should be numbers",
+    ),
+    "shape": (lambda env, robot: robot.GetLinks()[0].AddGeometry(None), "AddGeometry: geometryinfo: a geometry is of"),
+    "unit": (lambda env, robot: env.SetUnit(None, 1), "SetUnit: unitname: LengthUnit: .* is None"),
     "engine": (lambda env, robot: env.SetPhysicsEngine("newton"), "no physics engine 'newton'; there are ode, bullet"),
 }
 
