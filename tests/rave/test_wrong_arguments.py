@@ -85,7 +85,7 @@ MISTAKES = {
         lambda env, robot: ravemj.RaveCreateSpaceSampler(env, "MT19937").SetSpaceDOF(1.5),
         "SetSpaceDOF: dof: is of type float, and should be a whole number",
     ),
-    "seed": (lambda env, robot: ravemj.RaveCreateSpaceSampler(env, "Halton").SetSeed(-1), "seed is -1, and should not"),
+    "seed": (lambda env, robot: ravemj.RaveCreateSpaceSampler(env, "Halton").SetSeed(-1), "SetSeed: seed is -1, and"),
     "half a seed": (lambda env, robot: ravemj.Planner.PlannerParameters().SetRandomGeneratorSeed(0.5), "whole number"),
     "tag without an end": (
         lambda env, robot: ravemj.RaveCreatePlanner(env, "LinearSmoother").InitPlan(None, "<a"),
