@@ -13,7 +13,7 @@ from functools import cache, wraps
 from inspect import CO_VARARGS, CO_VARKEYWORDS, Parameter, formatannotation, signature
 from traceback import walk_tb
 from types import EllipsisType, FunctionType, MappingProxyType, NoneType
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -145,8 +145,8 @@ def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str,
         parameter = given.signature.parameters[name]
         if name in {"self", "cls"} or parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
             continue
-        if value is None and parameter.default is None:  # an alias of types may hold None
-            continue
+        if value is None and (parameter.default is None or NoneType in get_args(parameter.annotation)):
+            continue  # an alias of types may hold None
         kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             description = "None" if value is None else f"of type {type(value).__name__}"

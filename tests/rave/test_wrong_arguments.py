@@ -141,6 +141,16 @@ def test_an_axis_that_a_joint_does_not_have_is_an_index_error(scene):
             joint.GetMaxVel(index)
 
 
+def test_none_is_not_blamed_where_it_is_allowed():
+    env = ravemj.Environment()
+    env.Load(ravemj.model_path("puma560"))
+    arm, pose = env.GetRobots()[0].GetActiveManipulator(), ravemj.IkParameterizationType.Transform6D
+    assert ravemj.databases.inversekinematics.InverseKinematicsModel(arm.GetRobot(), pose).load()
+    with pytest.raises(ravemj.openrave_exception, match=r"^freevalues have shape \(1,\)"):
+        arm.GetIkSolver().Solve(arm.GetIkParameterization(pose, False), None, [0.5], 0)
+    env.Destroy()
+
+
 WRONG = [None, [], {}, object(), [("a", "b")], [[1]], [[0, 1, 2]], [None], [[[1]]], b"x", 10**400, -1, 1.5]
 WRONG += [float("nan"), [float("inf")], "x\0y", [[0, "b"]], ("a", 1), lambda: 1]
 
