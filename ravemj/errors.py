@@ -46,6 +46,10 @@ class ErrorCode(IntEnum):
 
     __str__ = Enum.__str__  # class and name, as those of OpenRAVE
 
+    @classmethod
+    def _missing_(cls, value: object) -> None:
+        raise ValueError(f"ErrorCode: value: is {value!r}, and should be from 0 to {max(cls):d}")
+
 
 class Source(NamedTuple):
     """Position in a file.

@@ -8,6 +8,7 @@ TO_STANDARD_OUTPUT = "-"
 """File name that means standard output."""
 
 _LONGEST_SIDE = 16384  # limit of OpenGL's framebuffers on most machines
+_LARGEST = 1e100  # squares and products of larger numbers overflow
 _MOST_DIGITS = 9  # so that a seed fits into 32 bits
 
 
@@ -60,6 +61,8 @@ def _number(text: str) -> float:
         number = math.nan
     if not math.isfinite(number):
         raise argparse.ArgumentTypeError(f"'{text}' is not a finite number")
+    if abs(number) > _LARGEST:
+        raise argparse.ArgumentTypeError(f"'{text}' is too large: expected at most {_LARGEST:g}")
     return number
 
 
@@ -68,6 +71,14 @@ def positive(text: str) -> float:
     number = _number(text)
     if number <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    return number
+
+
+def tilt(text: str) -> float:
+    """Parse an angle above 0 and at most 180 [degrees]."""
+    number = positive(text)
+    if number > 180:
+        raise argparse.ArgumentTypeError(f"{text} is more than 180 degrees")
     return number
 
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from ravemj.cli.argument_types import file_name, limb_goal, names, positive, seed, vector
+from ravemj.cli.argument_types import file_name, limb_goal, names, positive, seed, tilt, vector
 from ravemj.cli.shared_options import (
     VIDEOS,
     Commands,
@@ -124,7 +124,7 @@ def add_plan(commands: Commands) -> None:
     parser.add_argument(
         "--upright",
         nargs="?",
-        type=positive,
+        type=tilt,
         const=5.0,
         metavar="DEG",
         help="let the tool lean by at most so many degrees (5) from how it starts, at the goal and on the way; it may "

@@ -80,7 +80,7 @@ def arm_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
             raise ArgumentError(f"{owner} has no manipulator, and this command needs one: a <Manipulator> of a robot")
         names = [arm.GetName() for arm in arms]
         known = f"{owner} has {', '.join(names)}{did_you_mean(name or '', names)}"
-        raise ArgumentError(f"there is no manipulator '{name}'; {known}")
+        raise ArgumentError(f"--manip: there is no manipulator '{name}'; {known}")
     return chosen
 
 

@@ -6,6 +6,7 @@ Distances are squared, and exact for any ``eps``.
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Ints
@@ -18,7 +19,7 @@ _NONE = -1
 """Index that means no point."""
 
 
-class KDTree:
+class KDTree(ApiObject):
     """Set of points with nearest-neighbour searches.
 
     Args:
@@ -29,9 +30,9 @@ class KDTree:
 
     def __init__(self, n: "ArrayLike" = 0, dd: int = 0, bs: int = 1) -> None:
         del bs
-        self._points = np.zeros((int(np.asarray(n)), dd)) if np.ndim(n) == 0 else checked_numbers(n, "KDTree: points")
+        self._points = np.zeros((int(np.asarray(n)), dd)) if np.ndim(n) == 0 else checked_numbers(n, "KDTree: n")
         if self._points.ndim != 2:
-            raise ArgumentError(f"KDTree: points have shape {self._points.shape}, and should have shape (n, d)")
+            raise ArgumentError(f"KDTree: n has shape {self._points.shape}, and should have shape (n, d)")
 
     def __len__(self) -> int:
         return len(self._points)

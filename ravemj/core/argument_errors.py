@@ -13,7 +13,7 @@ from functools import cache, wraps
 from inspect import CO_VARARGS, CO_VARKEYWORDS, Parameter, formatannotation, signature
 from traceback import walk_tb
 from types import EllipsisType, FunctionType, MappingProxyType, NoneType
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -73,7 +73,8 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
 def explained(function: FunctionType) -> Callable[..., Any]:
     """Wrap a function so that an error of Python caused by a wrong argument type becomes a ``TypeError`` that names it.
 
-    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31).
+    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31). It takes numpy's arrays without dimensions for
+    numbers, so a call with such arrays that fails is repeated with their numbers.
     """
     if hasattr(function, _MARK):
         return function
@@ -82,17 +83,25 @@ def explained(function: FunctionType) -> Callable[..., Any]:
     def call(*args: Any, **kwargs: Any) -> Any:  # noqa: ANN401 - those of the function
         try:
             return function(*args, **kwargs)
-        except _PYTHONS_ERRORS as error:
-            message = None if isinstance(error, RavemjError) else _message(function, args, kwargs)
-            if message is not None:
-                raise TypeError(message) from error
-            named = _named(error, function, args, kwargs)
-            if named is None:
+        except (ArgumentError, *_PYTHONS_ERRORS) as error:
+            if any(map(_is_scalar_array, (*args, *kwargs.values()))):
+                return call(*map(_plain, args), **{name: _plain(value) for name, value in kwargs.items()})
+            clearer = _clearer(error, function, args, kwargs)
+            if clearer is None:
                 raise
-            raise named from error
+            raise clearer from error
 
     setattr(call, _MARK, True)
     return call
+
+
+def _is_scalar_array(value: object) -> bool:
+    return isinstance(value, np.ndarray) and value.ndim == 0
+
+
+def _plain(value: object) -> object:
+    """Return the number of an array without dimensions; other values as they are."""
+    return cast("np.ndarray[Any, Any]", value).item() if _is_scalar_array(value) else value
 
 
 def explain_methods(kind: type, skipped: Collection[str] = ()) -> None:
@@ -114,8 +123,20 @@ def _takes(method: FunctionType) -> bool:
     return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
 
 
-def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str | None:
-    """Return the message about the first argument with a wrong type; None if there is none."""
+def _clearer(
+    error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
+) -> Exception | None:
+    """Return an error that names the wrong argument; None if there is none, or if the error names it."""
+    if isinstance(error, ArgumentError):
+        known = {_caller(function, args), *signature(function).parameters} - {"self", "cls"}
+        wrong = None if _is_in(known, error) else _wrong_type(function, args, kwargs)
+        return None if wrong is None else ArgumentError(f"{wrong[0]}: {error.message}", error.errortype)
+    wrong = None if isinstance(error, RavemjError) else _wrong_type(function, args, kwargs)
+    return _named(error, function, args, kwargs) if wrong is None else TypeError(": ".join(wrong))
+
+
+def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[str, str] | None:
+    """Return the names of the function and of its first argument of a wrong type, and its description; else None."""
     try:
         given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
@@ -124,15 +145,15 @@ def _message(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, An
         parameter = given.signature.parameters[name]
         if name in {"self", "cls"} or parameter.kind in {Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD}:
             continue
-        if value is None and parameter.default is None:  # an alias of types may hold None
-            continue
+        if value is None and (parameter.default is None or NoneType in get_args(parameter.annotation)):
+            continue  # an alias of types may hold None
         kinds = _kinds(parameter.annotation)
         if not any(_is_of(value, kind) for kind in kinds):
             description = "None" if value is None else f"of type {type(value).__name__}"
             wanted = " or ".join(
                 dict.fromkeys(_KINDS[kind][0] if kind in _KINDS else _with_article(kind) for kind in kinds)
             )
-            return f"{_caller(function, args)}: {name}: is {description}, and should be {wanted}"
+            return f"{_caller(function, args)}: {name}", f"is {description}, and should be {wanted}"
     return None
 
 
@@ -146,11 +167,16 @@ def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwar
     except TypeError:
         return None
     given = {name: value for name, value in given.items() if name not in {"self", "cls"}}
-    if not given or any(name in str(error) for name in given):
+    if not given or _is_in(given, error):
         return None
     values = ", ".join(f"{name}={reprlib.repr(value)}" for name, value in given.items())
     kind = next(base for base in type(error).__mro__ if base.__module__ == "builtins")  # numpy's take other arguments
     return kind(f"{_caller(function, args)}: {error}; given {values}")
+
+
+def _is_in(names: Iterable[str], error: Exception) -> bool:
+    """Return whether the message of an error has one of the names as a word."""
+    return any(re.search(rf"\b{name}\b", str(error)) for name in names)
 
 
 def _caller(function: FunctionType, args: tuple[Any, ...]) -> str:

@@ -1,11 +1,10 @@
 """Checks of arguments that are not arrays."""
 
+import operator
 from collections.abc import Callable
 from functools import wraps
 from inspect import Parameter, cleandoc, signature
 from typing import ParamSpec, TypeVar
-
-import numpy as np
 
 from ravemj.errors import ArgumentError
 
@@ -54,6 +53,18 @@ def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name:
     return thing
 
 
+def checked_integer(number: int, name: str) -> int:
+    """Return a whole number of Python or numpy as Python's; errors call it ``name``.
+
+    Raises:
+        ArgumentError: it is not a whole number.
+    """
+    try:
+        return operator.index(number)
+    except TypeError:
+        return checked_kind(number, int, name, "a whole number")
+
+
 def checked_index(index: int, count: int, name: str) -> int:
     """Check an index and return it; errors call it ``name``.
 
@@ -61,7 +72,7 @@ def checked_index(index: int, count: int, name: str) -> int:
         ArgumentError: it is not a whole number from 0 to ``count - 1``.
     """
     if type(index) is not int:
-        checked_kind(index, (int, np.integer), name, "a number")
+        index = checked_integer(index, name)
     if not 0 <= index < count:
         raise ArgumentError(f"{name} is {index}, and should be from 0 to {count - 1}")
     return index

@@ -63,7 +63,7 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     Raises:
         ArgumentError: it has another length, or a number is not finite.
     """
-    if type(values) is np.ndarray and values.dtype is FLOAT:
+    if type(values) is np.ndarray and values.dtype is FLOAT and values.ndim:
         vector: Floats = values.copy()
     else:
         vector = checked_numbers(values, name)
@@ -144,7 +144,7 @@ def checked_point(values: ArrayLike, name: str) -> Floats:
     return checked_vector(given, 3, name)
 
 
-def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:
+def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "indices") -> Ints:
     """Return indices as an array; None means no index, ``...`` all.
 
     Raises:

@@ -28,6 +28,12 @@ class NamedInt(IntEnum, metaclass=_Listed):
 
     __str__ = Enum.__str__
 
+    @classmethod
+    def _missing_(cls, value: object) -> Enum | None:
+        """Raise Python's error with the name of the argument."""
+        wanted = "the number of a member" if isinstance(value, int) else "a whole number"
+        raise ValueError(f"{cls.__name__}: value: is {value!r}, and should be {wanted}")
+
 
 class NamedFlag(NamedInt):
     """Flags: ``|``, ``&``, ``^`` and ``~`` give whole numbers, as in OpenRAVE, and any whole number makes a flag.
@@ -39,7 +45,7 @@ class NamedFlag(NamedInt):
     def _missing_(cls, value: object) -> Enum | None:
         """Return a flag that is not a member, such as a combination of two; its name lists its parts."""
         if not isinstance(value, int):
-            return None
+            return super()._missing_(value)
         parts = [member for member in cls if member and member & value == member]
         unnamed = reduce(lambda rest, part: rest & ~part, parts, value)
         flag = int.__new__(cls, value)

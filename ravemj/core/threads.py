@@ -2,7 +2,7 @@
 
 import os
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import checked_integer
 from ravemj.errors import ArgumentError
 
 _chosen = 0
@@ -22,9 +22,10 @@ def set_batch_threads(count: int) -> None:
         >>> ravemj.set_batch_threads(1)
     """
     global _chosen  # noqa: PLW0603 - a setting of the process
-    if checked_kind(count, int, "set_batch_threads: count", "an integer") < 0:
-        raise ArgumentError(f"set_batch_threads: count is {count}; expected 0 for all processors, or more")
-    _chosen = int(count)
+    number = checked_integer(count, "set_batch_threads: count")
+    if number < 0:
+        raise ArgumentError(f"set_batch_threads: count is {number}; expected 0 for all processors, or more")
+    _chosen = number
 
 
 def batch_threads() -> int:

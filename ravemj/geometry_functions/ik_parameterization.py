@@ -227,11 +227,6 @@ def goal_distance_squared(kind: IkParameterizationType, first: Floats, second: F
     return _squared_length(first - second)
 
 
-def has_point(kind: IkParameterizationType) -> bool:
-    """Return whether the last three values of a goal type are a point."""
-    return kind == _Type.Transform6D or kind in _WITH_POINT
-
-
 def goal_pose(values: Floats) -> Pose:
     """Convert values of a goal to a pose."""
     x, y, z = values[4:].tolist()

@@ -36,7 +36,7 @@ def quatFromAxisAngle(
         >>> quatFromAxisAngle([0, 0, 1], numpy.pi / 2)
         array([0.70710678, 0.        , 0.        , 0.70710678])
     """
-    return np.array(_turn(axisangle if axis is None else axis, angle))
+    return np.array(_turn(axisangle, angle, axis))
 
 
 def rotationMatrixFromAxisAngle(
@@ -46,7 +46,7 @@ def rotationMatrixFromAxisAngle(
 
     The arguments ``axisangle``, ``angle`` and ``axis`` are as for ``quatFromAxisAngle``.
     """
-    return np.array(rows_from_wxyz(_turn(axisangle if axis is None else axis, angle)))
+    return np.array(rows_from_wxyz(_turn(axisangle, angle, axis)))
 
 
 def matrixFromAxisAngle(
@@ -60,13 +60,14 @@ def matrixFromAxisAngle(
         >>> T = matrixFromAxisAngle([0, 0, numpy.pi / 2])
         >>> T[0:3, 3] = [1, 2, 3]
     """
-    return _transform(_turn(axisangle if axis is None else axis, angle))
+    return _transform(_turn(axisangle, angle, axis))
 
 
-def _turn(axis: ArrayLike | None, angle: float | None) -> Wxyz:
-    if axis is None:
+def _turn(axisangle: ArrayLike | None, angle: float | None, axis: ArrayLike | None) -> Wxyz:
+    given, name = (axisangle, "axisangle") if axis is None else (axis, "axis")
+    if given is None:
         raise ArgumentError("axisangle: is missing, and should have shape (3,)")
-    vector = arguments.vec3(axis, "axisangle")
+    vector = arguments.vec3(given, name)
     return wxyz_from_axis_angle(vector, math.hypot(*vector) if angle is None else float(angle))
 
 

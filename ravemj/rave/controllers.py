@@ -88,7 +88,7 @@ class Controller(Interface):
         Returns:
             True.
         """
-        indices = None if dofindices is None else checked_indices(dofindices, robot.GetDOF())
+        indices = None if dofindices is None else checked_indices(dofindices, robot.GetDOF(), "dofindices")
         with robot.simulation_state.simulation.lock:
             self._attached_robot, self._dofs, self._moves_base = robot, indices, bool(controltransform)
             self.Reset()
@@ -521,7 +521,7 @@ class MultiController(Controller):
                 moves the base.
         """
         robot = self._robot
-        dofs = checked_indices(dofindices, robot.GetDOF())
+        dofs = checked_indices(dofindices, robot.GetDOF(), "dofindices")
         own = self._robot_dofs().tolist()
         taken = {int(dof) for part in self._parts for dof in part.controller.GetControlDOFIndices()}
         for dof in dofs.tolist():

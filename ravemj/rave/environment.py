@@ -163,7 +163,7 @@ class Environment(Loading, Saving, Viewing):
         if timeout is None:
             self._simulation.lock.hold()
             return None
-        return self._simulation.lock.hold(max(0.0, timeout))
+        return self._simulation.lock.hold(max(0.0, float(timeout)))
 
     LockPhysics = Lock
 

@@ -46,7 +46,7 @@ def full_values(
                 f"numbers, or dofindices"
             )
         return np.zeros(0)
-    indices = checked_indices(dofindices, dof)
+    indices = checked_indices(dofindices, dof, "dofindices")
     if given.ndim != 1 or len(given) < len(indices):
         raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
     full = kinematics.values()

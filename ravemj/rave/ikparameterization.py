@@ -23,7 +23,6 @@ from ravemj.geometry_functions.ik_parameterization import (
     goal_moved_in_its_frame,
     goal_pose,
     goal_ray,
-    has_point,
     length_scales,
     moved_custom_values,
     moved_goal,
@@ -42,6 +41,17 @@ _ANGLES = {
     _Type.TranslationZAxisAngleYNorm4D: "heading of the direction about y, from z",
 }
 """Goal types that consist of a point and an angle."""
+
+_ROTATION_SIZES = {
+    _Type.Transform6D: 4,
+    _Type.Rotation3D: 4,
+    _Type.Direction3D: 3,
+    _Type.Ray4D: 3,
+    _Type.TranslationDirection5D: 3,
+    _Type.TranslationLocalGlobal6D: 3,
+    **dict.fromkeys(_ANGLES, 1),
+}
+"""Number of values of each goal type that OpenRAVE stores in place of the quaternion; 0 of the others."""
 
 _SET = """Set the goal to a point and the {angle}.
 
@@ -63,7 +73,8 @@ def _with_angles(goals: type["GoalValues"]) -> type["GoalValues"]:
 
 def _point_and_angle(kind: IkParameterizationType) -> tuple[Callable[..., None], Callable[..., tuple[Floats, float]]]:
     def set_(self: "GoalValues", translation: ArrayLike, angle: float) -> None:
-        self._set(kind, [translation, angle])
+        point = checked_numbers(translation, f"Set{kind.name}: translation")
+        self._set(kind, [point, *checked_numbers(angle, f"Set{kind.name}: angle")])
 
     def get(self: "GoalValues") -> tuple[Floats, float]:
         values = self._of(kind)
@@ -74,7 +85,10 @@ def _point_and_angle(kind: IkParameterizationType) -> tuple[Callable[..., None],
 
 @_with_angles
 class GoalValues(ApiObject):
-    """Type and values of an IK goal."""
+    """Type and values of an IK goal.
+
+    As in OpenRAVE, getters do not check the type: ``GetTranslation3D`` of a pose is its position.
+    """
 
     _type: IkParameterizationType
     _values: Floats
@@ -84,9 +98,18 @@ class GoalValues(ApiObject):
         self._type = kind
 
     def _of(self, kind: IkParameterizationType) -> Floats:
-        if self._type != kind:
-            raise ArgumentError(f"the goal is of type {self._type.name}, and not {kind.name}")
-        return self._values.copy()
+        """Return the values of a goal type.
+
+        OpenRAVE stores a goal of any type as a quaternion and a point, and reads the values of any type from these.
+        """
+        if self._type == kind:
+            return self._values.copy()
+        stored, own, asked = np.eye(1, 7)[0], *(_ROTATION_SIZES.get(one, 0) for one in (self._type, kind))
+        stored[:own] = self._values[:own]
+        stored[4 : 4 + len(self._values) - own] = self._values[own:]
+        if kind == _Type.Transform6D and not stored[:4].any():
+            raise ArgumentError(f"the goal is of type {self._type.name}, and has no rotation")
+        return np.concatenate([stored[:asked], stored[4 : 4 + goal_size(kind) - asked]])
 
     def SetTransform6D(self, transform: ArrayLike) -> None:
         """Set the goal to a pose ``transform``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
@@ -113,8 +136,8 @@ class GoalValues(ApiObject):
         self._set(_Type.Translation3D, pos)
 
     def GetTranslation3D(self) -> Floats:
-        """Return the point [m] of a goal of any type that has one, shape (3,)."""
-        return self._values[-3:].copy() if has_point(self._type) else self._of(_Type.Translation3D)
+        """Return the point [m], shape (3,)."""
+        return self._of(_Type.Translation3D)
 
     def SetDirection3D(self, dir: ArrayLike) -> None:
         """Set the goal to the direction ``dir``, a unit vector, shape (3,)."""

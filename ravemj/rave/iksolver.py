@@ -2,11 +2,10 @@
 
 # ruff: noqa: PLC0415 - inverse kinematics is slow to import
 
-import logging
-import operator
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+import weakref
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,8 +21,9 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedErro
 from ravemj.geometry_functions.affine import Z_AXIS
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
-from ravemj.manipulation.arm_search import ArmSearch, Checks, Reason
+from ravemj.manipulation.arm_search import ArmSearch, Reason
 from ravemj.rave.enums import IkFilterOptions, IkReturnAction, InterfaceType
+from ravemj.rave.ik_options import checks_of, split_options
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
 from ravemj.rave.interface import Interface
 from ravemj.rave.solver_names import numbers_in
@@ -37,17 +37,12 @@ if TYPE_CHECKING:
     from ravemj.rave.robot import Robot
 
 
-_LOG = logging.getLogger("ravemj")
+_SAME = 1e-7
+"""Largest difference of joint values [rad or m] of one posture."""
 _NEAR = 1e-4
 """Largest squared distance between the goal and the configuration that ``CallFilters`` accepts."""
 
-# Plain numbers: operators of flags take longer than tests of collision.
-_CHECK_ENV = int(IkFilterOptions.CheckEnvCollisions)
-_IGNORE_SELF = int(IkFilterOptions.IgnoreSelfCollisions)
-_IGNORE_LIMITS = int(IkFilterOptions.IgnoreJointLimits)
 _IGNORE_FILTERS = int(IkFilterOptions.IgnoreCustomFilters)
-_IGNORE_END = int(IkFilterOptions.IgnoreEndEffectorEnvCollisions)
-_IGNORE_END_SELF = int(IkFilterOptions.IgnoreEndEffectorSelfCollisions)
 _POSE = IkParameterization.Type.Transform6D
 _REJECT, _QUIT, _BY_FILTER = 1, 2, int(IkReturnAction.RejectCustomFilter)
 
@@ -73,17 +68,6 @@ class Filter:
 
     priority: int
     function: FilterFunction
-
-
-def checks_of(options: int) -> Checks:
-    """Return the tests that ``IkFilterOptions`` select."""
-    return Checks(
-        others=bool(options & _CHECK_ENV),
-        itself=not options & _IGNORE_SELF,
-        limits=not options & _IGNORE_LIMITS,
-        end_and_others=not options & _IGNORE_END,
-        end_and_rest=not options & _IGNORE_END_SELF,
-    )
 
 
 class Goal(NamedTuple):
@@ -126,6 +110,7 @@ class FilteredSearch(ArmSearch):
         self._started = 0 if failures is None else len(failures)
         self._action = 0
         self._answer = IkReturn(IkReturnAction.Success)
+        self._seen: list[Floats] = []
 
     @cached_property
     def _goal_of_users(self) -> IkParameterization:
@@ -148,7 +133,16 @@ class FilteredSearch(ArmSearch):
         """Call the filters with a priority above 0 if ``before_collisions``, else the others."""
         if before_collisions:
             self._answer = IkReturn(IkReturnAction.Success)
+            self._seen.append(row)
         return self._pass([filter_ for filter_ in self._filters if (filter_.priority > 0) == before_collisions], row)
+
+    def is_repeated(self) -> bool:
+        """Return whether the present joint values differ by whole turns alone from values that filters saw before."""
+        if not self._seen:
+            return False
+        moved = np.reshape(self._seen[:-1], (-1, len(self._seen[-1]))) - self._seen[-1]
+        turned = np.where(self.solver.chain.prismatic, moved, np.remainder(moved + np.pi, 2 * np.pi) - np.pi)
+        return bool((np.abs(turned) < _SAME).all(axis=1).any())
 
     def _pass(self, filters: Iterable[Filter], row: Floats) -> bool:
         """Call filters for a solution, and collect the data that they attach."""
@@ -283,6 +277,7 @@ class IkSolver(Interface):
         self._custom_filter: Handle | None = None
         self._robot: Robot | None = None
         self._arm_name = ""
+        self._latest: Callable[[], FilteredSearch | None] = lambda: None
 
     # Commands
 
@@ -302,11 +297,13 @@ class IkSolver(Interface):
         return ""
 
     def _repeat_count(self, arguments: str) -> str:
-        """Return 0, the count of equal link poses between two filter calls: the links always move."""
+        """Return 1 in a filter that was called with the same link poses before in this search, else 0."""
         del arguments
-        return "0"
+        search = self._latest()
+        return str(int(search is not None and search.is_repeated()))
 
     def _solution_indices(self, arguments: str) -> str:
+        """Raise: the numbers are those of the branches in the C++ code that OpenRAVE's ikfast generates for an arm."""
         del arguments
         remedy = "solutions are told apart by their joint values: FindIKSolutions returns them all"
         raise UnsupportedError(f"GetSolutionIndices ({remedy})", "numbering of the branches of a solver")
@@ -411,7 +408,9 @@ class IkSolver(Interface):
     ) -> FilteredSearch:
         solver, numbers = self.derived(), self._numbers(goal)
         free = self._free_values(solver, shares)
-        return FilteredSearch(self._arm, solver, Goal(goal, numbers), free, options, self._filters, failures)
+        search = FilteredSearch(self._arm, solver, Goal(goal, numbers), free, options, self._filters, failures)
+        self._latest = weakref.ref(search)
+        return search
 
     def find_one(
         self,
@@ -591,29 +590,3 @@ class IkSolver(Interface):
 
     def __repr__(self) -> str:
         return f"RaveCreateIkSolver({self._env!r}, {self._xmlid!r})"
-
-
-_OPTIONS = "filteroptions"
-
-
-def split_options(
-    caller: str, arguments: Sequence[object], named: Mapping[str, object], free_name: str = "freeparameters"
-) -> tuple[ArrayLike | None, int]:
-    """Return free joint values, or None, and ``IkFilterOptions`` from ``([freeparameters,] filteroptions)``.
-
-    Raises:
-        TypeError: the options are missing, or there are other arguments.
-    """
-    names = [free_name, _OPTIONS] if len(arguments) > 1 or free_name in named else [_OPTIONS]
-    given = dict(zip([name for name in names if name not in named], arguments, strict=False)) | dict(named)
-    unknown = given.keys() - {free_name, _OPTIONS}
-    if unknown:
-        raise TypeError(f"{caller}: has no argument {', '.join(unknown)}")
-    if _OPTIONS not in given or len(given) != len(arguments) + len(named):
-        raise TypeError(f"{caller}: takes param, the goal, [{free_name},] {_OPTIONS}; see IkFilterOptions")
-    options = given[_OPTIONS]
-    try:
-        number = operator.index(cast("int", options))
-    except TypeError:
-        raise TypeError(f"{caller}: {_OPTIONS} are {options!r}, and should be IkFilterOptions or 0") from None
-    return cast("ArrayLike | None", given.get(free_name)), number

@@ -18,20 +18,20 @@ _PLUGINS = """
 """OpenRAVE's and or_urdf's plugins whose features ravemj includes."""
 
 
-def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) -> int:
+def RaveInitialize(load_all_plugins: bool = True, level: int | None = None) -> int:
     """Create the folder of ``RaveGetHomeDirectory()`` and set the log level; importing has initialized everything else.
 
     If the folder cannot be created, a warning is logged.
 
     Args:
         load_all_plugins: Not used; there are no plugins.
-        level: As of ``RaveSetDebugLevel``.
+        level: As of ``RaveSetDebugLevel``; by default ``Info``.
 
     Returns:
         0 for success.
     """
     del load_all_plugins
-    logs.RaveSetDebugLevel(level)
+    logs.RaveSetDebugLevel(DebugLevel.Info if level is None else level)
     try:
         os.makedirs(RaveGetHomeDirectory(), exist_ok=True)
     except (OSError, RuntimeError) as error:  # Path.home raises RuntimeError if the user has no home folder

@@ -221,7 +221,7 @@ def _recorded(env: "Environment", bodies: Sequence[BodyState], motion: BodyMotio
         rows.append((data.xpos.copy(), data.xquat.copy(), np.concatenate([*values, np.zeros(0)])))
     joints = [joint for body in bodies for joint in body.scene.joints]
     return Recording(
-        fps,
+        float(fps),
         np.array([row[0] for row in rows]),
         np.array([row[1] for row in rows]),
         np.array([row[2] for row in rows]),

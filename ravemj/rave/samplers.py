@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj.core.arguments import also_named
+from ravemj.core.arguments import also_named, checked_index
 from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -47,13 +47,8 @@ class SpaceSampler(Interface):
         self._sequence = sequence
 
     def SetSeed(self, seed: int) -> None:
-        """Restart the sequence: equal values of ``seed`` give equal sequences, though not those of OpenRAVE.
-
-        For Halton's sequence, it is the index of the next point.
-        """
-        if index(seed) < 0:
-            raise ArgumentError(f"SetSeed: seed is {seed}, and should not be negative")
-        self._sequence.start(index(seed))
+        """Restart the sequence: equal values of ``seed`` give equal sequences. Halton's sequence goes on."""
+        self._sequence.start(checked_index(seed, 2**32, "SetSeed: seed"))
 
     def SetSpaceDOF(self, dof: int) -> None:
         """Set the number of dimensions, ``dof``.
@@ -156,13 +151,13 @@ class SpaceSampler(Interface):
 
 
 class _Random:
-    """Independent, uniformly distributed samples."""
+    """Independent, uniformly distributed samples of the standard Mersenne Twister, seeded as in OpenRAVE."""
 
     kinds = frozenset(SampleDataType)
     """The kinds of numbers."""
 
     def __init__(self) -> None:
-        self._generator = np.random.Generator(np.random.MT19937())
+        self._generator = np.random.RandomState()  # newer generators seed in another way
         self._dof = 1
 
     def dof(self) -> int:
@@ -176,16 +171,16 @@ class _Random:
         return np.zeros(self._dof), np.ones(self._dof)
 
     def start(self, seed: int) -> None:
-        self._generator = np.random.Generator(np.random.MT19937(seed))
+        self._generator.seed(seed)
 
     def reals(self, count: int) -> Floats:
         """Return the next points, shape (count, dof)."""
         lower, upper = self.limits()
-        return self._generator.uniform(lower, upper, (count, len(lower)))
+        return lower + (upper - lower) * (self.integers(count) / 2**32)
 
     def integers(self, count: int) -> NDArray[np.uint32]:
         """Return the next points as integers, shape (count, dof)."""
-        return self._generator.integers(0, 2**32, (count, self._dof), dtype=np.uint32)
+        return self._generator.randint(0, 2**32, (count, self.dof()), dtype=np.uint32)
 
 
 class _Halton(_Random):
@@ -198,7 +193,7 @@ class _Halton(_Random):
         self._dof, self._next = dof, 0
 
     def start(self, seed: int) -> None:
-        self._next = seed
+        pass
 
     def reals(self, count: int) -> Floats:
         points = halton(self._next, count, self._dof)

@@ -346,7 +346,7 @@ class Trajectory(Interface):
     def serialize(self, options: int | None = 0) -> bytes:
         """Return the trajectory in OpenRAVE's format: binary, or XML in UTF-8 if ``options`` are 0x8000."""
         stored = Stored(self.waypoints, self.GetDescription())
-        return to_text(stored, self._xmlid).encode() if (options or 0) & AS_TEXT else to_bytes(stored)
+        return to_text(stored, self._xmlid).encode() if int(options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:
         """Replace this trajectory by ``data``, which ``serialize`` returned, and return it.

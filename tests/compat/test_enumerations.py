@@ -96,10 +96,10 @@ def test_flags_are_made_of_any_number():
     assert len(IkReturnAction) == len(list(IkReturnAction)) == 10
     assert SaveParameters(~SaveParameters.LinkEnable) & SaveParameters.LinkEnable == 0
     for wrong in ("x", None, 1.5):
-        with pytest.raises(ValueError, match="is not a valid IkReturnAction"):
+        with pytest.raises(ValueError, match=r"IkReturnAction: value: is .*, and should be a whole number"):
             IkReturnAction(wrong)
 
 
 def test_other_numbers_of_lists_are_refused():
-    with pytest.raises(ValueError, match="99 is not a valid GeometryType"):
+    with pytest.raises(ValueError, match="GeometryType: value: is 99, and should be the number of a member"):
         ravemj.GeometryType(99)

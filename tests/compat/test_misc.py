@@ -60,7 +60,8 @@ def test_axes_of_nothing_say_so():
 
 
 def test_a_circle_goes_round_its_normal():
-    points, _, _ = misc.DrawCircle(Canvas(), [1, 2, 3], [0, 1, 2], 0.5)
+    points, _, colour = misc.DrawCircle(Canvas(), [1, 2, 3], [0, 1, 2], 0.5, colors=None)
+    assert list(colour) == [0, 0, 0]
     arms = points - [1, 2, 3]
     np.testing.assert_allclose(np.linalg.norm(arms, axis=1), 0.5)
     np.testing.assert_allclose(arms @ [0, 1, 2], 0, atol=1e-12)

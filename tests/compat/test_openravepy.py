@@ -103,6 +103,8 @@ def test_a_planner_status_is_old_and_new(name):
 
 
 def test_initialize_and_destroy():
+    assert ravemj.RaveInitialize(True, level=None) == 0
+    assert ravemj.RaveGetDebugLevel() == ravemj.DebugLevel.Info
     assert ravemj.RaveInitialize(True, level=ravemj.DebugLevel.Warn) == 0
     assert ravemj.RaveGetDebugLevel() == ravemj.DebugLevel.Warn
     env = ravemj.load("models/env.xml")

@@ -267,6 +267,31 @@ def test_interfaces_by_kind(env, robot):
         ravemj.SensorSystem(env)
 
 
+@pytest.mark.parametrize(
+    ("seed", "first"), [(42, [1608637542, 3421126067, 4083286876, 787846414]), (5489, [3499211612, 581869302])]
+)
+def test_random_samplers_are_the_standard_mersenne_twister(seed, first, env):
+    sampler = ravemj.RaveCreateSpaceSampler(env, "MT19937")
+    sampler.SetSpaceDOF(2)
+    sampler.SetSeed(seed)
+    whole = sampler.SampleSequence(ravemj.SampleDataType.Uint32, len(first) // 2)
+    assert whole.tolist() == first
+    sampler.SetSeed(np.int64(seed))
+    reals = sampler.SampleSequence2D(ravemj.SampleDataType.Real, len(first) // 2)
+    np.testing.assert_array_equal(reals, whole.reshape(-1, 2) / 2**32)
+
+
+def test_a_seed_does_not_move_haltons_sequence(env):
+    sampler = ravemj.RaveCreateSpaceSampler(env, "Halton")
+    sampler.SetSpaceDOF(2)
+    first = sampler.SampleSequence2D(ravemj.SampleDataType.Real, 1).tolist()
+    sampler.SetSeed(7)
+    second = sampler.SampleSequence2D(ravemj.SampleDataType.Real, 1).tolist()
+    sampler.SetSpaceDOF(3)
+    again = sampler.SampleSequence2D(ravemj.SampleDataType.Real, 1).tolist()
+    assert (first, second, again) == ([[0, 0]], [[1 / 2, 1 / 3]], [[0, 0, 0]])
+
+
 def test_random_samplers_repeat_and_stay_inside(env, robot):
     sampler = ravemj.RaveCreateSpaceSampler(env, "MT19937")
     sampler.SetSpaceDOF(3)

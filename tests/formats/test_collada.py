@@ -230,6 +230,18 @@ class TestTraps:
         z = np.subtract(turned, body.joints[0].T_parent_child.position)
         np.testing.assert_allclose(body.joints[0].axes[0].direction, z, atol=1e-15)
 
+    @pytest.mark.parametrize("turn", ["", "<rotate>0 0 1 90</rotate>", "<rotate>1 0 0 30</rotate>"])
+    def test_a_slider_that_cannot_move_keeps_its_axis_in_the_parent(self, turn):
+        """The axis of a hinge that cannot move is z of its child; turning the child changes no slider's axis."""
+        slider = [("<revolute sid", "<prismatic sid"), ("</revolute>", "</prismatic>"), ("<axis>0 0 2", "<axis>2 0 0")]
+        slider += [('<link sid="link1" name="upper arm">', f'<link sid="link1" name="upper arm">{turn}')]
+        old = "<limits><min><param>low</param></min><max><float>45</float></max></limits>"
+        new = "<limits><min><float>1</float></min><max><float>-1</float></max></limits>"
+        moving, welded = arm(*slider).joints[0], arm(*slider, (old, new)).joints[0]
+        assert (welded.static, welded.axes[0].lower, welded.axes[0].upper) == (True, 0, 0)
+        np.testing.assert_allclose(welded.axes[0].direction, moving.axes[0].direction, atol=1e-15)
+        np.testing.assert_allclose(welded.anchor, welded.T_parent_child.position, atol=1e-15)
+
     @pytest.mark.parametrize(
         ("ambient", "diffuse", "transparency", "expected"),
         [

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 import ravemj
 from ravemj import IkParameterization, Ray, misc
+from ravemj.geometry_functions.ik_types import GOAL_TYPES
 
 Type = IkParameterization.Type
 numbers = st.lists(st.floats(-2, 2), min_size=7, max_size=7).filter(lambda row: sum(x * x for x in row[:4]) > 0.1)
@@ -109,7 +110,6 @@ def test_getters_and_setters_of_all_types():
 def test_what_cannot_be_says_so_and_changes_nothing():
     goal = IkParameterization([1, 2, 3], Type.Translation3D)
     for wrong in (
-        goal.GetTransform6D,
         lambda: goal.SetRotation3D([1, 2]),
         lambda: goal.SetValues([1, 2], Type.Ray4D),
         lambda: goal.SetCustomValues("two words", [1]),
@@ -123,6 +123,34 @@ def test_what_cannot_be_says_so_and_changes_nothing():
     with pytest.raises(ravemj.openrave_exception, match="own frame") as caught:
         ray.MultiplyTransformRight(SHIFT)
     assert (caught.value.GetCode(), str(ray)) == ("Failed", before)
+
+
+def test_getters_do_not_check_the_type():
+    place = IkParameterization([1, 2, 3], Type.Translation3D)
+    np.testing.assert_array_equal(place.GetTransform6D()[:3], [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3]])
+    assert place.GetRotation3D().tolist() == [1, 0, 0, 0]
+    assert place.GetLookat3D().tolist() == place.GetTranslationXYOrientation3D().tolist() == [1, 2, 3]
+    assert place.GetTranslationXY2D().tolist() == [1, 2]
+    pose_ = IkParameterization([0.5, 0.5, -0.5, 0.5, 1, 2, 3], Type.Transform6D)
+    assert pose_.GetTranslation3D().tolist() == [1, 2, 3]
+    assert pose_.GetRotation3D().tolist() == [0.5, 0.5, -0.5, 0.5]
+    ray = IkParameterization(Ray([1, 2, 3], [0, 0.6, 0.8]), Type.TranslationDirection5D)
+    assert ray.GetDirection3D().tolist() == ray.GetRay4D().dir().tolist() == [0, 0.6, 0.8]
+    assert ray.GetTranslation3D().tolist() == ray.GetRay4D().pos().tolist() == [1, 2, 3]
+    angle = IkParameterization([[1, 2, 3], 0.5], Type.TranslationZAxisAngle4D)
+    point, turn = angle.GetTranslationXAxisAngleZNorm4D()
+    assert (point.tolist(), turn, angle.GetTranslation3D().tolist()) == ([1, 2, 3], 0.5, [1, 2, 3])
+    direction = IkParameterization([0, 0.6, 0.8], Type.Direction3D)
+    assert direction.GetTranslation3D().tolist() == [0, 0, 0]
+    assert IkParameterization([1, 2], Type.TranslationXY2D).GetTranslation3D().tolist() == [1, 2, 0]
+    assert IkParameterization().GetTranslation3D().tolist() == [0, 0, 0]
+
+
+@pytest.mark.parametrize("kind", [*goals(np.eye(4)), Type.none], ids=lambda kind: kind.name)
+def test_every_getter_reads_every_type(kind):
+    goal = IkParameterization() if kind == Type.none else IkParameterization(goals(SHIFT)[kind], kind)
+    for other in GOAL_TYPES:
+        assert getattr(goal, f"Get{other.name}")() is not None
 
 
 def test_pairs_of_points_and_of_a_point_and_an_angle():

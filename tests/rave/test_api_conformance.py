@@ -50,7 +50,10 @@ MISTAKES = {
     "dynamics-11-mimic": (r"b\[0\]", "OpenRAVE leaves out what accelerates the follower"),
     "gap-03-wrong-shapes": (r"manipulator$", "numbers of manipulators are taken here, as in old scripts"),
     "gap-04-arrays-that-are-too-long": (r"a\[4\]", "OpenRAVE leaves out what accelerates the follower"),
-    "ik-10-param-distance": (r"Lookat3D\[0\]", "OpenRAVE leaves out what is along a direction that nobody can set"),
+    "ik-10-param-distance": (
+        r"Lookat3D\[0\]",
+        "OpenRAVE leaves out what is along x, turned as the argument was, so (1, 0, 0) and (5, 0, 0) have no distance",
+    ),
     "info-23-extract-and-init": ("limits-before-add", "OpenRAVE counts no DOFs of a body that is not added yet"),
     "world-14-rave-environment-ids": ("destroyed|number", "OpenRAVE goes on listing environments that are destroyed"),
     "gap-18-unnamed-bodies": ("anonymous", "see REPLACED"),

@@ -125,6 +125,32 @@ class TestInverseKinematicsModel:
             with pytest.raises(ravemj.openrave_exception, match="3 numbers above 0"):
                 solver.SendCommand(f"SetFreeIncrements {wrong}")
 
+    @pytest.mark.parametrize(("joints", "range_"), [(range(6), 3), ([5], 6), ([3], 8), ([3, 5], 6), ([0, 3, 5], 9)])
+    def test_filters_learn_whether_they_saw_the_link_poses_before(self, joints, range_, puma):
+        """The solver's command counts turns of joints whose range is more than one turn, as its help promises."""
+        manip = puma.GetActiveManipulator()
+        assert InverseKinematicsModel(puma, ravemj.IkParameterizationType.Transform6D).load()
+        lower, upper = puma.GetDOFLimits()
+        lower[[*joints]], upper[[*joints]] = -range_, range_
+        puma.SetDOFLimits(lower, upper)
+        puma.SetDOFValues([0.3, -0.7, 0.5, 0.4, 0.8, -0.6])
+        solver, told = manip.GetIkSolver(), []
+
+        def count(values, arm, goal):
+            told.append((values, solver.SendCommand("GetRobotLinkStateRepeatCount")))
+            return ravemj.IkReturnAction.Success
+
+        handle = solver.RegisterCustomFilter(0, count)
+        rows = manip.FindIKSolutions(manip.GetTransform(), 0)
+        postures = {tuple(np.round(np.exp(1j * row), 6)) for row in rows}
+        assert len(told) == len(rows) == len(postures) + sum(answer == "1" for _, answer in told)
+        assert (len(rows) > len(postures)) == (range_ > np.pi)
+        for index, (values, answer) in enumerate(told):
+            seen = any(np.allclose(np.exp(1j * values), np.exp(1j * earlier)) for earlier, _ in told[:index])
+            assert answer == str(int(seen))
+        assert solver.SendCommand("GetRobotLinkStateRepeatCount") == "0"
+        handle.Close()
+
 
 class TestPlanning:
     @pytest.mark.parametrize("static", [1, 3, 6])

@@ -56,7 +56,7 @@ class SolvedJoints(DatabaseGenerator):
         del forceikfast, checkpreemptfn
         owner = manip.GetRobot() if robot is None and manip is not None else robot
         if not isinstance(owner, Robot):
-            raise ValueError("InverseKinematicsModel: give a robot or a manipulator")
+            raise ValueError("InverseKinematicsModel: give a robot or a manipulator (robot, manip)")
         super().__init__(owner)
         arm = manip or owner.GetActiveManipulator()
         if arm is None:

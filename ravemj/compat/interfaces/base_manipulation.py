@@ -110,7 +110,8 @@ class BaseManipulation(Helper):
         dof = self.robot.GetActiveDOF()
         regions = [member for member in several(goals, "goals") if is_region(member)]
         rows = None if goals is None else [member for member in goals if not is_region(member)]
-        wanted, starts = _rows("goal", goal, rows, dof), _rows("initialconfigs", None, initialconfigs, dof)
+        wanted = _rows("goal" if goals is None else "goals", goal, rows, dof)
+        starts = _rows("initialconfigs", None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
         effort = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength, certify=certify)
         if regions and certify is None:
@@ -158,7 +159,7 @@ class BaseManipulation(Helper):
             AssertionError: the number of values of a goal is wrong.
         """
         del releasegil
-        wanted = _rows("goal", goal, goals, len(self._base.arm().description.arm_dofs))
+        wanted = _rows("goal" if goals is None else "goals", goal, goals, len(self._base.arm().description.arm_dofs))
         effort = given(maxiter=maxiter, maxtries=maxtries, jitter=jitter, steplength=steplength, certify=certify)
         traj = self._base.move_manipulator(wanted, chosen(JointMotion, effort))
         return self._done(traj, execute, outputtraj, outputtrajobj)

@@ -67,7 +67,7 @@ def DrawCircle(
     normal: ArrayLike,
     radius: float,
     linewidth: float = 1,
-    colors: ArrayLike = (0, 0, 0),
+    colors: ArrayLike | None = None,
 ) -> object:
     """Draw a circle; return the handle of the line.
 
@@ -77,14 +77,14 @@ def DrawCircle(
         normal: The normal of its plane, shape (3,).
         radius: Radius [m].
         linewidth: Width of the line [pixels].
-        colors: Red, green and blue from 0 to 1.
+        colors: Red, green and blue from 0 to 1; by default black.
     """
     right, up = np.linalg.svd(checked_numbers(normal, "normal").reshape(1, 3))[2][1:]
     angles = np.linspace(0, 2 * np.pi, 65)
     points = checked_numbers(center, "center") + radius * (
         np.outer(np.cos(angles), right) + np.outer(np.sin(angles), up)
     )
-    return env.drawlinestrip(points, linewidth, colors=np.array(colors))
+    return env.drawlinestrip(points, linewidth, colors=np.array((0, 0, 0) if colors is None else colors))
 
 
 def DrawIkparam(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import checked_integer, checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.handles import Handle
 from ravemj.core.output import AnyPath, check_file
@@ -219,8 +219,8 @@ class Viewing(EnvironmentPart):
         from ravemj.gui.viewers.web.embedding import checked_origins  # noqa: PLC0415
 
         self._check_alive()
-        origins = checked_origins(embed)
-        viewer = WebViewer(self._simulation, self._renderer, "web", host, port, token=token)
+        origins, number = checked_origins(embed), checked_integer(port, "serve_viewer: port")
+        viewer = WebViewer(self._simulation, self._renderer, "web", host, number, token=token)
         viewer.server.allow_embedding(origins)
         self._close_viewers()
         self._attach(viewer)

@@ -125,7 +125,7 @@ class BodyConfiguration(BodyPart):
             ):
                 target = values
             elif dofindices is not None and dofindices is not ... and not np.size(values):
-                checked_indices(dofindices, kinematics.dof)
+                checked_indices(dofindices, kinematics.dof, "dofindices")
                 target = None  # random-api-145
             else:
                 target = full_values(state.scene, kinematics, values, dofindices)

@@ -21,8 +21,9 @@ from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationTyp
 from ravemj.manipulation.arm_search import ArmSearch
 from ravemj.manipulation.tool import Tool
 from ravemj.model import hashes, scene
+from ravemj.rave.ik_options import split_options
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
-from ravemj.rave.iksolver import IkSolver, split_options, task_of
+from ravemj.rave.iksolver import IkSolver, task_of
 from ravemj.rave.solver_names import named_in_file
 from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 

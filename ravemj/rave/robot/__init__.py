@@ -273,7 +273,7 @@ class Robot(ActiveDofs):
             checked_kind(controller, Controller, "SetController: controller")
         if controller is not None and controller.GetEnv() is not self._env:
             raise ArgumentError("SetController: controller was made for another environment")
-        indices = None if dofs is None else checked_indices(dofs, self.GetDOF())
+        indices = None if dofs is None else checked_indices(dofs, self.GetDOF(), "dofindices")
         with self._simulation.lock:
             if isinstance(self._controller, Controller):
                 self._controller.Reset()

@@ -5,7 +5,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import wraps
-from inspect import Signature, signature
+from inspect import signature
 from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -112,7 +112,7 @@ def with_affine_settings(topic: type[Topic]) -> type[Topic]:
             words = what.format(**about._asdict())
             get, set_ = (getattr(topic, f"{verb}Affine{kind}{setting}") for verb in ("Get", "Set"))
             get.__doc__, set_.__doc__ = f"Return {words}", f"Set {words}{_argument(setting, set_)}"
-            for method, body in ((get, _getter(kind, fields)), (set_, _setter(kind, fields, signature(set_)))):
+            for method, body in ((get, _getter(kind, fields)), (set_, _setter(kind, fields, set_))):
                 setattr(topic, method.__name__, wraps(method)(body))
     return topic
 
@@ -130,14 +130,15 @@ def _getter(kind: str, fields: tuple[str, ...]) -> Callable[[_WithKinds], Floats
     return get
 
 
-def _setter(kind: str, fields: tuple[str, ...], arguments: Signature) -> Callable[..., None]:
+def _setter(kind: str, fields: tuple[str, ...], method: Callable[..., None]) -> Callable[..., None]:
+    arguments, caller = signature(method), method.__name__
+
     def set_(self: _WithKinds, *values: ArrayLike, **named: ArrayLike) -> None:
-        _, *given = arguments.bind(self, *values, **named).arguments.values()
+        _, *given = arguments.bind(self, *values, **named).arguments.items()
         settings = self.affine_kinds[kind]
         count = len(settings.lower)
-        pairs = list(zip(fields, given, strict=True))
-        checked = {field: checked_vector(row, count, f"SetAffine{kind}: {field}") for field, row in pairs}
-        for field, numbers in checked.items():
+        checked = [checked_vector(row, count, f"{caller}: {argument}") for argument, row in given]
+        for field, numbers in zip(fields, checked, strict=True):
             setattr(settings, field, numbers)
 
     return set_
