@@ -199,7 +199,8 @@ class Clearances:
         places = np.zeros(len(is_used), dtype=int)
         places[used] = np.arange(len(used))
         first, second = (self._depths[:, pairs] * count + rows) * len(used) + places[which]
-        return np.take(sums, first) + np.take(sums, second)
+        flat = sums.ravel()
+        return flat[first] + flat[second]
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
         """Raise the bounds of gaps of some cases by separation along directions, unit vectors or NaN, shape (k, 3).
