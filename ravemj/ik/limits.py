@@ -67,7 +67,9 @@ def _turns_beyond(chain: Chain, values: Floats) -> tuple[Floats, Floats]:
     below, above = lower - values, values - upper
     with np.errstate(invalid="ignore"):
         fits = np.ceil((below - TOLERANCE) / _TURN) <= np.floor((TOLERANCE - above) / _TURN)
-        return np.where(fits, 0.0, np.mod(below, _TURN)), np.where(fits, 0.0, np.mod(above, _TURN))
+        below -= _TURN * np.floor(below / _TURN)  # as ``np.mod``, which takes several times as long
+        above -= _TURN * np.floor(above / _TURN)
+    return np.where(fits, 0.0, below), np.where(fits, 0.0, above)
 
 
 def all_turns(chain: Chain, values: Floats) -> Floats:
