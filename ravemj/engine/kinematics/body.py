@@ -138,6 +138,7 @@ class BodyKinematics:
         self._moving = np.flatnonzero(self.qpos_indices != NO_QPOS)
         self._all_move = len(self._moving) == len(indices)
         self._written, self._places = fixed_view(self.qpos, self.qpos_indices[self._moving])
+        self._is_plain = not self.spherical and all(joint.mimic is None for joint in body.all_joints)
         # The values between links for copies: a view where they are consecutive, which saves an index at each.
         self.inner_values = self.qpos[self.inner_qpos] if isinstance(self.inner_qpos, slice) else None
         self._loops = [
@@ -243,6 +244,8 @@ class BodyKinematics:
             self._undo_displacement()
         self.stamp += 1  # first, so that an interrupt does not leave outdated poses
         self._written[self._places] = values if self._all_move else values[self._moving]
+        if self._is_plain:
+            return
         if self._are_multiples:
             for dof, multiple, place in self._multiples:
                 self.qpos[place] = multiple.follow(values.item(dof), clamp_mimic)
