@@ -41,7 +41,12 @@ class ModelPart:
 
     def take(self, kinematics: BodyKinematics) -> bool:
         """Copy the body's configuration into this model; return whether more than joint values changed."""
-        self._qpos[:] = kinematics.qpos if self.is_free else kinematics.qpos[kinematics.inner_qpos]
+        if self.is_free:
+            self._qpos[...] = kinematics.qpos
+        elif kinematics.inner_values is not None:
+            self._qpos[...] = kinematics.inner_values
+        else:
+            self._qpos[...] = kinematics.qpos[kinematics.inner_qpos]
         has_moved = kinematics.pose_stamp > self.stamp
         if has_moved:
             self._take_poses(kinematics)

@@ -180,8 +180,11 @@ class Chain:
                 motion[0, :3, 3] += point
         return motions.reshape(self.dof, 3, 16)
 
-    def _few_tool_columns(self, turns: Turns) -> Floats:
-        """Return the result of ``tool_columns``, with fewer numpy calls and more arithmetic."""
+    def _few_poses(self, turns: Turns) -> Floats:
+        """Return the motions of the base by the first joints, none to all of them, shape (n + 1, M, 4, 4).
+
+        There are fewer numpy calls and more arithmetic than in ``_frames``.
+        """
         count = turns[0].shape[-1]
         factors = np.zeros((self.dof, 3, count))
         factors[:, 0] = 1
@@ -190,24 +193,31 @@ class Chain:
         else:
             for factor, turn in zip(factors, turns, strict=True):
                 factor[1 : 1 + len(turn)] = turn
-        steps = (factors.swapaxes(1, 2) @ self._motions).reshape(self.dof, count, 4, 4)
-        poses = steps[0]
-        for step in steps[1:]:
-            poses = poses @ step
-        return (poses @ self.T_base_tool)[:, :3].transpose(2, 1, 0)
+        poses = np.empty((self.dof + 1, count, 4, 4))
+        poses[0] = np.eye(4)
+        np.matmul(factors.swapaxes(1, 2), self._motions, out=poses[1:].reshape(self.dof, count, 16))
+        for before, pose in itertools.pairwise(poses[1:]):
+            np.matmul(before, pose, out=pose)
+        return poses
 
-    def turns(self, values: Floats) -> list[Floats]:
+    def turns(self, values: Floats) -> Turns:
         """Return joint values, shape (M, n), as cosines and sines (2, M) or distances (1, M)."""
-        return [
-            column[None] if sliding else np.stack([np.cos(column), np.sin(column)])
-            for column, sliding in zip(np.moveaxis(values, -1, 0), self.prismatic.tolist(), strict=True)
-        ]
+        columns = np.ascontiguousarray(np.moveaxis(values, -1, 0))
+        both = np.stack([np.cos(columns), np.sin(columns)], axis=1)
+        if self.turning.all():
+            return both
+        joints = zip(columns, both, self.prismatic.tolist(), strict=True)
+        return [column[None] if sliding else turn for column, turn, sliding in joints]
 
     def tool_columns(self, turns: Turns) -> Floats:
         """Return the tool's x, y, z and origin, shape (4, 3, M), for joint values in the form of ``turns``."""
         if len(turns) and turns[0].shape[-1] <= _FEW:
-            return self._few_tool_columns(turns)
+            return self._tool_of(self._few_poses(turns))
         return self._frames(turns)[-1]
+
+    def _tool_of(self, poses: Floats) -> Floats:
+        """Return the tool's x, y, z and origin, shape (4, 3, M), for ``_few_poses``."""
+        return (poses[-1] @ self.T_base_tool)[:, :3].transpose(2, 1, 0)
 
     def forward(self, values: Floats) -> Floats:
         """Return poses of the tool (..., 4, 4) for joint values (..., n)."""
@@ -224,15 +234,27 @@ class Chain:
         The first three rows of a Jacobian are the linear velocity of the tool's origin, the others the angular
         velocity, in base axes.
         """
-        frames = self._frames(self.turns(values))
-        tool, jacobians = frames[-1], np.zeros((len(values), 6, self.dof))
-        if self.dof:
-            placed, turning = np.array(frames[:-1]).transpose(1, 2, 0, 3), ~self.prismatic[:, None]
-            axes = placed[2]  # shape (3, n, M)
-            arms = tool[3][:, None] - placed[3]
-            jacobians[:, :3] = np.where(turning, cross(axes, arms), axes).transpose(2, 0, 1)
-            jacobians[:, 3:] = np.where(turning, axes, 0.0).transpose(2, 0, 1)
+        turns, jacobians = self.turns(values), np.zeros((len(values), 6, self.dof))
+        if not self.dof:
+            return self._frames(turns)[-1], jacobians
+        if len(values) <= _FEW:
+            poses = self._few_poses(turns)
+            tool, before = self._tool_of(poses), poses[:-1, :, :3]
+            axes, points = (before @ self._lines[:, None]).transpose(3, 2, 0, 1)  # both of shape (3, n, M)
+        else:
+            frames = self._frames(turns)
+            tool, (_, _, axes, points) = frames[-1], np.array(frames[:-1]).transpose(1, 2, 0, 3)
+        turning = self.turning[:, None]
+        jacobians[:, :3] = np.where(turning, cross(axes, tool[3][:, None] - points), axes).transpose(2, 0, 1)
+        jacobians[:, 3:] = np.where(turning, axes, 0.0).transpose(2, 0, 1)
         return tool, jacobians
+
+    @cached_property
+    def _lines(self) -> Floats:
+        """Direction and point of each axis as columns that ``_few_poses`` move, shape (n, 4, 2)."""
+        lines = np.zeros((self.dof, 4, 2))
+        lines[:, :3, 0], lines[:, :3, 1], lines[:, 3, 1] = self.axes, self.points, 1
+        return lines
 
     def placed_axes(self, values: Floats) -> tuple[Floats, Floats]:
         """Return the direction of each joint axis and a point on it, both (n, M, 3), at joint values (M, n)."""

@@ -27,6 +27,11 @@ _SAME = 1e-5
 """Tolerance of equal solutions."""
 _STEPS = 12
 """Maximum number of Newton steps."""
+_MOST_GROWTH = 2.0
+"""Largest factor by which Newton steps may increase the error of solutions that should be accurate.
+
+They increase it more beyond the border of the reach, where the family returns a double solution with an error.
+"""
 _SETTLED, _SLOWEST = 3, 0.5
 """Number of Newton steps before convergence is checked, and the maximum error ratio of a later step.
 
@@ -92,7 +97,8 @@ class ClosedForm:
     def __init__(self, chain: Chain, task: Task, family: Family, *, snapped: bool) -> None:
         self.chain, self.task, self.family = chain, task, family
         # snapped geometry and quartics give inaccurate solutions, other families only rounding errors
-        self.near = 0.03 if snapped or family.coupled else 1e-4
+        self._is_accurate = not (snapped or family.coupled)
+        self.near = 1e-4 if self._is_accurate else 0.03
         self._tool = np.linalg.inv(chain.T_base_tool)
         joints = family.arm.joints
         self._answers = [(index, joints[place]) for index, place in enumerate(family.order) if joints[place] >= 0]
@@ -159,8 +165,7 @@ class ClosedForm:
         doubtful = (error <= self.near) & ~valid
         if limits and doubtful.any():
             doubtful &= nearest_turns(self.chain, np.moveaxis(values, 0, -1), tolerance=_MARGIN)[1]
-        if doubtful.any():
-            self._refine(doubtful, goal, values, valid)
+        if doubtful.any() and self._refine(doubtful, goal, values, valid):
             turns = self.chain_turns(values)
         _merge(np.concatenate(turns), valid, merged)
         return error
@@ -218,8 +223,12 @@ class ClosedForm:
         tool = self.chain.tool_columns(self.chain.turns(values))
         return self._error(tool, poses[:, :3].transpose(2, 1, 0))
 
-    def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> None:
-        """Refine doubtful solutions with Newton's method, and mark as valid those that reach their goal."""
+    def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> bool:
+        """Refine doubtful solutions with Newton's method, mark as valid those that reach their goal.
+
+        Returns:
+            Whether any does.
+        """
         branch, pose = np.nonzero(doubtful)
         start = values[:, branch, pose].T
         refined, error = self.refine(start, goal[:, :, pose])
@@ -227,6 +236,7 @@ class ClosedForm:
         good = (error <= ACCURATE) & near
         values[:, branch[good], pose[good]] = refined[good].T
         valid[branch[good], pose[good]] = True
+        return bool(good.any())
 
     def refine(self, values: Floats, goal: Floats) -> tuple[Floats, Floats]:
         """Refine values (M, n) by damped Newton steps towards M tool poses; return them and their errors (M,).
@@ -235,18 +245,21 @@ class ClosedForm:
         """
         chain, free = self.chain, [joint for joint in range(self.chain.dof) if joint not in self._locked]
         values = values.copy()
-        errors = np.full(len(values), np.inf)
+        errors = first = np.full(len(values), np.inf)
         active = np.arange(len(values))
         for step in range(_STEPS):
             tool, jacobians = chain.forward_and_jacobian(values[active])
             target, before = goal[:, :, active], errors[active]
             errors[active] = self._error(tool, target)
+            first = errors.copy() if step == 0 else first
             active_again = errors[active] > EXACT / 10
+            if self._is_accurate:
+                active_again &= errors[active] < _MOST_GROWTH * first[active]
             if step >= _SETTLED:
                 active_again &= errors[active] < _SLOWEST * before
             if step == _STEPS - 1 or not active_again.any():
                 break
-            turned = cross(tool[0], target[0]) + cross(tool[1], target[1]) + cross(tool[2], target[2])
+            turned = cross(tool[:3].swapaxes(0, 1), target[:3].swapaxes(0, 1)).sum(axis=1)
             missing = np.concatenate([target[3] - tool[3], turned / 2]).T * self._scale
             jacobians = jacobians * self._scale[:, None]
             part = jacobians[active_again][:, self._rows][:, :, free]

@@ -13,7 +13,7 @@ import numpy as np
 
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import Solutions
-from ravemj.ik.limits import TOLERANCE, beyond_limits, nearest_turns
+from ravemj.ik.limits import TOLERANCE, beyond_limits, clamped
 from ravemj.ik.numeric import ACCURATE
 from ravemj.ik.redundancy import free_range
 from ravemj.ik.vectors import Bools, Floats, Ints
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 _STEEP = 1.0
 """Maximum ratio of a minimum of the excess to the rise beside it with which the excess may reach 0."""
-_CLOSE = 0.5
-"""Maximum excess from which a descent is started."""
+_CLOSE, _VERY_CLOSE = 0.5, 0.05
+"""Maximum excess from which a descent is started: from minima of the excess, and from other samples."""
 _ENOUGH = 32
 """Number of samples below which twice as many are added."""
 _MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
 """Maximum number of samples with a minimum of the excess that are searched around, and how many come first."""
-_MOST_DESCENTS = 12
-"""Maximum number of descents if no sample has a solution."""
+_MOST_DESCENTS, _LAST_DESCENTS = 12, 4
+"""Maximum number of descents from minima of the excess, and then, if they fail, from the samples with the least one."""
 _FRACTIONS = np.linspace(0, 1, 12)
 """Fractions of the interval between the samples around a minimum, at which solutions are sought."""
 _PARTS, _SECTIONS = 8, 5
@@ -63,7 +63,7 @@ def closest(chain: Chain, solutions: Solutions, most: int) -> list[Floats]:
     """Return the joint values of the branches with the least excess, each of shape (n,)."""
     missed = excess(chain, solutions)
     places = _distinct(missed, np.argwhere(np.isfinite(missed)), most)
-    return [nearest_turns(chain, solutions.values[sample, branch])[0] for sample, branch in places.tolist()]
+    return [clamped(chain, solutions.values[sample, branch]) for sample, branch in places.tolist()]
 
 
 Found = tuple[Floats, Solutions | None]
@@ -94,13 +94,17 @@ def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, solution
             middle = len(samples) // 2
             yield at_more.values[samples[middle], branches[middle]], at_more.only(samples[middle])
     order = np.argsort(values, kind="stable")
-    values, missed = np.array([low, *values[order], high]), missed[order]
-    samples, branches = _valleys(missed)
-    if not len(samples):
-        return
-    closest_first = samples[np.argsort(missed[samples, branches], kind="stable")]
-    chosen = np.array([*dict.fromkeys(closest_first.tolist())][:_MOST_VALLEYS])
-    yield from _near(solver, pose, values, [(sample, branches[samples == sample]) for sample in chosen.tolist()])
+    values, in_order = np.array([low, *values[order], high]), missed[order]
+    samples, branches = _valleys(in_order)
+    closest_first = samples[np.argsort(in_order[samples, branches], kind="stable")]
+    chosen = [*dict.fromkeys(closest_first.tolist())][:_MOST_VALLEYS]
+    is_reached = False
+    for found in _near(solver, pose, values, [(sample, branches[samples == sample]) for sample in chosen]):
+        is_reached = True
+        yield found
+    if not is_reached and missed.min() > TOLERANCE:
+        few = np.argwhere(missed[: len(solutions)] < _VERY_CLOSE)
+        yield from _descents(solver, pose, solutions, missed, few, _LAST_DESCENTS)
 
 
 def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tuple[int, Ints]]) -> Iterator[Found]:
@@ -130,17 +134,16 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
 
 
 def _descents(
-    solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints
+    solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints, most: int = _MOST_DESCENTS
 ) -> Iterator[Found]:
     """Yield the solutions that numeric descents reach from the samples and branches (K, 2) nearest to a solution."""
-    for sample, branch in _distinct(missed, places).tolist():
-        start = nearest_turns(solver.chain, solutions.values[sample, branch])[0]
-        reached = solver.numeric.descend(pose, start)
+    for sample, branch in _distinct(missed, places, most).tolist():
+        reached = solver.numeric.descend(pose, clamped(solver.chain, solutions.values[sample, branch]))
         if reached.error < ACCURATE:
             yield reached.values, None
 
 
-def _distinct(missed: Floats, places: Ints, most: int = _MOST_DESCENTS) -> Ints:
+def _distinct(missed: Floats, places: Ints, most: int) -> Ints:
     """Return the samples and branches with the least excess, shape (K, 2); equal excesses of a sample count once."""
     sizes = missed[places[:, 0], places[:, 1]]
     kept: dict[tuple[int, float], int] = {}

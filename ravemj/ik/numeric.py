@@ -114,8 +114,10 @@ class NumericSolver:
         ahead = values + np.linalg.solve(matrix, pull)
         if ((ahead < self._lowest) | (ahead > self._highest)).any():
             moved, factor = np.zeros(len(values)), np.empty((len(values), len(values) + 7))
-            mujoco.mju_boxQP(moved, factor, None, matrix, -pull, self._lowest - values, self._highest - values)
-            ahead = np.minimum(np.maximum(values + moved, self._lowest), self._highest)
+            size = float(np.abs(pull).max())  # the QP is solved in this unit, since MuJoCo takes small slopes for none
+            room = (self._lowest - values) / size, (self._highest - values) / size
+            mujoco.mju_boxQP(moved, factor, None, matrix, -pull / size, *room)
+            ahead = np.minimum(np.maximum(values + size * moved, self._lowest), self._highest)
         return ahead
 
     def start(self, number: int) -> Floats:

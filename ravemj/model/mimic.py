@@ -128,7 +128,7 @@ class Multiple(NamedTuple):
     lower: float
     upper: float
 
-    def follow(self, x: float, *, clamp: bool = True) -> float:
+    def follow(self, x: float, clamp: bool = True) -> float:
         """Return the value of the mimic joint, within its limits if ``clamp``."""
         value = self.slope * x + self.offset
         if not clamp:

@@ -141,13 +141,21 @@ class CollisionChecker(Interface):
             report, arguments = report or arguments[-1], arguments[:-1]
         if report is not None:
             checked_kind(report, CollisionReport, "CheckCollision: report")
-        with self._simulation.lock:
+        lock, pairs = self._simulation.lock, None
+        try:
+            lock.acquire()  # not in a ``with`` block, which takes twice as long
             world = self.groups.world() if self.groups.is_used else self._simulation.collisions()
             if len(arguments) == 1 and isinstance(body := arguments[0], KinBody) and not self._options & _ACTIVE_DOFS:
-                pairs = world.known_pairs(body.simulation_state)  # in few steps: planners ask this most
-                if pairs is not None:
-                    return self.answer(world, pairs, report)
-            return self._check(world, arguments, report)
+                pairs = world.known_pairs(body.simulation_state)
+            if pairs is not None and report is None:  # in few steps, since this is asked most
+                collides = self.collides(world, pairs)
+            else:
+                collides = self._check(world, arguments, report)
+        except BaseException:
+            lock.release_if_held()
+            raise
+        lock.release()
+        return collides
 
     def _check(self, world: CollisionWorld, arguments: tuple[object, ...], report: CollisionReport | None) -> bool:
         if arguments and isinstance(ray := arguments[0], Ray):

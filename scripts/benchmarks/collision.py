@@ -59,7 +59,7 @@ def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
     both, floor = free.measure(lambda: env.CheckCollision(panda) or panda.CheckSelfCollision())
     label = f"{what}: SetDOFValues + CheckCollision + CheckSelfCollision : mj_kinematics + mj_collision"
     yield Row(label, "µs", both, floor)
-    yield _world_row(what, panda, free, 2.6)
+    yield _world_row(what, panda, free, 2.2)
     yield from _report_rows(what, panda)
     with env, panda:
         collides = moving_test(panda.simulation_state, range(panda.GetDOF()))

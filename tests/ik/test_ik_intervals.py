@@ -12,7 +12,7 @@ from strategies import examples
 from ravemj.ik import Chain, Task, make_solver
 from ravemj.ik.candidates import everything, nearest_first
 from ravemj.ik.intervals import excess, intervals, rows_at
-from ravemj.ik.limits import beyond_limits, nearest_turns
+from ravemj.ik.limits import beyond_limits, clamped, nearest_turns
 from ravemj.ik.redundancy import free_range
 
 NARROW = [
@@ -26,6 +26,17 @@ NARROW = [
     (OFFSET_SHOULDER, [-0.01, 1.29, 2.09, -0.02, -0.44, 1.39, 1.85]),
 ]
 """Configurations whose poses have no solution at any sample of the free joint from 0 outwards."""
+CORNERS = [
+    (PANDA_LIMITED, [1.0873, 1.0554, 2.8392, -3.0718, -0.1752, -0.0175, 1.5461]),
+    (PANDA_LIMITED, [2.6943, 1.7628, -0.1067, -0.5511, 2.5187, -0.0175, 2.2481]),
+    (PANDA_LIMITED, [-1.2976, -0.2012, 0.0551, -3.0718, -2.8973, 2.6636, -0.9557]),
+    (WAM_LIMITED, [1.8313, 2.0, -0.4657, 1.0021, -1.4288, 1.6, 2.6712]),
+    (OFFSET_SHOULDER, [-1.6056, -1.221, -2.1787, 1.6948, 1.1964, 1.057, 0.3745]),
+    (OFFSET_SHOULDER, [-1.2534, -1.221, 0.9219, 0.5786, -3.1363, -2.16, 2.0241]),
+    (OFFSET_SHOULDER, [0.5849, 1.518, 0.884, 1.2391, -2.0998, -2.16, -2.5047]),
+    (OFFSET_SHOULDER, [1.2001, 0.0792, -0.6785, -2.251, -2.3021, 2.16, 1.1831]),
+]
+"""Configurations with two joints at limits, whose poses may have a solution at a single value of the free joint."""
 ARMS = {"panda": PANDA_LIMITED, "iiwa": IIWA, "wam": WAM_LIMITED, "offset": OFFSET_SHOULDER}
 
 
@@ -56,6 +67,22 @@ def test_without_limits_too(solvers, chain, values):
     solver, T = solvers[id(chain)], chain.forward(np.array(values))
     rows = solver.solve_one(T, limits=False)
     np.testing.assert_allclose(chain.forward(rows), np.broadcast_to(T, (len(rows), 4, 4)), atol=1e-8)
+
+
+@pytest.mark.parametrize(("chain", "values"), CORNERS)
+def test_a_pose_with_two_joints_at_their_limits_is_reached_by_every_question(solvers, chain, values):
+    solver, T = solvers[id(chain)], chain.forward(np.array(values))
+    check(chain, solver.solve_one(T), T)
+    seed = np.zeros(7)
+    check(chain, solver.nearest(T, seed)[None], T)
+    check(chain, next(nearest_first(solver, T, seed))[None], T)
+
+
+def test_descents_are_exact_at_limits(solvers):
+    chain, values = CORNERS[1]
+    numeric, T = solvers[id(chain)].numeric, chain.forward(np.array(values))
+    inward = np.where(np.array(values) > 0, -0.01, 0.01)
+    assert numeric.descend(T, np.array(values) + inward).error < 1e-12
 
 
 @pytest.mark.parametrize("name", ARMS)
@@ -172,6 +199,13 @@ def test_how_far_values_are_beyond_limits(values, wanted):
     """One joint may turn from 1 to 2.5, whatever the turn, and one may slide from 0 to 0.1, which is all the reach."""
     chain = Chain.of(np.eye(3)[:2], np.zeros((2, 3)), prismatic=[False, True], lower=[1, 0], upper=[2.5, 0.1])
     assert beyond_limits(chain, np.array(values)) == pytest.approx(wanted)
+
+
+def test_values_beyond_limits_move_to_the_nearer_one():
+    chain = Chain.of(np.eye(3)[:2], np.zeros((2, 3)), prismatic=[False, True], lower=[1, 0], upper=[5, 0.1])
+    values = [[0.9, -0.1], [0.9 + 2 * np.pi, 0.2], [5.1 - 2 * np.pi, 0.05], [2 - 2 * np.pi, 0.0], [5.0, 0.1]]
+    wanted = [[1, 0], [1, 0.1], [5, 0.05], [2, 0], [5, 0.1]]
+    np.testing.assert_allclose(clamped(chain, np.array(values)), wanted)
 
 
 class TestNearestReachable:

@@ -343,6 +343,16 @@ class TestNumeric:
             np.testing.assert_allclose(place, T[:3, 3], atol=1e-14)
             np.testing.assert_allclose(jacobian, numpys[0], atol=1e-14)
 
+    @pytest.mark.parametrize("kind", ["RRRXRR", "RPRXRR"])
+    def test_few_and_many_configurations_are_computed_alike(self, kind):
+        chain = arm(np.random.default_rng(5), kind)
+        values = random_values(chain, 200, np.random.default_rng(1))
+        tools, jacobians = chain.forward_and_jacobian(values)
+        for index in range(0, 200, 20):
+            tool, jacobian = chain.forward_and_jacobian(values[index : index + 2])
+            np.testing.assert_allclose(tool, tools[:, :, index : index + 2], atol=1e-14)
+            np.testing.assert_allclose(jacobian, jacobians[index : index + 2], atol=1e-14)
+
     def test_jacobians_are_derivatives(self):
         chain = arm(np.random.default_rng(6), "RPRXRR")
         values, step = np.full(7, 0.3), 1e-6

@@ -17,7 +17,8 @@ from ravemj.engine.simulation.world_model import WorldModel
 _BODIES_PER_PAIR = 64
 """Number of bodies for which MuJoCo's collision detection takes as long as one exact pair test."""
 
-_ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
+# Rows are summed fastest by a product with ``_ONES``, and taken fastest with ``mode="clip"``; all of them are there.
+_ONES = np.ones(3)
 _NO_NUMBERS: list[int] = []
 
 _MARGIN = 1e-6  # m; MuJoCo's collision detection finds what is this near: more than exact tests call touching
@@ -64,7 +65,15 @@ class Detection:
         self._geom_masks = self._model.geom_contype, self._model.geom_conaffinity
         self._masks = Masks(self._model.body_contype, self._model.body_conaffinity)
         self.all = Masks(self._masks.types.copy(), self._masks.affinities.copy())
-        self._look_at_all = self.overlaps(self.all)
+        self._queried = model.queried_model
+        self._queried.opt.o_margin = _MARGIN
+        self._queried.opt.enableflags |= _OVERRIDE
+        # MuJoCo's trees of geoms give the same contacts, but take longer for few geoms.
+        self._no_trees = _NO_TREES if self._model.body_geomnum.max() <= _FEW_GEOMS else 0
+        self._queried.opt.disableflags |= self._no_trees
+        # Memory views copy few numbers in half the time that arrays take.
+        self._queried_masks = self._queried.body_contype.data, self._queried.body_conaffinity.data
+        self._admitted: Masks | None = None  # the masks of ``_queried``, those of the last query
         self._stamp, self._found_stamp, self._questions, self._is_shared = -1, -1, 0, False
         self._found: NDArray[np.int32] | None = None
 
@@ -93,14 +102,14 @@ class Detection:
         types[self._bodies[first]] = affinities[self._bodies[second]] = 1
         return Masks(types, affinities)
 
-    def detect(self, look: Callable[[], None]) -> NDArray[np.int32] | None:
+    def detect(self, masks: Masks) -> NDArray[np.int32] | None:
         """Detect hulls that touch or nearly touch at present.
 
         If there was more than one query in the last configuration, all bodies are tested, once for all queries in this
         configuration.
 
         Args:
-            look: The result of ``overlaps`` for the masks of the query.
+            masks: The masks of the query.
 
         Returns:
             Both geoms of each contact, shape (n, 2); None if there may be too many for MuJoCo's memory.
@@ -111,12 +120,20 @@ class Detection:
         if self._is_shared:
             if self._found_stamp == self._stamp:
                 return self._found
-            look = self._look_at_all
-        self.detect_near(look)
+            masks = self.all
+        if masks is not self._admitted:
+            self._admit(masks)
+        mujoco.mj_collision(self._queried, self._data)
         count = self._data.ncon
         self._found = _NO_GEOMS if not count else self._data.contact.geom.copy() if count < self._most else None
         self._found_stamp = self._stamp if self._is_shared else -1  # last, as an interrupt may have come before
         return self._found
+
+    def _admit(self, masks: Masks) -> None:
+        self._admitted = None  # first, as an interrupt may come between
+        types, affinities = self._queried_masks
+        types[:], affinities[:] = masks.types.data, masks.affinities.data
+        self._admitted = masks
 
     def detect_near(self, look: Callable[[], None], margin: float = _MARGIN) -> None:
         """Run the detection ``look``, a result of ``overlaps``, also for hulls within ``margin`` [m] of each other."""
@@ -132,7 +149,6 @@ class Detection:
         model, data, detect = self._model, self._data, mujoco.mj_collision
         if masks is self.all:
             return partial(detect, model, data)
-        # Memory views copy few numbers in half the time that arrays take.
         types, affinities = self._masks.types.data, self._masks.affinities.data
         some_types, some_affinities = masks.types.data, masks.affinities.data
         all_types, all_affinities = self.all.types.data, self.all.affinities.data
@@ -148,13 +164,10 @@ class Detection:
 
     @block
     def masked(self, masks: Masks) -> Generator[None]:
-        """Context manager that restricts MuJoCo to the masks' pairs; if bodies have few geoms, each pair is tested.
-
-        MuJoCo's trees of geoms give the same contacts, but take longer for few geoms.
-        """
+        """Context manager that restricts MuJoCo to the masks' pairs."""
         flags = self._option.disableflags
         with restoring(lambda: self._mask(self.all, flags)):
-            self._mask(masks, flags | _NO_TREES if self._model.body_geomnum.max() <= _FEW_GEOMS else flags)
+            self._mask(masks, flags | self._no_trees)
             yield
 
     def _mask(self, masks: Masks, flags: int) -> None:
@@ -175,7 +188,7 @@ class Pairs:
         numbers = np.flatnonzero(is_detected).tolist()
         both = zip(first[is_detected].tolist(), second[is_detected].tolist(), strict=True)
         self._numbers = {_ordered(*pair): number for pair, number in zip(both, numbers, strict=True)}
-        self._look = detection.overlaps(detection.masks(first[is_detected], second[is_detected]))
+        self._masks = detection.masks(first[is_detected], second[is_detected])
         self._spheres = _Spheres(first[self._rest], second[self._rest], detection)
         self._rest_is_welded = bool(detection.are_welded(first[self._rest], second[self._rest]).all())
         self._rest_stamp, self._rest_is_exact = -1, False
@@ -203,7 +216,7 @@ class Pairs:
 
     def _detect(self) -> None:
         """Find the pairs with touching hulls, among those that MuJoCo tests."""
-        geoms = self._detection.detect(self._look)
+        geoms = self._detection.detect(self._masks)
         chosen = b"" if geoms is None or geoms is _NO_GEOMS else geoms.tobytes()
         if geoms is not None and chosen != self._found:
             numbers, touching = self._numbers, {_ordered(*pair) for pair in geoms.tolist()}
@@ -223,8 +236,9 @@ class Pairs:
     def gaps(self) -> Floats:
         """Return the gaps between the bounding spheres of each pair [m], negative if they overlap, shape (n,)."""
         positions, radii = self._detection.positions, self._detection.radii
-        apart = np.linalg.norm(positions[self.first] - positions[self.second], axis=1)
-        return apart - radii[self.first] - radii[self.second]
+        apart = positions.take(self.first, 0, mode="clip") - positions.take(self.second, 0, mode="clip")
+        apart *= apart
+        return np.sqrt(apart.dot(_ONES)) - radii[self.first] - radii[self.second]
 
 
 class _Spheres:
@@ -244,7 +258,7 @@ class _Spheres:
     def near(self) -> Ints:
         """Return the indices of the pairs whose spheres touch, in ascending order."""
         apart = self._apart
-        self._positions.take(self._geoms, 0, self._centers, "clip")  # all are there; the default mode is slower
+        self._positions.take(self._geoms, 0, self._centers, "clip")
         apart -= self._from
         apart *= apart
         return (apart.dot(_ONES, self._distance) < self._square).nonzero()[0]

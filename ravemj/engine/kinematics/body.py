@@ -139,6 +139,8 @@ class BodyKinematics:
         self._all_move = len(self._moving) == len(indices)
         self._written, self._places = fixed_view(self.qpos, self.qpos_indices[self._moving])
         self._is_plain = not self.spherical and all(joint.mimic is None for joint in body.all_joints)
+        # The values between links for copies: a view where they are consecutive, which saves an index at each.
+        self.inner_values = self.qpos[self.inner_qpos] if isinstance(self.inner_qpos, slice) else None
         self._loops = [
             (first, joint)
             for first, joint, places in zip(self.first_dofs, body.joints, self.joint_qpos, strict=False)
@@ -242,17 +244,17 @@ class BodyKinematics:
             self._undo_displacement()
         self.stamp += 1  # first, so that an interrupt does not leave outdated poses
         self._written[self._places] = values if self._all_move else values[self._moving]
-        if not self._is_plain:
-            for ball in self.spherical:
-                self.qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
-            if self.mimic.joints:
-                self._set_mimic(values, clamp=clamp_mimic)
-
-    def _set_mimic(self, values: Floats, *, clamp: bool) -> None:
+        if self._is_plain:
+            return
         if self._are_multiples:
             for dof, multiple, place in self._multiples:
-                self.qpos[place] = multiple.follow(values.item(dof), clamp=clamp)
-            return
+                self.qpos[place] = multiple.follow(values.item(dof), clamp_mimic)
+        else:
+            self._set_mimic(values, clamp=clamp_mimic)
+        for ball in self.spherical:
+            self.qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
+
+    def _set_mimic(self, values: Floats, *, clamp: bool) -> None:
         known = self.first_values(values)
         self.mimic.evaluate(known, clamp=clamp)
         for mimic in self.mimic.joints:

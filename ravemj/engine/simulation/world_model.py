@@ -1,5 +1,6 @@
 """MuJoCo model of all bodies of an environment."""
 
+import copy
 from collections.abc import Iterable, Mapping
 
 import mujoco
@@ -53,6 +54,11 @@ class WorldModel(Compiled):
     def _parts(self) -> dict[BodyState, ModelPart]:
         described = zip(self._described, self.mjcf.names, strict=True)
         return {body: ModelPart(self.model, self.data, names) for body, names in described}
+
+    @cached_property
+    def queried_model(self) -> mujoco.MjModel:
+        """A copy for collision queries, which change masks and options. Poses of bodies without joints are outdated."""
+        return copy.copy(self.model)
 
     def description(self, body: BodyState) -> KinBody:
         """Return the description of a body in this model; its own if it is not in the model."""

@@ -464,8 +464,14 @@ class BodyConfiguration(BodyPart):
             >>> robot.ComputeJacobianTranslation(2, tip) @ robot.GetDOFVelocities()  # the tip's velocity
         """
         point, link = checked_point(position, "position"), self._checked_link(linkindex)
-        with self._simulation.lock:
+        lock = self._simulation.lock
+        try:
+            lock.acquire()  # as in ``SetDOFValues``
             jacobian = self._state.dynamics.translation_jacobian(link, point)
+        except BaseException:
+            lock.release_if_held()
+            raise
+        lock.release()
         return jacobian if indices is None else _columns(jacobian, indices)
 
     def ComputeJacobianAxisAngle(self, linkindex: int, indices: "ArrayLike | None" = None) -> Floats:
@@ -671,11 +677,18 @@ class BodyConfiguration(BodyPart):
                 raise RavemjError(
                     f"ComputeInverseDynamics: {message}; batch_inverse_dynamics takes it as fixed", ErrorCode.Assert
                 )
-        with self._simulation.lock:
-            state, gravity = self._state, self._simulation.gravity
-            if returncomponents:
-                return state.dynamics.inverse_components(state.present_velocities, accelerations, gravity, pushes)
-            return state.dynamics.inverse(state.present_velocities, accelerations, gravity, pushes)
+        state, simulation = self._state, self._simulation
+        lock = simulation.lock
+        try:
+            lock.acquire()  # as in ``SetDOFValues``
+            dynamics = state.dynamics
+            needed = dynamics.inverse_components if returncomponents else dynamics.inverse
+            torques = needed(state.present_velocities, accelerations, simulation.gravity, pushes)
+        except BaseException:
+            lock.release_if_held()
+            raise
+        lock.release()
+        return torques
 
     def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
         dof = self._state.dof
