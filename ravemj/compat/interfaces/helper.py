@@ -18,10 +18,10 @@ Thing = TypeVar("Thing")
 
 
 class Helper(ApiObject):
-    """Planning helper of one robot; its module stays in the environment as long as it exists.
+    """Planning helper of one robot; its module stays in the environment as long as the helper exists.
 
     Attributes:
-        prob: The module, which offers the same as text commands.
+        prob: The module, which offers the helper's methods as text commands.
         robot: The robot.
         args: Arguments of the module.
     """
@@ -100,10 +100,10 @@ def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any ki
 
 
 def several(values: Iterable[Thing] | None, name: str) -> list[Thing]:
-    """Return a list option as a list; None is empty.
+    """Convert an option to a list; None becomes an empty list.
 
     Raises:
-        ArgumentError: it is not a list.
+        ArgumentError: the option is not iterable.
     """
     if values is None:
         return []

@@ -197,7 +197,7 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
     """Retimer of trajectories of the DOFs that are active at its construction.
 
     Args:
-        robot: The robot; its limits are those of each call.
+        robot: The robot; each call uses its current limits.
         plannername: The retimer. If it is empty, ``PlanPath`` raises an error, as in OpenRAVE.
         plannerparameters: Its parameters as XML text.
 
@@ -344,5 +344,5 @@ def _affine(traj: Trajectory, maxvelocities: ArrayLike, maxaccelerations: ArrayL
 
 
 def stamped(hastimestamps: bool, extra: str) -> str:
-    """Return parameters with the option to keep times."""
+    """Return the planner parameters ``extra`` with the option to keep times if ``hastimestamps``."""
     return f"<hastimestamps>1</hastimestamps>{extra}" if hastimestamps else extra
