@@ -89,7 +89,7 @@ class Helper(ApiObject):
         outputfinal: bool | None,
         outputtrajobj: bool | None,
     ) -> tuple[Floats | None, Trajectory | str | None]:
-        """Execute a motion unless ``execute`` is False; return its final values and itself, as requested."""
+        """Execute a motion unless ``execute`` is False; return final values and motion, each None if not requested."""
         final, traj = motion
         return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj) or None
 
