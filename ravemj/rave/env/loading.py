@@ -63,7 +63,10 @@ def warn_of_attributes(path: str, given: Attributes) -> None:
 def read_arguments(
     caller: str, arguments: tuple[Argument, ...], named: dict[str, Argument]
 ) -> tuple[KinBody | None, str | bytes, Attributes]:
-    """Return the body to fill (or None), the file or text, and the attributes."""
+    """Parse the arguments of ``ReadKinBodyURI`` and similar methods.
+
+    Return the body to replace (or None), the file name or text, and the attributes.
+    """
     given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
     if named:
         raise TypeError(f"{caller}: has no argument {', '.join(named)}")
