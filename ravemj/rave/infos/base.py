@@ -195,7 +195,7 @@ class _Called:
             self.add(info)
 
     def add(self, info: Described) -> None:
-        """Add an info at the end, or at its previous position."""
+        """Add an info at the end, or at its previous position if it was removed."""
         place = self._place_of.setdefault(id(info), len(self._place_of))
         self._at[place] = info
         for key in _calls("_", vars(info)):
@@ -311,7 +311,7 @@ class Info(ApiObject):
     """Base class of infos. They compare by their fields, and print as the expression that makes them."""
 
     _called: ClassVar[str]
-    """Class name for ``repr`` and error messages; by default its own."""
+    """Name of the class for ``repr`` and error messages; by default ``__name__``."""
     _entries: ClassVar[tuple[Entry, ...]]
     """JSON keys, made from the fields."""
     _internal: ClassVar[tuple[str, ...]] = (
