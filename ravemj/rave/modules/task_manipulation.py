@@ -128,7 +128,7 @@ _STEP = 0.01
 
 
 _ANY = np.array([0.0, 0.0, 1.0])
-"""Direction of approach where the hand does not fly."""
+"""Placeholder for the approach direction if the hand does not move."""
 
 
 def _check_motion(directions: Floats, step: float) -> None:
@@ -190,7 +190,7 @@ class TaskManipulation(Manipulation):
 
         Args:
             directions: Sign of the motion of each joint; None: the closing direction.
-            offsets: How far the motion goes on from there, in the direction of each joint [rad or m].
+            offsets: Distance that each joint moves on after it has stopped, in its direction [rad or m].
             steps: Step lengths.
 
         Raises:
@@ -227,7 +227,7 @@ class TaskManipulation(Manipulation):
         return final, self._motion(dofs, final)
 
     def _fingers(self, dofs: Sequence[int], directions: Floats, steps: Steps, approach: Approach) -> Floats:
-        """Return the values at which fingers stop that move one after the other."""
+        """Simulate fingers that move one after the other; return the joint values at which they stop."""
         _check_motion(directions, min(steps))
         manip, state = self.robot.GetActiveManipulator(), self.robot.simulation_state
         assert manip is not None, "it has a gripper"
@@ -258,7 +258,7 @@ class TaskManipulation(Manipulation):
         return self.straight(np.stack([self.robot.GetDOFValues(dofs), final]), dofs)
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
-        """Return the values at which joints stop."""
+        """Simulate joints that move until contact or to their limits; return the values at which they stop."""
         _check_motion(directions, step)
         return move_until_contact(
             self.bodies_of(dofs),
