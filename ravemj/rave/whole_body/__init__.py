@@ -68,7 +68,7 @@ class WholeBodyResult:
     cost: float
 
     def __bool__(self) -> bool:
-        """Return whether it converged."""
+        """Return ``converged``."""
         return self.converged
 
 
