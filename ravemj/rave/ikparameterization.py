@@ -51,7 +51,7 @@ _ROTATION_SIZES = {
     _Type.TranslationLocalGlobal6D: 3,
     **dict.fromkeys(_ANGLES, 1),
 }
-"""Number of values of each goal type that OpenRAVE stores in place of the quaternion; 0 of the others."""
+"""Number of values that OpenRAVE stores in place of the quaternion, by goal type; 0 for other types."""
 
 _SET = """Set the goal to a point and the {angle}.
 
@@ -156,7 +156,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Lookat3D)
 
     def SetRay4D(self, quat: Ray) -> None:
-        """Set the goal to a ray ``quat`` with a unit direction, on which the tool axis must lie at any point."""
+        """Set the goal to the ray ``quat``, with a unit direction: the tool axis must lie on it, anywhere along it."""
         self._set(_Type.Ray4D, quat)
 
     def GetRay4D(self) -> Ray:
@@ -429,7 +429,7 @@ class IkParameterizationData(GoalValues):
 
     @classmethod
     def take(cls, words: list[str]) -> Self:
-        """Return the goal that words begin with, as ``str`` wrote it, and take these words off.
+        """Parse a goal, as ``str`` writes it, from the first words of a list, and remove these words.
 
         Raises:
             ArgumentError: the words do not start with a goal.

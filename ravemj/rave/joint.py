@@ -168,7 +168,7 @@ class Joint(Member):
         return self._axis(axis).circular
 
     def IsStatic(self) -> bool:
-        """Return whether the limits leave the joint no room. If they did when the body was made, it is a weld."""
+        """Return whether the limits allow no motion. A joint with such limits at the creation of the body is a weld."""
         return not self._scene.has_room
 
     def IsMimic(self, axis: int = -1) -> bool:

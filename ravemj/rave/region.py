@@ -275,7 +275,7 @@ def _members(sets: Sequence[object], name: str) -> tuple[object, ...]:
 
 
 def is_region(thing: object) -> TypeGuard[RegionLike]:
-    """-"""
+    """Return whether an object has the attributes ``T0_w``, ``Tw_e`` and ``Bw`` of a region."""
     return all(hasattr(thing, name) for name in ("T0_w", "Tw_e", "Bw"))
 
 

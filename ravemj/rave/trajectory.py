@@ -81,9 +81,10 @@ class Trajectory(Interface):
         return self._certificate[1]
 
     def is_certified(self) -> bool:
-        """Return whether the motion is certified; without a certificate, certify it if that is possible as a whole.
+        """Return whether the motion is certified; without a certificate, try to certify it.
 
-        If a part of it is undecided, there is no certificate: the first undecided part is found in less time than all.
+        The attempt ends without a certificate at the first part of the motion that cannot be decided, so it may be
+        faster than ``certify``.
         """
         certificate = self.certificate or self._proved(whole=False)
         self._certificate = None if certificate.undecided else (self.waypoints, certificate)
