@@ -261,7 +261,7 @@ class GraspingModel(ValidGrasps):
         """Return the arguments of ``generate`` for this hand, in their order.
 
         Args:
-            options: OpenRAVE's options of the command line: ``boxdelta``, ``standoffs`` and others, where they are set.
+            options: OpenRAVE's command line options, such as ``boxdelta`` and ``standoffs``, which replace defaults.
         """
 
         def option(name: str, default: object = None) -> Any:  # noqa: ANN401 - any option

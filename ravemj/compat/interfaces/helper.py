@@ -71,9 +71,9 @@ class Helper(ApiObject):
         outputtrajobj: bool | None,
         reply: str = "",
     ) -> Trajectory | str:
-        """Execute a motion unless ``execute`` is False, and return it in the requested form, by default the reply.
+        """Execute a motion unless ``execute`` is False; return it as trajectory or text if requested, else ``reply``.
 
-        OpenRAVE's modules reply with an empty text, or "1" for motions to poses of the tool. It is never None.
+        The reply is that of OpenRAVE's module: an empty text, or "1" for motions to poses of the tool; never None.
         """
         if execute is None or execute:
             self._manipulation.execute(traj)

@@ -100,7 +100,7 @@ def RetimeAffineTrajectory(
 ) -> PlannerStatus:
     """Time a trajectory of poses within limits.
 
-    Translations are straight; the duration is the length over the smallest limit of the values.
+    Translations are straight, with a speed of at most the smallest velocity limit of their coordinates.
 
     Args:
         trajectory: Changed in place.
@@ -306,7 +306,7 @@ def _planned(traj: Trajectory, params: Callable[[], PlannerParameters], name: st
 
 
 def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
-    """Add the time to a trajectory of one waypoint, as OpenRAVE does whatever the planner."""
+    """Add the time to a trajectory with a single waypoint, for which OpenRAVE runs no planner."""
     spec = traj.GetConfigurationSpecification()
     spec.AddDeltaTimeGroup()
     ConvertTrajectorySpecification(traj, spec)
@@ -314,7 +314,7 @@ def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
 
 
 def _retimer(traj: Trajectory) -> str:
-    """Return OpenRAVE's retimer of a trajectory, by the interpolation of its joint values, or else of its poses."""
+    """Return the name of OpenRAVE's default retimer for the interpolation of the joint values, or else of the poses."""
     groups = checked_kind(traj, Trajectory, "trajectory").GetConfigurationSpecification().GetGroups()
     of_joints = [group.interpolation for group in groups if group.name.startswith("joint_values")]
     of_poses = [
