@@ -178,7 +178,7 @@ class DebugLevel(NamedInt):
 
 
 class IkFilterOptions(NamedFlag):
-    """Tests that inverse kinematics applies to, or skips for, its solutions."""
+    """Tests of IK solutions to apply or to skip; combine them with ``|``."""
 
     CheckEnvCollisions = 1
     IgnoreSelfCollisions = 2

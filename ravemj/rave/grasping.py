@@ -116,7 +116,7 @@ def grasps(  # noqa: PLR0913 - keyword arguments
 
 
 class _Query(NamedTuple):
-    """A search for grasps by the active manipulator of a robot; ``reach``: whether the arm has to reach them."""
+    """Grasp search of a robot's active manipulator; ``reach`` tells whether the arm has to reach the grasps."""
 
     robot: Robot
     body: KinBody
@@ -166,7 +166,7 @@ def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:
     it.
 
     Args:
-        body: The body, where it stands.
+        body: The body, at its current pose.
         grasp: The grasp.
 
     Example:

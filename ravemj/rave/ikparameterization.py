@@ -413,7 +413,7 @@ class IkParameterizationData(GoalValues):
             unitScale: Factor for lengths.
 
         Raises:
-            openrave_exception: something in it is missing or wrong; nothing changes then.
+            openrave_exception: a value of ``obj`` is missing or wrong; nothing changes then.
         """
         checked_kind(obj, Mapping, "DeserializeJSON: obj", "a dict")
         try:

@@ -130,7 +130,10 @@ class FilteredSearch(ArmSearch):
                 self._robot.active_choice = chosen
 
     def accepts(self, row: Floats, *, before_collisions: bool) -> bool:
-        """Call the filters with a priority above 0 if ``before_collisions``, else the others."""
+        """Call some of the filters, and return whether they accept a solution.
+
+        If ``before_collisions``, these are the filters with a priority above 0, else the others.
+        """
         if before_collisions:
             self._answer = IkReturn(IkReturnAction.Success)
             self._seen.append(row)
@@ -180,7 +183,7 @@ class FilteredSearch(ArmSearch):
         return said
 
     def solution(self, row: Floats) -> Floats:
-        """Return the replacement of a solution by a filter, or the solution itself."""
+        """Return the solution that a filter has substituted for ``row``, else ``row``."""
         given = self._answer.GetSolution()
         return given if len(given) else row
 
@@ -553,7 +556,7 @@ class IkSolver(Interface):
             ikparam: The goal, in the frame of the arm's base, which the tool must match within 0.01 (m or rad).
 
         Returns:
-            The configuration as a solution, with what the filters attach; or their rejection.
+            The configuration as a solution, with the data that filters attach; or the rejection by a filter.
 
         Raises:
             ArgumentError: the tool is not at the goal.

@@ -30,7 +30,7 @@ from ravemj.rave.member import Member
 
 
 class Joint(Member):
-    """Joint between two links; ``body.GetJoints()`` makes it."""
+    """Joint between two links; ``body.GetJoints()`` returns the joints."""
 
     _internal = ("renumber",)
 
@@ -407,7 +407,10 @@ class Joint(Member):
         self._set_axes("SetHardJerkLimits", hard_max_jerk=maxlimits)
 
     def GetTorqueLimits(self) -> Floats:
-        """Return the torque or force limits [N m or N], shape (axes,); 0 if the file has none. Motors do not count."""
+        """Return the torque or force limits [N m or N], shape (axes,); 0 if the file has none.
+
+        Limits of motors are ignored.
+        """
         return self._of_axes("own_torque")
 
     def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:

@@ -209,7 +209,7 @@ class Region(ApiObject):
 
 
 def region_of(given: RegionLike) -> Region:
-    """Return a region; convert an object with its three attributes.
+    """Convert an object with the attributes of a region to a ``Region``.
 
     In such objects, an upper angle below the lower one means an interval through pi.
     """

@@ -234,7 +234,7 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
         SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
     }
 )
-"""Devices whose measurements and whose geometry viewers can draw."""
+"""Devices whose measurements, and devices whose geometry, viewers can draw."""
 
 _OFF = 1
 """Offset from the number of an "on" command to that of its "off" command."""
@@ -499,7 +499,7 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw the sensor geometry if that is on; ``anew`` redraws it after a possible change."""
+        """Draw the sensor geometry if this drawing is on; ``anew`` redraws it after a possible change."""
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
         device = self.device

@@ -117,7 +117,7 @@ class Trajectory(Interface):
 
     @property
     def waypoints(self) -> Waypoints:
-        """The waypoints below OpenRAVE's API; ``Init`` makes them."""
+        """The waypoints as ravemj's internal object; it exists after ``Init``."""
         if self._waypoints is None:
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints

@@ -360,7 +360,7 @@ class Loading(Description):
         return body
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
-        """Return the first body of a reading, without adding it."""
+        """Return the first body of a parsed file, without adding it."""
         self._note(reading)
         send_warnings(reading.diagnostics)
         failure = reading.failure

@@ -136,7 +136,7 @@ class BodyPart(ApiObject):
         self._set_axes("SetDOFJerkLimits", {"max_jerk": limits})
 
     def GetDOFHardVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the hard velocity limits, see ``SetDOFHardVelocityLimits``, or those of the DOFs ``indices``."""
+        """Return the velocities that planners never exceed, shape (dof,), or those of ``indices``; 0 for none."""
         return self._of_axes("hard_max_velocity", indices)
 
     def SetDOFHardVelocityLimits(self, limits: ArrayLike) -> None:
@@ -144,7 +144,7 @@ class BodyPart(ApiObject):
         self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits})
 
     def GetDOFHardAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the limits of ``SetDOFHardAccelerationLimits``, shape (dof,), or those of the DOFs ``indices``."""
+        """Return the accelerations that planners never exceed, shape (dof,), or those of ``indices``; 0 for none."""
         return self._of_axes("hard_max_acceleration", indices)
 
     def SetDOFHardAccelerationLimits(self, limits: ArrayLike) -> None:
@@ -152,7 +152,7 @@ class BodyPart(ApiObject):
         self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits})
 
     def GetDOFHardJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the limits of ``SetDOFHardJerkLimits``, shape (dof,), or those of the DOFs ``indices``."""
+        """Return the jerks that planners never exceed, shape (dof,), or those of ``indices``; 0 for none."""
         return self._of_axes("hard_max_jerk", indices)
 
     def SetDOFHardJerkLimits(self, limits: ArrayLike) -> None:

@@ -452,7 +452,7 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
 """Readers of options with one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
-"""Options with several tool goals, and the option with a single such goal, whose reader applies."""
+"""For each option with several tool goals: the option with a single goal, whose reader is repeated."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),

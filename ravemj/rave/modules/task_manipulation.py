@@ -138,7 +138,7 @@ def _check_motion(directions: Floats, step: float) -> None:
 
 
 def finger_steps(options: Options) -> Steps:
-    """Return the step lengths of options; a coarse step alone makes the fine one a hundredth of it, as in OpenRAVE."""
+    """Return the step lengths that options select; the fine step is by default a hundredth of a given coarse step."""
     coarse = options.get("coarsestep", STEPS.coarse)
     fine = options.get("finestep", coarse / 100)
     return Steps(coarse, fine, options.get("translationstepmult", STEPS.per_radian))
@@ -240,7 +240,7 @@ class TaskManipulation(Manipulation):
         return closed.values[list(dofs)]
 
     def release_active(self, directions: Floats, step: float = _STEP) -> tuple[Floats, Trajectory]:
-        """Move each active joint in the direction of its sign in ``directions``; return last values and motion."""
+        """Move each active joint in its direction until contact or its limit; return the last values and the motion."""
         dofs = [int(dof) for dof in self.robot.GetActiveDOFIndices()]
         if len(directions) != len(dofs):
             raise ArgumentError(f"movingdir: has {len(directions)} numbers, and there are {len(dofs)} active joints")

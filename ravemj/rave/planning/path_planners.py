@@ -279,7 +279,7 @@ def _with_first_roots(
 
 
 def _further(sampler: Sampler | None, refuse: Refuse) -> MoreRoots | None:
-    """Return a source of further roots without refused ones."""
+    """Return a source of further starts or goals that omits refused ones."""
     return None if sampler is None else MoreRoots(lambda: sampler.source.next(refuse), sampler.probability)
 
 

@@ -158,7 +158,7 @@ class _PoseSolver:
         self.solves_poses = self._given is not None or manip.GetArmDOF() >= _FULL_POSE
 
     def solve(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
-        """Return the joint values of all IK branches and turns for a pose of a region.
+        """Return all IK solutions for a pose of a region, including those that differ by full turns.
 
         Solvers of other goal types leave a part of the pose free; their solutions are projected onto the region.
         """

@@ -322,23 +322,23 @@ class ActiveDofs(KinBody):
         return self._with_affine(self.GetDOFVelocityLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFMaxAccel(self) -> Floats:
-        """Return the acceleration limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the acceleration limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFAccelerationLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFMaxJerk(self) -> Floats:
-        """Return the jerk limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the jerk limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFJerkLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxVel(self) -> Floats:
-        """Return the hard velocity limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the hard velocity limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFHardVelocityLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxAccel(self) -> Floats:
-        """Return the hard acceleration limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the hard acceleration limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFHardAccelerationLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxJerk(self) -> Floats:
-        """Return the hard jerk limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the hard jerk limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFHardJerkLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFResolutions(self) -> Floats:

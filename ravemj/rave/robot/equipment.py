@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class AttachedSensor(ApiObject):
-    """Sensor mount on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
+    """Sensor mount on a link, with or without a device; ``robot.GetAttachedSensors()`` returns the mounts."""
 
     _internal = ("description", "edit", "state")
 
@@ -253,7 +253,7 @@ class ConnectedBody(ApiObject):
         return pose_of(self.GetTransform()).numbers()
 
     def GetRelativeTransform(self) -> Floats:
-        """Return ``T_link_body``, shape (4, 4)."""
+        """Return the body's pose in the frame of the robot's link, ``T_link_body``, shape (4, 4)."""
         return np.array(checked_transform(self._info._trelative, "ConnectedBodyInfo._trelative"))
 
     def GetRelativeTransformPose(self) -> Floats:

@@ -73,7 +73,7 @@ class WholeBodyResult:
 
 
 class WholeBodyTask(ApiObject):
-    """Task of a ``WholeBodyIK``; its ``add_…`` methods return tasks. All attributes can be changed at any time."""
+    """Task of a ``WholeBodyIK``, as its ``add_…`` methods return it. The attributes can be changed at any time."""
 
     _internal = ("task",)
 
