@@ -429,7 +429,7 @@ class IkParameterizationData(GoalValues):
 
     @classmethod
     def take(cls, words: list[str]) -> Self:
-        """Parse a goal, as ``str`` writes it, from the first words of a list, and remove these words.
+        """Return the goal that a list of words begins with, as ``str`` writes it, and remove its words from the list.
 
         Raises:
             ArgumentError: the words do not start with a goal.

@@ -261,7 +261,7 @@ class GraspUse(ApproachRays):
             outputtrajobj: Whether to return the motion of the gripper as a ``Trajectory``.
 
         Raises:
-            PlanningError: the gripper collides on its way to the preshape.
+            PlanningError: no motion without collisions was found.
         """
         if self.basemanip is None:
             self._ready_grasper()

@@ -436,7 +436,7 @@ class KinBody(BodyConfiguration, Interface):
         return checker.CheckSelfCollision(self, report)
 
     def SetSelfCollisionChecker(self, collisionchecker: "CollisionChecker | None") -> None:
-        """Set the checker of ``CheckSelfCollision``; None selects the environment's checker."""
+        """Set the checker of ``CheckSelfCollision``; ``collisionchecker`` None selects the environment's checker."""
         if collisionchecker is not None:
             _check_checker(collisionchecker, "SetSelfCollisionChecker")
         self._self_checker = collisionchecker
