@@ -337,7 +337,7 @@ class ConfigurationSpecification(ConfigurationData):
 
         Args:
             name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be equal as well.
+            exactmatch: Whether body and indices in the names have to be equal as well.
         """
         return self._shifted(name, 1, exactmatch)
 
@@ -346,7 +346,7 @@ class ConfigurationSpecification(ConfigurationData):
 
         Args:
             name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be equal as well.
+            exactmatch: Whether body and indices in the names have to be equal as well.
         """
         return self._shifted(name, -1, exactmatch)
 
