@@ -6,13 +6,13 @@ from typing import NoReturn
 from ravemj.errors import UnsupportedError
 
 __path__: list[str] = []
-"""Makes this module a package in which every name is the module of an example."""
+"""Empty search path, which makes this module a package, so that examples can be imported as its submodules."""
 
 _PLACE = "https://github.com/rdiankov/openrave/tree/master/python/examples"
 
 
 def fill(module: ModuleType) -> None:
-    """Make the attributes of a module raise an error with the location of the example.
+    """Make all attributes of a module raise an error that names the location of the example.
 
     Args:
         module: The module, which has the name of an example.

@@ -32,10 +32,10 @@ def RaveGlobalState() -> VoidPointer:
 
 
 def RaveGetIkTypeFromUniqueId(uniqueid: int) -> IkParameterizationType:
-    """Return the goal type with a number.
+    """Return the IK type that a unique id identifies.
 
     Args:
-        uniqueid: The number, of which only the bits that identify types are used.
+        uniqueid: The id, of which only the bits that identify types are used.
     """
     kinds = {int(kind) & 0xFF: kind for kind in IkParameterizationType}
     if uniqueid & 0xFF not in kinds:

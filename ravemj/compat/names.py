@@ -80,7 +80,7 @@ def share(name: str) -> None:
 
 
 def install(root: str) -> None:
-    """Handle imports of names that start with a component, in this process."""
+    """Handle imports of ``root`` and of its submodules in this process."""
     if not any(isinstance(finder, Renamed) and finder.root == root for finder in sys.meta_path):
         sys.meta_path.insert(0, Renamed(root))
 

@@ -47,7 +47,7 @@ globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, **l
 
 
 def __getattr__(name: str) -> object:
-    """Import a module of openravepy on first access, or return a name of ravemj's own."""
+    """Return a submodule of openravepy, imported on first access, or one of ravemj's own names."""
     if name in _ELSEWHERE:
         module, its_name = _ELSEWHERE[name]
         return getattr(importlib.import_module(f"ravemj.compat.{module}"), its_name)

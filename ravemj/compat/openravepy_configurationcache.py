@@ -1,4 +1,4 @@
-"""``openravepy.openravepy_configurationcache``: configurations whose collisions are known. Nothing is kept here."""
+"""``openravepy.openravepy_configurationcache``: cache of collision checks, which ravemj does not support."""
 
 from typing import NoReturn
 
@@ -6,7 +6,7 @@ from ravemj.errors import UnsupportedError
 
 
 class ConfigurationCache:
-    """Refuses to be made, and says what answers the same questions."""
+    """Cache of collision checks; its constructor raises ``UnsupportedError``, which names alternatives."""
 
     def __init__(self, robot: object) -> NoReturn:
         del robot

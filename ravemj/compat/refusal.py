@@ -1,4 +1,4 @@
-"""Unsupported functions of OpenRAVE: they have its arguments, and raise ``UnsupportedError``."""
+"""Placeholders for unsupported functions of OpenRAVE: they accept its arguments, and raise ``UnsupportedError``."""
 
 import re
 from collections.abc import Callable
@@ -11,12 +11,12 @@ Kind = TypeVar("Kind", bound=type[object])
 
 
 def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoReturn]:
-    """Return a function that raises an error with the missing capability.
+    """Return a function that raises ``UnsupportedError`` with the missing capability.
 
     Args:
-        name: Its name for users; a constructor by its class and ``__init__``.
-        capability: What ravemj lacks.
-        arguments: The names of its arguments, which completion shows; ``*`` and ``**`` before a name take the rest.
+        name: The function's name in the error; for a constructor, its class and ``__init__``.
+        capability: The capability that ravemj lacks.
+        arguments: The names of its arguments, which completion shows; ``*`` and ``**`` mark variadic arguments.
     """
 
     def refuse(*given: object, **named: object) -> NoReturn:
@@ -31,10 +31,10 @@ def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoRetu
 
 
 def lacking(capability: str, methods: str) -> Callable[[Kind], Kind]:
-    """Return a class decorator that adds unsupported methods of OpenRAVE.
+    """Return a class decorator that adds unsupported methods of OpenRAVE, which raise ``UnsupportedError``.
 
     Args:
-        capability: What ravemj lacks.
+        capability: The capability that ravemj lacks.
         methods: Names, each with its arguments in parentheses, as for ``refusing``; ``@`` marks static methods.
     """
 

@@ -44,14 +44,14 @@ _NO_LINKS: frozenset[LinkOf] = frozenset()
 _LOG = logging.getLogger("ravemj")
 
 _ARGUMENTS = ("ray", "link1", "link2", "link", "body1", "body2", "body", "bodyexcluded", "linkexcluded")
-"""Names of the arguments of ``CheckCollision``, in the order in which they stand without names."""
+"""Names of the arguments of ``CheckCollision``, in positional order."""
 
 
 class CollisionChecker(Interface):
     """Collision checker; ``env.GetCollisionChecker()`` returns it.
 
-    Boxes, spheres, cylinders, capsules and convex meshes are exact solids. Other meshes are their triangles, as in
-    OpenRAVE: what is inside one without touching a triangle does not collide.
+    Boxes, spheres, cylinders, capsules and convex meshes are exact solids. Other meshes are hollow, as in OpenRAVE:
+    only their triangles collide, not a body inside that touches no triangle.
     """
 
     _often_called = ("CheckCollision", "CheckSelfCollision")
@@ -108,7 +108,7 @@ class CollisionChecker(Interface):
         return True
 
     def _choose(self) -> None:
-        """Derive from the options the contents of reports."""
+        """Determine the contents of reports from the options."""
         options = CollisionOptions(self._options)
         listed: Listed = "links" if options & CollisionOptions.AllLinkCollisions else "first pair"
         self._wanted = Wanted(
@@ -132,7 +132,7 @@ class CollisionChecker(Interface):
         return self._tolerance
 
     def CheckCollision(self, *arguments: object, report: CollisionReport | None = None, **named: object) -> bool:
-        """Return whether things touch; arguments and ``report`` as for ``env.CheckCollision``."""
+        """Return whether bodies, links or rays collide; arguments and ``report`` as for ``env.CheckCollision``."""
         if named:
             arguments = (*arguments, *(named.pop(name) for name in _ARGUMENTS if name in named))
         if named:
@@ -397,12 +397,12 @@ class CollisionChecker(Interface):
         front_facing_only: bool = False,
         checkPreemptFn: object = None,
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return the rays that hit something, shape (n,), and their hits, shape (n, 6); see ``env.CheckCollisionRays``.
+        """Return whether each ray hits, shape (n,), and the hits, shape (n, 6); see ``env.CheckCollisionRays``.
 
         Args:
-            rays: As there.
-            body: As there.
-            front_facing_only: As there.
+            rays: Starts and directions, shape (n, 6).
+            body: The body to test; by default all bodies.
+            front_facing_only: Whether to ignore hits on the inside of a surface.
             checkPreemptFn: Not used: the rays are cast at once.
         """
         del checkPreemptFn

@@ -194,14 +194,14 @@ _SLACK = 1e-6
 
 
 class _Path(NamedTuple):
-    """A trajectory, and the values of it that move the robot.
+    """A trajectory, and its columns that move the robot.
 
     Attributes:
         trajectory: A copy of the user's trajectory.
         columns: The columns of its waypoints that hold joint values.
         dofs: The DOF indices of these values.
         moves_base: Whether its waypoints have a pose of the robot's base.
-        grabs: The bodies that it has still to grab and to release.
+        grabs: The remaining changes of grabs, in the order of time.
     """
 
     trajectory: Trajectory
@@ -212,7 +212,7 @@ class _Path(NamedTuple):
 
 
 def _switch(command: str, attribute: str) -> Callable[["IdealController", str], str]:
-    """Return what runs a command that switches something on or off."""
+    """Return the handler of a command that sets a boolean attribute."""
 
     def run(controller: "IdealController", arguments: str) -> str:
         setattr(controller, attribute, checked_flag(arguments, command))
@@ -226,10 +226,10 @@ class IdealController(Controller):
 
     ``SetDesired`` moves the robot at once, and is done with the next simulation step. ``SetPath`` plays a trajectory:
     the first step sets its first waypoint, and the path is done one step after its last waypoint. A group
-    ``grab ROBOT LINK`` of the trajectory grabs the body whose ``GetEnvironmentBodyIndex()`` is its value with the link
-    of this index, and releases it where the value is negative.
+    ``grab ROBOT LINK`` of the trajectory has indices of bodies (``GetEnvironmentBodyIndex()``) as values: the link with
+    the index LINK grabs the body, and releases it if the value is negative.
 
-    The controller reports joints that exceed their velocity limits or their limits and, after
+    The controller reports joints that exceed their position or velocity limits and, after
     ``SendCommand("SetCheckCollisions 1")``, collisions of the robot. It logs the first problem of each command as a
     warning. After ``SendCommand("SetThrowExceptions 1")``, each problem raises an ``openrave_exception`` (``Assert``)
     in ``SetDesired`` or in the simulation step, and ends the command. ``SendCommand("Pause 1")`` pauses the robot until
@@ -484,7 +484,7 @@ class VelocityController(Controller):
 
 
 class _PathPart(NamedTuple):
-    """Controller of a ``MultiController``, and the indices of its values in those of the whole."""
+    """Controller of a ``MultiController``, and the indices of its values among all values."""
 
     controller: Controller
     places: Ints

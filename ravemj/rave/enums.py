@@ -7,13 +7,13 @@ class CheckLimitsAction(NamedInt):
     """Treatment of joint values and velocities outside the limits."""
 
     Nothing = 0
-    """Set them as they are."""
+    """Set values outside the limits unchanged."""
     CheckLimits = 1
-    """Move them to the limit, with a warning."""
+    """Clamp values to the limits, with a warning."""
     CheckLimitsSilent = 2
-    """Move them to the limit."""
+    """Clamp values to the limits."""
     CheckLimitsThrow = 3
-    """Raise, and change nothing."""
+    """Raise an error for a value outside the limits, and change nothing."""
 
 
 class JointType(NamedInt):
@@ -87,13 +87,13 @@ class InterfaceAddMode(NamedInt):
     """Treatment of a name that is already taken in ``env.Add``; True and False are OpenRAVE 0.9's ``anonymous``."""
 
     AllowRenaming = 0
-    """Add it under a new, unique name."""
+    """Add the object under a new, unique name."""
     StrictNameChecking = 1
-    """Raise."""
+    """Raise an error."""
     StrictIdChecking = 2
-    """Add it under a new, unique name; ids are never changed here."""
+    """Add the object under a new, unique name; ids are never changed here."""
     StrictNameIdChecking = 3
-    """Raise."""
+    """Raise an error."""
 
 
 class SaveParameters(NamedFlag):
@@ -141,9 +141,9 @@ class UpdateFromInfoMode(NamedInt):
     """Treatment of bodies that the info of ``env.UpdateFromInfo`` does not name."""
 
     Exact = 0
-    """Remove them."""
+    """Remove bodies that the info does not name."""
     OnlySpecifiedBodiesExact = 1
-    """Leave them."""
+    """Keep bodies that the info does not name."""
 
 
 class UpdateFromInfoResult(NamedInt):
@@ -178,7 +178,7 @@ class DebugLevel(NamedInt):
 
 
 class IkFilterOptions(NamedFlag):
-    """Tests that inverse kinematics applies to, or skips for, its solutions."""
+    """Tests of IK solutions to apply or to skip; combine them with ``|``."""
 
     CheckEnvCollisions = 1
     IgnoreSelfCollisions = 2
@@ -186,7 +186,7 @@ class IkFilterOptions(NamedFlag):
     IgnoreCustomFilters = 8
     IgnoreEndEffectorEnvCollisions = 0x10
     IgnoreEndEffectorCollisions = 0x10
-    """Name of this option in version 0.9."""
+    """OpenRAVE 0.9's name of ``IgnoreEndEffectorEnvCollisions``."""
     IgnoreEndEffectorSelfCollisions = 0x20
 
 
@@ -309,9 +309,9 @@ class PlannerAction(NamedInt):
 
     vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
     Interrupt = 1
-    """Stop."""
+    """Stop planning."""
     ReturnWithAnySolution = 2
-    """Stop if a path has been found already, however long."""
+    """Stop planning if a path, of any length, has been found."""
 
 
 class Interval(NamedFlag):

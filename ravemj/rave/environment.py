@@ -127,8 +127,8 @@ class Environment(Loading, Saving, Viewing):
         """Make an empty environment: ``Environment()`` or ``Environment(name)``.
 
         Args:
-            name: What ``GetName`` returns. ``Environment(env)`` is that environment itself. A number is OpenRAVE's
-                ``options``.
+            name: The name that ``GetName`` returns. ``Environment(env)`` is that environment itself. A number is
+                OpenRAVE's ``options``.
             options: ``EnvironmentCreateOptions``; they have no effect.
         """
         del options

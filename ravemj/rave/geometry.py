@@ -20,7 +20,7 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 
 class Geometry(ApiObject):
-    """A shape of a link; ``link.GetGeometries()`` makes it.
+    """A shape of a link; ``link.GetGeometries()`` returns the shapes.
 
     Boxes and round shapes share the same three numbers, as in OpenRAVE (half extents; radius; radius and height), so
     each size getter works for all of them. For other types, getters of sizes that the type lacks raise an error.

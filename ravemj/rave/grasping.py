@@ -36,7 +36,7 @@ from ravemj.trajectories.bodies import body_groups
 _POSE = IkParameterizationType.Transform6D
 
 _BLOCK = 64
-"""Number of candidates that a process gets at a time."""
+"""Number of candidates per task of a worker process."""
 
 _ARROW = 0.035
 """Length of the arrow of a contact [m]."""
@@ -58,10 +58,10 @@ def grasps(  # noqa: PLR0913 - keyword arguments
     proofs: int = 0,
     processes: int = 1,
 ) -> Grasps:
-    """Return grasps of a body where it stands, and the reason for each candidate that was rejected.
+    """Return grasps of a body at its current pose, and the reason for each candidate that was rejected.
 
-    The active manipulator grasps; its gripper opens as far as its limits go. Fingers without a closing direction, as in
-    URDF, close towards each other. Robot and body are as before afterwards.
+    The active manipulator grasps; its gripper opens to its limits. Fingers without a closing direction, as in URDF,
+    close towards each other. Robot and body are restored afterwards.
 
     Args:
         robot: The robot.
@@ -73,7 +73,7 @@ def grasps(  # noqa: PLR0913 - keyword arguments
         delta: Distance of the approach rays on the sides of the body's box [m].
         rolls: Number of rotations of the hand about each approach, or about the line of each pair. The default is 4 for
             ``fly`` and 8 for ``antipodal``.
-        reach: Whether the arm has to reach a grasp without collisions; False: the hand alone counts.
+        reach: Whether the arm has to reach a grasp without collisions; False: only the hand is tested.
         proofs: Number of grasps that are simulated, those of ``distinct(proofs)``: the fingers press with their largest
             force or torque (10 N or N m if the model has none), the hand is lifted by 0.1 m and shaken along each axis
             with 5 m/s^2 for a second. ``Grasp.proof`` says whether the body moved in the hand by less than 5 mm and 5
@@ -116,7 +116,7 @@ def grasps(  # noqa: PLR0913 - keyword arguments
 
 
 class _Query(NamedTuple):
-    """A search for grasps by the active manipulator of a robot; ``reach``: whether the arm has to reach them."""
+    """Grasp search of a robot's active manipulator; ``reach`` tells whether the arm has to reach the grasps."""
 
     robot: Robot
     body: KinBody
@@ -124,7 +124,7 @@ class _Query(NamedTuple):
     reach: bool
 
     def run(self, span: tuple[int, int] | None = None, progress: Callable[[int], object] | None = None) -> list[Grasp]:
-        """Try the candidates with some indices."""
+        """Test the candidates in a range of indices, by default all."""
         arm, target = _active(self.robot), self.body.simulation_state
         reach = _reach(self.robot, arm) if self.reach else None
         state = self.robot.simulation_state
@@ -132,7 +132,7 @@ class _Query(NamedTuple):
 
 
 def _searched(query: _Query, processes: int) -> list[Grasp]:
-    """Return all candidates, tried in this process or in several."""
+    """Test all candidates in this process or in several, and return them."""
     robot, target = query.robot.simulation_state, query.body.simulation_state
     count = count_candidates(robot, _closing(_active(query.robot)), target, query.choices)
     with progress_bar("grasps", count) as show:
@@ -146,7 +146,7 @@ def _searched(query: _Query, processes: int) -> list[Grasp]:
 
 
 def _tried_part(content: bytes, span: tuple[int, int]) -> list[Grasp]:
-    """Try some candidates, in another process."""
+    """Test a range of candidates in a worker process."""
     query = _unpickled(content)
     with query.robot.GetEnv():
         return query.run(span)
@@ -166,7 +166,7 @@ def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:
     it.
 
     Args:
-        body: The body, where it stands.
+        body: The body, at its current pose.
         grasp: The grasp.
 
     Example:

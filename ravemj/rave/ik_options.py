@@ -10,7 +10,7 @@ from ravemj.manipulation.arm_search import Checks
 from ravemj.rave.enums import IkFilterOptions
 
 _OPTIONS = "filteroptions"
-"""Name of the argument."""
+"""Name of the argument with ``IkFilterOptions``."""
 
 # Plain numbers: operators of flags take longer than tests of collision.
 _CHECK_ENV = int(IkFilterOptions.CheckEnvCollisions)

@@ -51,7 +51,7 @@ _ROTATION_SIZES = {
     _Type.TranslationLocalGlobal6D: 3,
     **dict.fromkeys(_ANGLES, 1),
 }
-"""Number of values of each goal type that OpenRAVE stores in place of the quaternion; 0 of the others."""
+"""Number of values that OpenRAVE stores in place of the quaternion, by goal type; 0 for other types."""
 
 _SET = """Set the goal to a point and the {angle}.
 
@@ -156,7 +156,7 @@ class GoalValues(ApiObject):
         return self._of(_Type.Lookat3D)
 
     def SetRay4D(self, quat: Ray) -> None:
-        """Set the goal to a ray ``quat`` with a unit direction, on which the tool axis must lie at any point."""
+        """Set the goal to the ray ``quat``, with a unit direction: the tool axis must lie on it, anywhere along it."""
         self._set(_Type.Ray4D, quat)
 
     def GetRay4D(self) -> Ray:
@@ -413,7 +413,7 @@ class IkParameterizationData(GoalValues):
             unitScale: Factor for lengths.
 
         Raises:
-            openrave_exception: something in it is missing or wrong; nothing changes then.
+            openrave_exception: a value of ``obj`` is missing or wrong; nothing changes then.
         """
         checked_kind(obj, Mapping, "DeserializeJSON: obj", "a dict")
         try:
@@ -429,7 +429,7 @@ class IkParameterizationData(GoalValues):
 
     @classmethod
     def take(cls, words: list[str]) -> Self:
-        """Return the goal that words begin with, as ``str`` wrote it, and take these words off.
+        """Return the goal that a list of words begins with, as ``str`` writes it, and remove its words from the list.
 
         Raises:
             ArgumentError: the words do not start with a goal.

@@ -84,7 +84,7 @@ class IkReturn(ApiObject):
         self._failures = indices
 
     def take(self, other: "IkReturn") -> None:
-        """Take over the data that a filter attached to its answer."""
+        """Copy the data that a filter attached to its answer."""
         self._map.update(other.GetMapDataDict())
         if other.GetUserData() is not None:
             self._user_data = other.GetUserData()

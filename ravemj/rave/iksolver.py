@@ -38,9 +38,9 @@ if TYPE_CHECKING:
 
 
 _SAME = 1e-7
-"""Largest difference of joint values [rad or m] of one posture."""
+"""Maximum difference of joint values [rad or m] that count as equal."""
 _NEAR = 1e-4
-"""Largest squared distance between the goal and the configuration that ``CallFilters`` accepts."""
+"""Maximum squared distance between the goal and the tool that ``CallFilters`` accepts."""
 
 _IGNORE_FILTERS = int(IkFilterOptions.IgnoreCustomFilters)
 _POSE = IkParameterization.Type.Transform6D
@@ -71,7 +71,7 @@ class Filter:
 
 
 class Goal(NamedTuple):
-    """IK goal in the arm's base frame: as given, where an array is a pose (4, 4), and as the solver's input."""
+    """IK goal in the arm's base frame, as given (an array is a pose (4, 4)) and as the solver's input."""
 
     given: IkParameterization | Floats
     numbers: Floats
@@ -130,14 +130,17 @@ class FilteredSearch(ArmSearch):
                 self._robot.active_choice = chosen
 
     def accepts(self, row: Floats, *, before_collisions: bool) -> bool:
-        """Call the filters with a priority above 0 if ``before_collisions``, else the others."""
+        """Call some of the filters, and return whether they accept a solution.
+
+        If ``before_collisions``, these are the filters with a priority above 0, else the others.
+        """
         if before_collisions:
             self._answer = IkReturn(IkReturnAction.Success)
             self._seen.append(row)
         return self._pass([filter_ for filter_ in self._filters if (filter_.priority > 0) == before_collisions], row)
 
     def is_repeated(self) -> bool:
-        """Return whether the present joint values differ by whole turns alone from values that filters saw before."""
+        """Return whether filters have already seen the present joint values, up to full turns."""
         if not self._seen:
             return False
         moved = np.reshape(self._seen[:-1], (-1, len(self._seen[-1]))) - self._seen[-1]
@@ -145,7 +148,7 @@ class FilteredSearch(ArmSearch):
         return bool((np.abs(turned) < _SAME).all(axis=1).any())
 
     def _pass(self, filters: Iterable[Filter], row: Floats) -> bool:
-        """Call filters for a solution, and collect the data that they attach."""
+        """Call filters for a solution and collect the data that they attach; return whether all accept."""
         for filter_ in filters:
             said = self._asked(filter_, row)
             action = IkReturnAction.Reject if said is None else said.GetAction()
@@ -180,12 +183,12 @@ class FilteredSearch(ArmSearch):
         return said
 
     def solution(self, row: Floats) -> Floats:
-        """Return the replacement of a solution by a filter, or the solution itself."""
+        """Return the solution that a filter has substituted for ``row``, else ``row``."""
         given = self._answer.GetSolution()
         return given if len(given) else row
 
     def answer(self, row: Floats) -> IkReturn:
-        """Return the result for the solution accepted last, shape (n,)."""
+        """Return the result for the solution accepted last."""
         answer, self._answer = self._answer, IkReturn(IkReturnAction.Success)
         answer.SetSolution(row)
         return answer
@@ -297,13 +300,13 @@ class IkSolver(Interface):
         return ""
 
     def _repeat_count(self, arguments: str) -> str:
-        """Return 1 in a filter that was called with the same link poses before in this search, else 0."""
+        """Return 1 if filters have already seen the present link poses in this search, else 0."""
         del arguments
         search = self._latest()
         return str(int(search is not None and search.is_repeated()))
 
     def _solution_indices(self, arguments: str) -> str:
-        """Raise: the numbers are those of the branches in the C++ code that OpenRAVE's ikfast generates for an arm."""
+        """Raise an error: these are the numbers of the branches in the C++ code that OpenRAVE's ikfast generates."""
         del arguments
         remedy = "solutions are told apart by their joint values: FindIKSolutions returns them all"
         raise UnsupportedError(f"GetSolutionIndices ({remedy})", "numbering of the branches of a solver")
@@ -362,7 +365,7 @@ class IkSolver(Interface):
         raise RavemjError(f"the arm '{self._arm_name}' of the solver '{self._xmlid}' was removed")
 
     def derived(self) -> "ArmSolutions":
-        """Return what computes, for the arm as it is now."""
+        """Return the computed solver for the arm's present geometry, with the sampling steps of this object."""
         solver = self._arm_solver.solver_for(self._owner().simulation_state.scene, self._description())
         steps = (self._steps or ())[: len(solver.free)]  # a name may have more steps than the arm has free joints
         return replace(solver, steps=(*steps, *solver.steps[len(steps) :])) if steps else solver
@@ -424,9 +427,9 @@ class IkSolver(Interface):
         """Return the accepted solution nearest to a configuration, or the reasons of the failure; see ``search``.
 
         Args:
-            goal: As there.
-            shares: As there.
-            options: As there.
+            goal: See ``search``.
+            shares: See ``search``.
+            options: See ``search``.
             seed: The configuration, shape (n,); None: the present one.
             failures: Receives the rejected solutions.
         """
@@ -532,7 +535,7 @@ class IkSolver(Interface):
         return Handle(self._filters.remove, entry)
 
     def SetCustomFilter(self, callback: FilterFunction) -> bool:
-        """Register a filter that stays, in place of the one of an earlier call; see ``RegisterCustomFilter``.
+        """Register a permanent filter, which replaces the one of an earlier call; see ``RegisterCustomFilter``.
 
         Args:
             callback: The callback; it is called after collision checks.
@@ -553,7 +556,7 @@ class IkSolver(Interface):
             ikparam: The goal, in the frame of the arm's base, which the tool must match within 0.01 (m or rad).
 
         Returns:
-            The configuration as a solution, with what the filters attach; or their rejection.
+            The configuration as a solution, with the data that filters attach; or the rejection by a filter.
 
         Raises:
             ArgumentError: the tool is not at the goal.

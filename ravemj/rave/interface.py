@@ -138,7 +138,7 @@ class stringreaders:  # noqa: N801 - OpenRAVE's name
 
 
 class xmlreaders:  # noqa: N801 - OpenRAVE's name
-    """The same constructors under OpenRAVE's older names."""
+    """The constructors of ``stringreaders`` under OpenRAVE's older names."""
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:

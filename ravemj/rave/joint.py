@@ -30,7 +30,7 @@ from ravemj.rave.member import Member
 
 
 class Joint(Member):
-    """Joint between two links; ``body.GetJoints()`` makes it."""
+    """Joint between two links; ``body.GetJoints()`` returns the joints."""
 
     _internal = ("renumber",)
 
@@ -168,7 +168,7 @@ class Joint(Member):
         return self._axis(axis).circular
 
     def IsStatic(self) -> bool:
-        """Return whether the limits leave the joint no room. If they did when the body was made, it is a weld."""
+        """Return whether the limits allow no motion. A joint with such limits at the creation of the body is a weld."""
         return not self._scene.has_room
 
     def IsMimic(self, axis: int = -1) -> bool:
@@ -407,7 +407,10 @@ class Joint(Member):
         self._set_axes("SetHardJerkLimits", hard_max_jerk=maxlimits)
 
     def GetTorqueLimits(self) -> Floats:
-        """Return the torque or force limits [N m or N], shape (axes,); 0 if the file has none. Motors do not count."""
+        """Return the torque or force limits [N m or N], shape (axes,); 0 if the file has none.
+
+        Limits of motors are ignored.
+        """
         return self._of_axes("own_torque")
 
     def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:

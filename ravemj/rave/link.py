@@ -97,7 +97,7 @@ class Link(Member):
         return self._scene.static
 
     def SetStatic(self, bStatic: bool) -> None:
-        """Mark the link as static or not, as ``bStatic`` says. Its joints move it either way."""
+        """Mark the link as static if ``bStatic``, else remove the mark. Joints move the link either way."""
         with self._state.simulation.lock:
             self._state.edit_link(self._index, static=bool(bStatic))
 
@@ -397,7 +397,7 @@ class Link(Member):
         return any([geometry.SetVisible(visible) for geometry in self.GetGeometries()])
 
     def Enable(self, enable: bool) -> None:
-        """Let the link take part in collision checks if ``enable``."""
+        """Include the link in collision checks if ``enable``, else exclude it."""
         with self._state.simulation.lock:
             enabled = list(self._state.link_enabled)
             enabled[self._index] = bool(enable)

@@ -93,9 +93,9 @@ class PhysicsEngine(Interface):
         return np.array(self._env.simulation.gravity if self._is_attached else self._gravity)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set whether links of one body collide, and return whether the engine has options.
+        """Set whether links of one body collide with one another, and return whether the engine has options.
 
-        ``physicsoptions`` is ``PhysicsEngineOptions.SelfCollisions``; with 0 they do not.
+        ``physicsoptions`` is ``PhysicsEngineOptions.SelfCollisions``, or 0 for no such collisions.
         """
         if self.dynamics is None:
             return False
@@ -254,13 +254,13 @@ class PhysicsEngine(Interface):
         return loads is not None
 
     def attach(self) -> None:
-        """Register as the engine of the environment."""
+        """Register the engine with the environment."""
         self._is_attached = True
         self._env.simulation.set_gravity(self._gravity)
         self._env.simulation.physics = self.dynamics
 
     def detach(self) -> None:
-        """End the use as the engine of the environment."""
+        """Unregister the engine from the environment."""
         self._gravity = self._env.simulation.gravity
         self._is_attached = False
 

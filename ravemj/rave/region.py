@@ -209,7 +209,7 @@ class Region(ApiObject):
 
 
 def region_of(given: RegionLike) -> Region:
-    """Return a region; convert an object with its three attributes.
+    """Convert an object with the attributes of a region to a ``Region``.
 
     In such objects, an upper angle below the lower one means an interval through pi.
     """
@@ -275,7 +275,7 @@ def _members(sets: Sequence[object], name: str) -> tuple[object, ...]:
 
 
 def is_region(thing: object) -> TypeGuard[RegionLike]:
-    """-"""
+    """Return whether an object has the attributes ``T0_w``, ``Tw_e`` and ``Bw`` of a region."""
     return all(hasattr(thing, name) for name in ("T0_w", "Tw_e", "Bw"))
 
 

@@ -54,18 +54,18 @@ def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
 
 
 def RaveCreateIkSolver(env: Environment, name: str) -> IkSolver | None:
-    """Make a solver of inverse kinematics; ``manip.SetIkSolver`` gives it an arm.
+    """Make an IK solver; ``manip.SetIkSolver`` assigns it to an arm.
 
     Args:
         env: The environment.
-        name: ``ikfast`` and a word in which the type of goal stands, as ``InverseKinematicsModel.getikname`` returns
-            it; what follows are the steps of free joints [rad or m]. ``ikfast Transform6D 0.05``
+        name: ``ikfast``, the goal type, and optionally the steps of free joints [rad or m], for example
+            ``ikfast Transform6D 0.05``. A name from ``InverseKinematicsModel.getikname`` contains the goal type.
 
     Returns:
-        The solver; None, and a warning is logged, where the name says no type of goal.
+        The solver; None with a logged warning if the name contains no goal type.
 
     Raises:
-        UnsupportedError: no solver answers goals of that type.
+        UnsupportedError: no solver supports goals of that type.
 
     Example:
         >>> solver = RaveCreateIkSolver(env, "ikfast Translation3D")

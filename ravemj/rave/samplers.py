@@ -47,7 +47,7 @@ class SpaceSampler(Interface):
         self._sequence = sequence
 
     def SetSeed(self, seed: int) -> None:
-        """Restart the sequence: equal values of ``seed`` give equal sequences. Halton's sequence goes on."""
+        """Restart the sequence: equal values of ``seed`` give equal sequences. Halton's sequence is not restarted."""
         self._sequence.start(checked_index(seed, 2**32, "SetSeed: seed"))
 
     def SetSpaceDOF(self, dof: int) -> None:

@@ -192,17 +192,14 @@ class DescribedSensor(Interface):
             self.take_state(other)
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
-        """Return the constant properties of the sensor.
-
-        None if the sensor does not have the type ``type``; by default its own.
-        """
+        """Return the constant properties of the sensor; None if ``type`` is given and is not the sensor's type."""
         device = self.description.device
         geometry = None if device is None else geometry_of(device)
         is_meant = geometry is not None and type in {None, SensorType.Invalid, geometry.GetType()}
         return geometry if is_meant else None
 
     def CreateSensorData(self, type: SensorType | None = None) -> SensorData:  # OpenRAVE's name
-        """Return an empty measurement of ``type``, by default of the sensor's own.
+        """Return an empty measurement of ``type``, by default of the sensor's own type.
 
         Raises:
             openrave_exception: the sensor does not measure this kind of data.
@@ -237,7 +234,7 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
         SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
     }
 )
-"""Devices whose measurements and whose geometry viewers can draw."""
+"""Devices whose measurements, and devices whose geometry, viewers can draw."""
 
 _OFF = 1
 """Offset from the number of an "on" command to that of its "off" command."""
@@ -502,7 +499,7 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw the sensor geometry if that is on; ``anew`` redraws it after a possible change."""
+        """Draw the sensor geometry if this drawing is on; ``anew`` redraws it after a possible change."""
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
         device = self.device

@@ -1,4 +1,4 @@
-"""Solvers of inverse kinematics by the names in files."""
+"""IK solver names in model files."""
 
 from collections.abc import Sequence
 
@@ -6,9 +6,9 @@ from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationTyp
 
 
 def named_in_file(name: str, dof: int) -> tuple[IkParameterizationType, list[float] | None] | None:
-    """Return the type and the steps of the solver that a file names for an arm of ``dof`` joints.
+    """Parse the name of an IK solver in a file; return the goal type and the steps of free joints.
 
-    None if no solver of OpenRAVE's plugin ikfastsolvers has such a name and so many joints.
+    The result is None if OpenRAVE's plugin ikfastsolvers has no solver of this name for an arm of ``dof`` joints.
     """
     first, *rest = name.split()
     words = [goal_type for goal_type in GOAL_TYPES if any(goal_type.name in word.split(".") for word in rest)]
@@ -23,11 +23,11 @@ _KINDS = {
     5: IkParameterizationType.TranslationDirection5D,
     3: IkParameterizationType.Translation3D,
 }
-"""The type of goal by the number of joints."""
+"""Default goal type by number of joints."""
 
 
 def numbers_in(words: Sequence[str]) -> list[float] | None:
-    """Return words as numbers; None if one is no number."""
+    """Convert words to numbers; return None if a word is not a number."""
     try:
         return [float(word) for word in words]
     except ValueError:

@@ -273,7 +273,7 @@ class ConfigurationSpecification(ConfigurationData):
 
     @also_named(pyspec="spec", group="spec", xmldata="spec")
     def __init__(self, spec: "ConfigurationSpecification | Group | str | None" = None) -> None:
-        """Copy ``spec``, a specification, a group or XML text, as ``repr`` shows it; by default there are no groups."""
+        """Copy ``spec``: a specification, a group, or XML text as in ``repr``; by default there are no groups."""
         if isinstance(spec, str):
             self._groups = read_layout(spec)
         elif isinstance(spec, Group):
@@ -337,7 +337,7 @@ class ConfigurationSpecification(ConfigurationData):
 
         Args:
             name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be equal as well.
+            exactmatch: Whether body and indices in the names have to be equal as well.
         """
         return self._shifted(name, 1, exactmatch)
 
@@ -346,7 +346,7 @@ class ConfigurationSpecification(ConfigurationData):
 
         Args:
             name: A group, or its name.
-            exactmatch: Whether the rest of the name has to be equal as well.
+            exactmatch: Whether body and indices in the names have to be equal as well.
         """
         return self._shifted(name, -1, exactmatch)
 

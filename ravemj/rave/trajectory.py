@@ -81,9 +81,10 @@ class Trajectory(Interface):
         return self._certificate[1]
 
     def is_certified(self) -> bool:
-        """Return whether the motion is certified; without a certificate, certify it if that is possible as a whole.
+        """Return whether the motion is certified; without a certificate, try to certify it.
 
-        If a part of it is undecided, there is no certificate: the first undecided part is found in less time than all.
+        The attempt ends without a certificate at the first part of the motion that cannot be decided, so it may be
+        faster than ``certify``.
         """
         certificate = self.certificate or self._proved(whole=False)
         self._certificate = None if certificate.undecided else (self.waypoints, certificate)
@@ -116,7 +117,7 @@ class Trajectory(Interface):
 
     @property
     def waypoints(self) -> Waypoints:
-        """The waypoints below OpenRAVE's API; ``Init`` makes them."""
+        """The waypoints as ravemj's internal object; it exists after ``Init``."""
         if self._waypoints is None:
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints

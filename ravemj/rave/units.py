@@ -228,11 +228,11 @@ class UnitInfo(ApiObject):
     """The units of a file or an environment.
 
     Attributes:
-        lengthUnit: Of lengths.
-        massUnit: Of masses.
-        timeDurationUnit: Of durations.
-        angleUnit: Of angles.
-        timeStampUnit: Of points in time.
+        lengthUnit: Unit of lengths.
+        massUnit: Unit of masses.
+        timeDurationUnit: Unit of durations.
+        angleUnit: Unit of angles.
+        timeStampUnit: Unit of time stamps.
     """
 
     lengthUnit: LengthUnit = LengthUnit.m
@@ -262,4 +262,4 @@ class UnitInfo(ApiObject):
 
 
 _KINDS: dict[str, type[NamedInt]] = {name: type(unit) for name, unit in vars(UnitInfo()).items()}
-"""The enumerations of the fields."""
+"""Enumeration of each field of ``UnitInfo``."""

@@ -1,4 +1,4 @@
-"""Generation of grasp tables: candidates, which are tried in shards of a sweep, and the table of those that hold."""
+"""Generation of grasp tables: test grasp candidates as a sweep, and collect the successful ones."""
 
 import itertools
 import logging
@@ -30,7 +30,7 @@ from ravemj.sweeps.shards import Arrays, joined, read_shard
 from ravemj.sweeps.sweep import Sweep, sweep, versions
 
 BLOCK = 16
-"""Candidates in a file of a generation; as many are lost at most when its process dies."""
+"""Number of candidates per result file; at most this many are lost if a process dies."""
 
 MANIFEST = "manifest.json"
 _BACK = 9e-5  # m, step of a hand away from the target: OpenRAVE's collision_escape_offset
@@ -41,13 +41,13 @@ _LOG = logging.getLogger("ravemj")
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a generation, as types of JSON.
+    """Settings of a generation, in types that JSON can store.
 
     Attributes:
         robot: Name of the robot.
         manip: Name of its manipulator.
         target: Name of the target.
-        more: Columns of the user's, with their numbers.
+        more: Number of columns of each user-defined grasp property, by name.
         friction: Friction coefficient.
         avoidlinks: Names of links that must not touch.
         plannername: Name of the grasp planner; None: the default.
@@ -55,7 +55,7 @@ class Settings:
         finestep: Tolerance of contacts [rad]; None: the default.
         graspingnoise: Random displacement of the target [m].
         tries: Number of runs with noise.
-        threshold: Least ``mindist`` of grasps; None: all count.
+        threshold: Minimum ``mindist`` of a grasp, its margin of force closure; None accepts all grasps.
     """
 
     robot: str
@@ -73,12 +73,12 @@ class Settings:
 
 
 class Generation(NamedTuple):
-    """Candidates that were tried.
+    """Result of a generation, which may be unfinished.
 
     Attributes:
-        rows: Grasps that hold, sorted by ``performance``, shape (n, m).
-        rejected: Number of candidates for each reason.
-        tried: Number of candidates that were tried.
+        rows: Successful grasps, sorted by ``performance``, shape (n, m).
+        rejected: Number of rejected candidates by reason.
+        tried: Number of tested candidates.
         candidates: Number of all candidates.
     """
 
@@ -89,13 +89,13 @@ class Generation(NamedTuple):
 
 
 class Tried(NamedTuple):
-    """Grasp that holds.
+    """Successful grasp, with its contacts and the robot's final configuration.
 
     Attributes:
         row: The grasp.
         contacts: Positions and normals in the world, shape (n, 6).
         values: Joint values after closing.
-        T_world_robot: Pose of the robot then.
+        T_world_robot: Pose of the robot after closing, shape (4, 4).
     """
 
     row: Floats
@@ -105,19 +105,19 @@ class Tried(NamedTuple):
 
 
 Check = Callable[[Tried], bool]
-"""A function that returns whether to keep a grasp."""
+"""Function that returns whether to keep a grasp."""
 
 
 def candidates(
     columns: Mapping[str, Sequence[int]], width: int, approachrays: Floats, parts: Mapping[str, Floats], fixed: Floats
 ) -> Floats:
-    """Return a row for each combination of a ray and values of properties; the last property changes first.
+    """Return a candidate for each combination of an approach ray and property values; the last property varies fastest.
 
     Args:
-        columns: Columns of each property.
-        width: Number of columns.
+        columns: Column indices of each property.
+        width: Number of columns of a candidate.
         approachrays: Points and outward normals, shape (n, 6).
-        parts: Values of each property, one in a row.
+        parts: Values of each property, one per row.
         fixed: Closing directions of the gripper joints.
     """
     rows: list[Floats] = []
@@ -140,7 +140,7 @@ def try_candidates(
     random: np.random.Generator,
     **options: Any,  # noqa: ANN401 - `Settings`
 ) -> Arrays:
-    """Try candidates; a function for ``ravemj.sweep``.
+    """Test grasp candidates; the processes of ``ravemj.sweep`` call this function.
 
     Args:
         env: An environment with robot and target.
@@ -169,7 +169,7 @@ def _model(env: Environment, settings: Settings) -> GraspUse:
 
 
 def tried(model: GraspUse, row: Floats, settings: Settings) -> Arrays:
-    """Try one candidate."""
+    """Test one candidate. Return its row, contacts and final configuration, and the reason if it is rejected."""
     row, reason = row.copy(), ""
     contacts, values, pose = np.zeros((0, 6)), model.robot.GetDOFValues(), None
     try:
@@ -195,7 +195,7 @@ def _pose(T_world_robot: Floats | None) -> Floats:
 
 
 def _complete(model: GraspUse, row: Floats, answer: tuple[Floats, Floats, Floats, float]) -> None:
-    """Write the results of a grasp into its row."""
+    """Write the tool pose, finger values and quality of a successful grasp into its row."""
     contacts, values, T_world_robot, mindist = answer
     robot, manip, target, columns = model.robot, model.manip, model.target, model.graspindices
     T_target_world = np.linalg.inv(target.GetTransform())
@@ -245,22 +245,22 @@ class GenerationJob(NamedTuple):
 def generate(
     model: GraspUse, rows: Floats, settings: Settings, job: GenerationJob, check: Check | None
 ) -> tuple[Generation, Path]:
-    """Try candidates; what an earlier call finished is not tried again.
+    """Test grasp candidates, except those that an interrupted earlier call has tested.
 
     Args:
         model: Robot and target.
         rows: Candidates.
-        settings: How they are tried.
-        job: Where the work is done.
-        check: Called with each grasp as soon as it is found, in the order of the candidates without processes; its
-            errors end the generation, and its files are removed.
+        settings: Settings of the tests.
+        job: Folder and number of processes.
+        check: Called with each grasp as soon as it is found; with one process, in the order of the candidates. Its
+            errors end the generation, and the files are removed.
 
     Returns:
         The result, and the folder with its files.
 
     Raises:
-        SweepError: trying failed with an error.
-        KeyboardInterrupt: the user stopped it; the message of the log says how to go on.
+        SweepError: testing failed with an error.
+        KeyboardInterrupt: the user stopped it; the log says how to resume.
     """
     with _copy(model, job.alone) as env:
         options = vars(settings) | {"more": dict(settings.more), "avoidlinks": list(settings.avoidlinks)}
@@ -292,7 +292,7 @@ def generate(
 
 
 class _GraspFilter:
-    """User's function that refuses grasps; it is called once for each grasp of a result file (shard) of the sweep."""
+    """Filter that calls the user's function once for each grasp in the result files (shards) of the sweep."""
 
     def __init__(self, check: Check | None, parts: Path) -> None:
         self._check, self._parts = check, parts
@@ -332,7 +332,7 @@ def _run(
 
 
 def collected(columns: Mapping[str, Sequence[int]], parts: Path, chosen: _GraspFilter | None = None) -> Generation:
-    """Return the grasps of a generation, complete or not."""
+    """Read the grasps of a finished or unfinished generation from the folder ``parts``; ``chosen`` filters them."""
     done = Sweep.open(parts)
     arrays: Mapping[str, NDArray[Any]] = done.arrays(partial=True)
     if not arrays:
@@ -360,7 +360,7 @@ def forget(parts: Path) -> None:
 
 @contextmanager
 def _copy(model: GraspUse, alone: bool) -> Generator[Environment]:
-    """Yield a copy of the environment, with robot and target only if wanted."""
+    """Yield a copy of the environment; if ``alone``, it contains only the robot and the target."""
     env: Environment = pickle.loads(pickle.dumps(model.env))
     try:
         names = {model.robot.GetName(), model.target.GetName()}

@@ -89,7 +89,7 @@ class ApproachRays(DatabaseGenerator):
         normalanglerange: float = 0,
         directiondelta: float = 0.4,
     ) -> Floats:
-        """Return approach rays from a grid on a rectangle, towards ``sidex`` x ``sidey``, to the target where it is.
+        """Return approach rays that start on a rectangular grid and run along ``sidex`` x ``sidey`` to the target.
 
         Args:
             center: Center of the rectangle in the world, shape (3,).
@@ -100,7 +100,7 @@ class ApproachRays(DatabaseGenerator):
             directiondelta: Angle between directions around a normal [rad].
 
         Returns:
-            As `computeBoxApproachRays`, but in the world, as OpenRAVE does.
+            As `computeBoxApproachRays`, but in the world, as OpenRAVE does, for the target's current pose.
         """
         self._check_shapes()
         return self._hits(rays.plane_rays(center, sidex, sidey, delta), normalanglerange, directiondelta)

@@ -1,4 +1,4 @@
-"""Rows of a grasp table: their poses and fingers, and the hand that closes."""
+"""Rows of a grasp table: tool poses, preshapes and simulated grasps."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -65,7 +65,7 @@ class GraspUse(ApproachRays):
             self.robot.SetDOFValues(values, indices)
 
     def GetLocalGraspTransform(self, grasp: ArrayLike, collisionfree: bool = False) -> Floats:
-        """Return ``T_target_tool``, shape (4, 4).
+        """Return the tool pose of a grasp in the target's frame, ``T_target_tool``, shape (4, 4).
 
         Args:
             grasp: A row of ``grasps``.
@@ -76,7 +76,7 @@ class GraspUse(ApproachRays):
         return T
 
     def getGlobalGraspTransform(self, grasp: ArrayLike, collisionfree: bool = False) -> Floats:
-        """Return ``T_world_tool``, shape (4, 4), for the target where it is.
+        """Return the tool pose of a grasp for the target's current pose, ``T_world_tool``, shape (4, 4).
 
         Args:
             grasp: A row of ``grasps``.
@@ -101,7 +101,7 @@ class GraspUse(ApproachRays):
         return self.grasper
 
     def init(self, friction: float | None, avoidlinks: Sequence[Any] | None, plannername: str | None = None) -> None:
-        """Make the helpers that plan: ``grasper`` and ``basemanip``.
+        """Create the planning helpers ``grasper`` and ``basemanip``.
 
         Args:
             friction: Friction coefficient of hand and target.
@@ -125,19 +125,19 @@ class GraspUse(ApproachRays):
         translationstepmult: float | None = None,
         finestep: float | None = None,
     ) -> Run:
-        """Simulate a grasp: the hand flies to the target and closes. The robot is back afterwards.
+        """Simulate a grasp: the hand moves to the target and closes. The robot is restored afterwards.
 
         Args:
             grasp: A row of ``grasps``.
             graspingnoise: Random displacement of the target [m].
-            translate: Whether the hand may fly.
-            forceclosure: Whether to rate the contacts.
+            translate: Whether the hand may translate towards the target; otherwise only the fingers move.
+            forceclosure: Whether to compute ``mindist`` and ``volume``.
             translationstepmult: Metres of a step per radian; None: the model's.
             finestep: Tolerance of contacts [rad]; None: the model's.
 
         Returns:
             Contacts (n, 6), joint values and ``T_world_robot``, ``mindist``, ``volume``; the last two are None if they
-            were not asked for.
+            were not requested.
 
         Raises:
             PlanningError: the grasp fails; its text says why.
@@ -168,7 +168,7 @@ class GraspUse(ApproachRays):
         return _closed(answer)
 
     def runGraspFromTrans(self, grasp: ArrayLike, finestep: float | None = None) -> Run:
-        """Close the hand at the stored pose of a grasp, wherever the robot is. The robot is back afterwards.
+        """Close the hand at the stored tool pose of a grasp. The robot is placed there, and restored afterwards.
 
         Args:
             grasp: A row of ``grasps``.
@@ -210,7 +210,7 @@ class GraspUse(ApproachRays):
         forceclosurethreshold: float = 1e-9,
         **kwargs: Any,  # noqa: ANN401 - arguments of runGrasp
     ) -> Run:
-        """Simulate a grasp, and with noise again several times; ``mindist`` is 0 if the results differ too much.
+        """Simulate a grasp, and repeat it with noise; ``mindist`` is 0 if the results differ too much.
 
         They differ too much if the mean standard deviation of the robot's position along each axis, plus that of the
         fingertips of each gripper joint, exceeds 0.7 of the noise.
@@ -218,7 +218,7 @@ class GraspUse(ApproachRays):
         Args:
             graspingnoise: Random displacement of the target [m].
             Ngraspingtries: Number of runs with noise.
-            forceclosurethreshold: Least ``mindist`` of grasps that are tried with noise.
+            forceclosurethreshold: Minimum ``mindist`` of grasps that are repeated with noise.
             kwargs: Arguments of `runGrasp`.
 
         Returns:
@@ -242,7 +242,7 @@ class GraspUse(ApproachRays):
 
     @property
     def jointmaxlengths(self) -> Floats:
-        """Largest distance of a point of the hand from the axis of each gripper joint [m]; 1 for sliders."""
+        """Largest distance of the moved link's points from the axis of each gripper joint [m]; 1 for sliders."""
         return np.array([_reach(self.robot, int(index)) for index in self.manip.GetGripperIndices()])
 
     def moveToPreshape(
@@ -252,16 +252,16 @@ class GraspUse(ApproachRays):
         outputtraj: bool | None = None,
         outputtrajobj: bool | None = None,
     ) -> Any:  # noqa: ANN401 - as MoveActiveJoints
-        """Move the arm to where the gripper can open, and the gripper to the preshape.
+        """Move the arm to a configuration in which the gripper can open, then the gripper to the preshape.
 
         Args:
             grasp: A row of ``grasps``.
             execute: Whether the robot moves.
             outputtraj: Whether to return the motion of the gripper as text.
-            outputtrajobj: Whether to return it.
+            outputtrajobj: Whether to return the motion of the gripper as a ``Trajectory``.
 
         Raises:
-            PlanningError: the hand is in the way.
+            PlanningError: no motion without collisions was found.
         """
         if self.basemanip is None:
             self._ready_grasper()
@@ -293,7 +293,7 @@ def _closed(answer: GraspResult) -> Run:
 
 
 def _reach(robot: Robot, index: int) -> float:
-    """Return the largest distance of a point of a joint's child link, or of the next joints, from its axis [m]."""
+    """Return the largest distance [m] from a joint's axis to its child link and the next joints; 1 for a slider."""
     joint = robot.GetJointFromDOFIndex(index)
     if joint.IsPrismatic(index - joint.GetDOFIndex()):
         return 1.0

@@ -1,4 +1,4 @@
-"""Grasps that a robot can reach with the target where it is, and pictures of grasps."""
+"""Grasps that a robot can reach at the target's current pose, and drawings of grasps."""
 
 import sys
 import time
@@ -20,7 +20,7 @@ from ravemj.rave.specification import IkParameterization
 
 
 class ValidGrasp(NamedTuple):
-    """Grasp that can be reached.
+    """Reachable grasp.
 
     Attributes:
         grasp: The row.
@@ -36,7 +36,7 @@ class ValidGrasp(NamedTuple):
 
 
 class ValidGrasps(GraspUse):
-    """Grasps of a table that can be reached; `GraspingModel` makes the table."""
+    """Reachable grasps of a table; `GraspingModel` makes the table."""
 
     GripperVisibility = GripperVisibility
 
@@ -51,14 +51,14 @@ class ValidGrasps(GraspUse):
         backupdist: float = 0.0,
         returnnum: float = np.inf,
     ) -> tuple[list[Floats], list[int]]:
-        """Return the grasps that can be reached with the target where it is, in the order of the table.
+        """Return the grasps that are reachable at the target's current pose, in the order of the table.
 
         Args:
             startindex: First row.
             checkcollision: Whether hand and arm have to be free.
             checkik: Whether the arm has to reach the pose.
             checkgrasper: Whether the fingers have to close on the target.
-            backupdist: Distance before the grasp that has to be valid as well [m].
+            backupdist: Distance [m]; the tool pose moved back by it along the approach has to be valid as well.
             returnnum: Maximum number of grasps.
 
         Returns:
@@ -82,14 +82,14 @@ class ValidGrasps(GraspUse):
         randomgrasps: bool = False,
         returnfinal: bool = False,
     ) -> Iterator[Any]:
-        """Yield the grasps that can be reached, each when it is found.
+        """Yield the grasps that are reachable at the target's current pose, each as soon as it is found.
 
         Args:
             startindex: First row.
             checkcollision: Whether hand and arm have to be free.
             checkik: Whether the arm has to reach the pose.
             checkgrasper: Whether the fingers have to close on the target.
-            backupdist: Distance before the grasp that has to be valid as well [m].
+            backupdist: Distance [m]; the tool pose moved back by it along the approach has to be valid as well.
             randomgrasps: Whether the order is random.
             returnfinal: Whether to yield contacts and the final configuration as well.
 
@@ -142,7 +142,7 @@ class ValidGrasps(GraspUse):
         return not self.manip.CheckEndEffectorCollision(T_world_tool)
 
     def _goal(self, T_world_tool: Floats) -> Floats | IkParameterization:
-        """Return the goal of the arm: a pose, or a ray if its solver leaves the roll free."""
+        """Return the IK goal of the arm: the tool pose, or a ray if the arm's solver leaves the roll free."""
         solver = self.manip.GetIkSolver()
         ray = IkParameterizationType.TranslationDirection5D
         if solver is None or not solver.Supports(ray):
@@ -179,12 +179,12 @@ class ValidGrasps(GraspUse):
         delay: float | None = None,
         showfinal: bool = False,
     ) -> None:
-        """Show a grasp for a while.
+        """Show a grasp in the viewer, then restore the robot.
 
         Args:
             grasp: A row of ``grasps``.
-            collisionfree: Whether the hand is shown where it is free of the target.
-            useik: Whether the arm reaches for the pose; False: the hand alone is shown.
+            collisionfree: Whether to move the hand back until it is free of the target.
+            useik: Whether the arm moves to the grasp by IK; otherwise only the hand is shown.
             delay: Duration [s]; None: until the user presses Enter, if there is a terminal.
             showfinal: Whether the fingers are shown closed.
 

@@ -48,16 +48,16 @@ class GraspingModel(ValidGrasps):
 
     Args:
         robot: The robot.
-        target: What is grasped.
-        maxvelmult: For OpenRAVE.
-        graspparametersdof: Properties of grasps of your own, with their numbers of columns.
+        target: The body to grasp.
+        maxvelmult: Not used.
+        graspparametersdof: User-defined grasp properties: name and number of columns.
 
     Attributes:
         grasps: One grasp in each row, shape (n, ``totaldof``).
-        graspindices: Columns of each property, by name: ``igrasptrans`` (``T_target_tool``, 12 numbers by columns),
-            ``igraspdir``, ``igrasppreshape``, ``forceclosure`` (``mindist``) and others of OpenRAVE's.
+        graspindices: Column indices of each property, by name: ``igrasptrans`` (``T_target_tool``, 12 numbers by
+            columns), ``igraspdir``, ``igrasppreshape``, ``forceclosure`` (``mindist``) and others of OpenRAVE's.
         totaldof: Number of columns.
-        target: What is grasped.
+        target: The body to grasp.
         manip: The manipulator.
         grasper: The helper that closes the hand, after ``load``, ``generate`` or ``init``.
         numthreads: Number of processes of ``generate``.
@@ -122,14 +122,14 @@ class GraspingModel(ValidGrasps):
         return VERSION
 
     def has(self) -> bool:
-        """Return whether there are grasps, and what uses them."""
+        """Return whether the model has grasps and a ``grasper``."""
         return len(self.grasps) > 0 and self.grasper is not None
 
     def getfilename(self, read: bool = False) -> str:
-        """Return the file of the table in OpenRAVE's database; its content is ``.npz``.
+        """Return the path of the grasp table in OpenRAVE's database; the format of the file is ``.npz``.
 
         Args:
-            read: Whether the file has to be there; '' if it is not.
+            read: Whether the file has to exist; if it does not, the result is ''.
         """
         hashes = f"{self.manip.GetStructureHash()}.{self.target.GetKinematicsGeometryHash()}"
         name = f"robot.{self.robot.GetKinematicsGeometryHash()}/graspset.{hashes}.pp"
@@ -139,23 +139,23 @@ class GraspingModel(ValidGrasps):
         return f"{self.getfilename(False)}.unfinished"
 
     def save(self, params: object = None) -> None:
-        """Write the table to its file; a file that was there is kept with the ending ``.old``.
+        """Write the table to its file; an existing file is kept with the suffix ``.old``.
 
         Args:
             params: OpenRAVE's; not used.
 
         Raises:
-            OutputError: it cannot be written.
+            OutputError: the file cannot be written.
         """
         del params
         write_grasps(self.getfilename(False), self._stored())
 
     def load(self, filename: str | None = None, *, file: str | None = None) -> bool:
-        """Read the table; without one, that of an unfinished generation, with a warning.
+        """Read the grasp table; if there is none, read the grasps of an unfinished generation, with a warning.
 
         Args:
             filename: A table of ravemj, or a pickle of OpenRAVE's; None: ``getfilename(True)``.
-            file: The same.
+            file: Another name of ``filename``.
 
         Returns:
             Whether there are grasps. A damaged table in the database is reported and left alone.
@@ -179,7 +179,7 @@ class GraspingModel(ValidGrasps):
             return False
 
     def _fitting(self, path: str) -> StoredGrasps:
-        """Read a table, and check that it is one of this hand."""
+        """Read a table, and check that it was generated for this hand."""
         stored = read_grasps(path)
         owner, here = stored.owner, self._owner()
         need = {name: len(part) for name, part in self.graspindices.items() if name not in self._more}
@@ -204,7 +204,7 @@ class GraspingModel(ValidGrasps):
         return stored
 
     def _load_unfinished(self) -> bool:
-        """Take over the grasps of a generation that was stopped."""
+        """Load the grasps of an interrupted generation."""
         folder = Path(self._unfinished_folder())
         if not folder.is_dir():
             return False
@@ -244,7 +244,7 @@ class GraspingModel(ValidGrasps):
         return StoredGrasps(self.grasps, self.graspindices, self._owner(), settings, self._tried, self._candidates)
 
     def _take(self, stored: StoredGrasps) -> bool:
-        """Use a table that was read."""
+        """Set the grasps and columns of the model to those of a table."""
         given = stored.settings
         self.grasps, self.graspindices = stored.rows, dict(stored.columns)
         self.totaldof = stored.rows.shape[1]
@@ -261,7 +261,7 @@ class GraspingModel(ValidGrasps):
         """Return the arguments of ``generate`` for this hand, in their order.
 
         Args:
-            options: OpenRAVE's options of the command line: ``boxdelta``, ``standoffs`` and others, where they are set.
+            options: OpenRAVE's command line options, such as ``boxdelta`` and ``standoffs``, which replace defaults.
         """
 
         def option(name: str, default: object = None) -> Any:  # noqa: ANN401 - any option
@@ -295,9 +295,9 @@ class GraspingModel(ValidGrasps):
         self._forget(parts)
 
     def generate(self, *args: Any, **kwargs: Any) -> None:  # noqa: ANN401 - the arguments of `_generate`
-        """Generate grasps: try each combination of approach ray, roll, preshape, standoff and direction.
+        """Generate grasps: test each combination of approach ray, roll, preshape, standoff and direction.
 
-        Processes, files and Ctrl-C are those of ``ravemj.sweep``: the same call goes on after an interruption.
+        The tests run as a ``ravemj.sweep``, in several processes: after an interruption, the same call resumes.
 
         Args:
             args: In this order, or by name: ``preshapes``, values of the gripper joints, (n, joints), None: opened;
@@ -316,7 +316,7 @@ class GraspingModel(ValidGrasps):
         Raises:
             ArgumentError: the manipulator has no gripper joints, the target has no geometries or is grabbed, or there
                 are no candidates.
-            SweepError: trying failed with an error.
+            SweepError: testing failed with an error.
         """
         self._forget(self._generate(*args, **kwargs))
 
@@ -418,7 +418,7 @@ class GraspingModel(ValidGrasps):
 
 
 def _rows(values: ArrayLike, width: int, name: str) -> Floats:
-    """Return an argument of ``generate`` as rows of a width."""
+    """Convert an argument of ``generate`` to an array of shape (n, width)."""
     array = np.asarray(values, dtype=float)
     if array.size % width or (array.ndim > 1 and array.shape[-1] != width) or not np.isfinite(array).all():
         mistake = f"have shape {array.shape}" if np.isfinite(array).all() else "are not finite"
@@ -427,7 +427,7 @@ def _rows(values: ArrayLike, width: int, name: str) -> Floats:
 
 
 def _checking(model: GraspingModel, check: _Check) -> Callable[["Tried"], bool]:
-    """Return a function that shows a user's function a grasp, with the fingers closed."""
+    """Return a function that closes the fingers as in a grasp, and calls the user's ``checkgraspfn``."""
     friction = model.grasper.friction if model.grasper else 0.0
 
     def checked(grasp: "Tried") -> bool:

@@ -67,7 +67,10 @@ class LinkStatisticsModel(DatabaseGenerator):
         self.robot.SetDOFResolutions(delta / self._distances())
 
     def _distances(self) -> Floats:
-        """Return the maximum displacement of a point per unit of each DOF; the minimum for DOFs without effect."""
+        """Return the maximum displacement of a point per unit of each DOF, shape (dof,).
+
+        A DOF that moves nothing gets the smallest displacement of the other DOFs.
+        """
         distances = motion_bounds(self.robot.simulation_state.scene)
         return np.where(distances > 0, distances, np.min(distances, initial=1.0, where=distances > 0))
 

@@ -26,11 +26,11 @@ class DatabaseGenerator:
     Args:
         robot: The robot; its active manipulator is the model's.
         arguments: Further arguments of OpenRAVE's models.
-        named: The same, by name.
+        named: Further arguments by name.
     """
 
     capability: ClassVar[str] = _BUILDING
-    """Capability that ravemj lacks to compute it."""
+    """Name of the missing capability, for the error that ravemj cannot compute the model."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()

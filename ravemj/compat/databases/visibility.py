@@ -9,7 +9,7 @@ from ravemj.rave.manipulator import Manipulator
 
 
 class GripperVisibility:
-    """Context manager that shows only the links of a robot beyond an arm.
+    """Context manager that shows only the gripper of an arm; the other links of the robot are hidden.
 
     Args:
         manip: The arm.

@@ -1,4 +1,4 @@
-"""Simulation of grasps: where a hand and its fingers touch a body, and whether they hold it."""
+"""Grasp simulation: contacts of a hand with a body, and their force closure."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -25,16 +25,16 @@ from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.robot import Robot
 
 _TRIES = 10
-"""Grasps with noise of each candidate; OpenRAVE's."""
+"""Number of simulations with noise for each candidate, as in OpenRAVE."""
 
 GraspResult = tuple[Floats, tuple[Floats, Floats] | None, float | None, float | None]
 Hull = tuple[Floats | None, list[list[int]] | None, Ints | None]
 
 
 class Grasper(Helper):
-    """Simulates grasps of the active manipulator: the hand flies to a body, and its fingers close one by one.
+    """Simulates grasps of the active manipulator: the hand moves to a body, and its fingers close one by one.
 
-    The active DOFs are what moves: the joints of the gripper, and ``DOFAffine.X | DOFAffine.Y | DOFAffine.Z``.
+    It moves the active DOFs: set the joints of the gripper and ``DOFAffine.X | DOFAffine.Y | DOFAffine.Z``.
 
     Args:
         robot: The robot.
@@ -68,7 +68,7 @@ class Grasper(Helper):
         super().__init__(robot, plannername, None, module, self._grasper)
 
     def clone(self, envother: Environment) -> "Grasper":
-        """Return such a helper for the robot of the same name in another environment.
+        """Return a grasper for the robot of the same name in another environment.
 
         Args:
             envother: The environment.
@@ -105,13 +105,13 @@ class Grasper(Helper):
         ordereddofindices: Sequence[int] | None = None,
         avoidcontact: bool = False,
     ) -> GraspResult:
-        """Simulate a grasp. The robot is as before afterwards, unless ``execute`` moves its joints.
+        """Simulate a grasp. The robot is restored afterwards, unless ``execute`` moves its joints.
 
         Args:
             direction: Direction of the motion of the hand, in the frame of the target; None: 0 0 1.
-            roll: Rotation of the tool about ``manipulatordirection`` before [rad].
+            roll: Rotation of the tool about ``manipulatordirection`` before the motion [rad].
             position: Start of the tool, in the frame of the target [m].
-            standoff: Distance back after the contact [m].
+            standoff: Distance by which the hand moves back after the contact [m].
             target: The body to grasp.
             stablecontacts: Return only contacts that the closing fingers press against the target. OpenRAVE tests the
                 opposite direction, and returns none.
@@ -121,12 +121,12 @@ class Grasper(Helper):
             tightgrasp: Not used, as in OpenRAVE.
             graspingnoise: Largest random error of the target along each axis [m]: the target itself does not move.
             execute: Whether the controller moves the joints to those of the grasp; None: it does.
-            translationstepmult: Factor of the steps for sliders and the flight [m/rad]; None: 0.1.
+            translationstepmult: Factor of the steps for sliders and the hand's translation [m/rad]; None: 0.1.
             outputfinal: Whether to return the last configuration.
             manipulatordirection: Direction of the tool that is turned to ``direction``, in the frame of the tool; None:
                 the manipulator's.
             coarsestep: Step of fingers until contact [rad]; None: 0.1.
-            finestep: Step from which the tolerance of contacts follows [rad]; None: 0.001.
+            finestep: Step [rad] that determines the tolerance of contacts; None: 0.001.
             vintersectplane: Plane on which the tool stops, in place of a standoff: n.x + d = 0 in the frame of the
                 target, shape (4,).
             chuckingdirection: Sign of the motion of each gripper joint: -1, 0 or 1; None: the manipulator's.
@@ -197,12 +197,12 @@ class Grasper(Helper):
     ) -> tuple[int, list[tuple[Any, ...]]]:
         """Simulate all combinations of rays, rolls, preshapes, standoffs and directions. Ctrl-C cancels it.
 
-        The index of a candidate is standoff + preshape S + roll S P + ray S P R + direction S P R N: standoffs change
-        first. Grasps are returned in the order of their indices.
+        The index of a candidate is standoff + preshape S + roll S P + ray S P R + direction S P R N, for S standoffs, P
+        preshapes, R rolls and N rays: standoffs change first. Grasps are returned in the order of their indices.
 
         Args:
             approachrays: Start of the tool [m] and direction of its motion, in the target, shape (n, 6).
-            standoffs: Distances back after the contact [m].
+            standoffs: Distances by which the hand moves back after the contact [m].
             preshapes: Values of the gripper [rad or m], shape (n, gripper dof).
             rolls: Rotations of the tool [rad].
             manipulatordirections: Directions of the tool, shape (n, 3); None: the manipulator's.
@@ -212,12 +212,12 @@ class Grasper(Helper):
             tightgrasp: Not used, as in OpenRAVE.
             graspingnoise: Largest displacement [m], and the number of grasps with noise (10) that have to end close to
                 one another.
-            forceclosurethreshold: Least ``mindist`` of a grasp; None: grasps need not be in force closure.
+            forceclosurethreshold: Minimum ``mindist`` of a grasp; None: grasps need not be in force closure.
             collisionchecker: Not used.
             translationstepmult: As in ``Grasp``.
             numthreads: Number of processes that simulate candidates; the grasps are the same. None: 1.
             startindex: Index of the first candidate.
-            maxgrasps: Maximum number of grasps; None means any.
+            maxgrasps: Maximum number of grasps; None means no limit.
             finestep: As in ``Grasp``.
 
         Returns:

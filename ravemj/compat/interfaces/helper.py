@@ -18,10 +18,10 @@ Thing = TypeVar("Thing")
 
 
 class Helper(ApiObject):
-    """Planning helper of one robot; its module stays in the environment as long as it exists.
+    """Planning helper of one robot; its module stays in the environment as long as the helper exists.
 
     Attributes:
-        prob: The module, which offers the same as text commands.
+        prob: The module, which offers the helper's methods as text commands.
         robot: The robot.
         args: Arguments of the module.
     """
@@ -71,9 +71,9 @@ class Helper(ApiObject):
         outputtrajobj: bool | None,
         reply: str = "",
     ) -> Trajectory | str:
-        """Execute a motion unless ``execute`` is False, and return it in the requested form, by default the reply.
+        """Execute a motion unless ``execute`` is False; return it as trajectory or text if requested, else ``reply``.
 
-        OpenRAVE's modules reply with an empty text, or "1" for motions to poses of the tool. It is never None.
+        The reply is that of OpenRAVE's module: an empty text, or "1" for motions to poses of the tool; never None.
         """
         if execute is None or execute:
             self._manipulation.execute(traj)
@@ -89,7 +89,7 @@ class Helper(ApiObject):
         outputfinal: bool | None,
         outputtrajobj: bool | None,
     ) -> tuple[Floats | None, Trajectory | str | None]:
-        """Execute a motion unless ``execute`` is False; return its final values and itself, as requested."""
+        """Execute a motion unless ``execute`` is False; return final values and motion, each None if not requested."""
         final, traj = motion
         return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj) or None
 
@@ -100,10 +100,10 @@ def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any ki
 
 
 def several(values: Iterable[Thing] | None, name: str) -> list[Thing]:
-    """Return a list option as a list; None is empty.
+    """Convert an option to a list; None becomes an empty list.
 
     Raises:
-        ArgumentError: it is not a list.
+        ArgumentError: the option is not iterable.
     """
     if values is None:
         return []

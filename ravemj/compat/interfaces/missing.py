@@ -23,4 +23,4 @@ class TaskCaging:
     """,
 )
 class VisualFeedback:
-    """Moves a camera to where it sees an object."""
+    """Moves a camera to a pose from which it sees an object."""

@@ -80,8 +80,8 @@ class TaskManipulation(Helper):
         used. A joint that starts in contact stays.
 
         Args:
-            offset: How far the motion of each joint goes on from there, in its direction [rad or m]. ``outputfinal``
-                returns the values before.
+            offset: Distance that each joint moves on after it has stopped, in its direction [rad or m].
+                ``outputfinal`` returns the values without it.
             movingdir: Sign of the motion of each joint; None: the closing direction.
             coarsestep: Step of joints between two tests [rad]; None: 0.1.
             translationstepmult: Factor of the steps of sliders [m/rad]; None: 0.1.
@@ -162,7 +162,7 @@ class TaskManipulation(Helper):
         return self._pair(motion, execute, outputtraj, outputfinal, outputtrajobj)
 
     def _of_gripper(self, name: str, numbers: ArrayLike | None) -> Floats | None:
-        """Return a value for each gripper joint, or None."""
+        """Convert an argument to an array with a value for each gripper joint; None stays None."""
         if numbers is None:
             return None
         manip = self.robot.GetActiveManipulator()
@@ -202,9 +202,9 @@ class TaskManipulation(Helper):
         The class explains ``execute``, ``outputtraj`` and ``outputtrajobj``; ``releasegil`` is not used.
 
         Args:
-            graspindices: The columns of what a grasp has, or the first of them: ``igrasptrans``, the pose of the tool
-                in the target, 12 numbers by columns (``grasptrans_nocol`` counts more); ``igraspdir``, in the target,
-                or ``imanipulatordirection``, in the tool: where the hand comes from, None: the tool's direction;
+            graspindices: Column indices of each grasp property, or the first index: ``igrasptrans``, ``T_target_tool``
+                as 12 numbers by columns (``grasptrans_nocol`` takes precedence); the approach direction, ``igraspdir``
+                in the target or ``imanipulatordirection`` in the tool, by default the tool's direction;
                 ``igrasppreshape``, values of the gripper. A row without a pose is simulated as ``Grasper.Grasp`` does,
                 from ``igraspdir``, ``igrasppos``, ``igrasproll``, ``igraspstandoff`` and ``ichuckingdirection``.
             grasps: The grasps, shape (n, m).
@@ -295,7 +295,7 @@ class TaskManipulation(Helper):
 
     @lacking(_PADDING, "__init__(taskmanip update) __enter__() __exit__(type value traceback)")
     class SwitchState:
-        """Padded models in place of bodies for a while."""
+        """Context manager that replaces bodies by padded models; not supported."""
 
 
 def _first_columns(columns: Mapping[str, int | Sequence[int]]) -> dict[str, int]:

@@ -25,7 +25,7 @@ class DHParameter:
         parentindex: Index of the previous joint's record; -1 if the previous frame is the body's.
         transform: ``T_body_joint`` with all joints at 0, shape (4, 4).
         d: Distance along the previous z axis [m].
-        a: Distance of both z axes [m], along the x axis of the joint's frame, which may point backwards.
+        a: Signed distance between both z axes [m], along the x axis of the joint's frame.
         theta: Angle about the previous z axis [rad], at most 90 degrees either way.
         alpha: Angle between both z axes [rad].
     """
@@ -65,7 +65,7 @@ def GetDHParameters(body: KinBody) -> list[DHParameter]:
 
 
 def _before(body: KinBody, link: int, index_of_link: dict[int, int]) -> int:
-    """Return the index of the ``DHParameter`` of the nearest preceding joint, by its child link; -1 for none."""
+    """Return the index of the ``DHParameter`` of the nearest joint before a link; -1 if there is none."""
     chain = body.GetChain(0, link, returnjoints=False)
     moved = [index_of_link[joint_.GetIndex()] for joint_ in chain if joint_.GetIndex() in index_of_link]
     return moved[-1] if moved else -1

@@ -28,7 +28,7 @@ _CHECK = "DynamicsCollisionConstraint"
 _LINES = "constraints of accelerations, torques and perturbations along lines"
 
 _MOST_SAMPLES = 10_000_000
-"""Most samples of a trajectory; ten times as many would fill the memory."""
+"""Maximum number of samples of a trajectory; ten times as many would exhaust the memory."""
 
 
 def VerifyTrajectory(
@@ -190,7 +190,7 @@ def JitterCurrentConfiguration(
         perturbation: Clearance: perturbation of each value that must not collide [rad or m].
 
     Returns:
-        Whether one was found. If the present configuration is free, nothing moves.
+        Whether a free configuration was found. If the present configuration is free, nothing moves.
     """
     checked_kind(plannerparameters, PlannerParameters, "plannerparameters")
     values = plannerparameters.resolved()

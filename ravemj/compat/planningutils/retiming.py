@@ -100,7 +100,7 @@ def RetimeAffineTrajectory(
 ) -> PlannerStatus:
     """Time a trajectory of poses within limits.
 
-    Translations are straight; the duration is the length over the smallest limit of the values.
+    Translations are straight, with a speed of at most the smallest velocity limit of their coordinates.
 
     Args:
         trajectory: Changed in place.
@@ -197,7 +197,7 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
     """Retimer of trajectories of the DOFs that are active at its construction.
 
     Args:
-        robot: The robot; its limits are those of each call.
+        robot: The robot; each call uses its current limits.
         plannername: The retimer. If it is empty, ``PlanPath`` raises an error, as in OpenRAVE.
         plannerparameters: Its parameters as XML text.
 
@@ -306,7 +306,7 @@ def _planned(traj: Trajectory, params: Callable[[], PlannerParameters], name: st
 
 
 def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
-    """Add the time to a trajectory of one waypoint, as OpenRAVE does whatever the planner."""
+    """Add the time to a trajectory with a single waypoint, for which OpenRAVE runs no planner."""
     spec = traj.GetConfigurationSpecification()
     spec.AddDeltaTimeGroup()
     ConvertTrajectorySpecification(traj, spec)
@@ -314,7 +314,7 @@ def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
 
 
 def _retimer(traj: Trajectory) -> str:
-    """Return OpenRAVE's retimer of a trajectory, by the interpolation of its joint values, or else of its poses."""
+    """Return the name of OpenRAVE's default retimer for the interpolation of the joint values, or else of the poses."""
     groups = checked_kind(traj, Trajectory, "trajectory").GetConfigurationSpecification().GetGroups()
     of_joints = [group.interpolation for group in groups if group.name.startswith("joint_values")]
     of_poses = [
@@ -344,5 +344,5 @@ def _affine(traj: Trajectory, maxvelocities: ArrayLike, maxaccelerations: ArrayL
 
 
 def stamped(hastimestamps: bool, extra: str) -> str:
-    """Return parameters with the option to keep times."""
+    """Return the planner parameters ``extra`` with the option to keep times if ``hastimestamps``."""
     return f"<hastimestamps>1</hastimestamps>{extra}" if hastimestamps else extra

@@ -79,7 +79,7 @@ def load_source(name: str, path: str) -> ModuleType:
 
 
 def install_finder(folder: str) -> None:
-    """Translate from now on Python 2 modules in a folder and in folders added to ``sys.path``."""
+    """Install an import hook that translates Python 2 modules in a folder and in folders added to ``sys.path``."""
     here = next(place for place, finder in enumerate(sys.meta_path) if finder is PathFinder)
     sys.meta_path.insert(here, _SourceFinder(folder))  # pyright: ignore[reportArgumentType] - has what finders need
 

@@ -38,7 +38,7 @@ RENAMED: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
 
 
 def _in(module: str, names: str) -> dict[str, object]:
-    """Return the new locations of names: in a module, under a new name after ``=``."""
+    """Map names to their new locations in a module; ``old=new`` gives a name that changed."""
     return {name: f"{module}.{now or name}" for name, now in re.findall(r"([^\s=]+)=?(\S*)", names)}
 
 
@@ -152,7 +152,4 @@ NAMES: dict[str, dict[str, object]] = {
     "xml": {},
     "xml.etree": {"cElementTree": "xml.etree.ElementTree"},
 }
-"""Missing names of existing modules, and all names of missing modules; a string is the new location of a value.
-
-A text says where the value is now.
-"""
+"""Missing names of existing modules, and all names of missing modules; a string is the new location of a value."""

@@ -90,7 +90,7 @@ def _exists(name: str) -> bool:
 
 
 def _older(name: str, is_last: bool) -> ModuleType:
-    """Return the module bound by ``import name``: the last or first of its dotted name."""
+    """Import a module by its Python 2 name; return it if ``is_last``, else the first module of its dotted name."""
     module = importlib.import_module(library.RENAMED[name]) if name in library.RENAMED else _empty(name)
     first, _, rest = name.partition(".")
     return view(module if is_last or not rest else importlib.import_module(first))

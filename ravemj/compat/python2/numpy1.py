@@ -96,7 +96,7 @@ def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _with_sizes(name: str) -> Callable[..., Any]:
-    """Return a function that truncates a size that is a float, as NumPy did up to 1.11."""
+    """Wrap NumPy's function ``name`` so that sizes given as floats are truncated, as NumPy did up to 1.11."""
     function, first = getattr(np, name), int(name in _OF_ARRAYS)
 
     @functools.wraps(function)
@@ -109,7 +109,7 @@ def _with_sizes(name: str) -> Callable[..., Any]:
 
 
 def _whole(size: Any) -> Any:
-    """Return a size with integers in place of floats."""
+    """Truncate a float size, or each float in a list or tuple of sizes, to an integer."""
     if isinstance(size, float):
         return int(size)
     return type(size)(map(_whole, size)) if isinstance(size, list | tuple) else size
@@ -132,7 +132,7 @@ def _sum(a: Any, *args: Any, **options: Any) -> Any:
 
 
 def _names() -> dict[str, object]:
-    """Return the names that differ from numpy's, with those exported by the star."""
+    """Return the names that replace those of numpy, and ``__all__`` for ``from numpy import *``."""
     renamed: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
     names: dict[str, object] = {old: getattr(np, new) for old, new in renamed.items() if hasattr(np, new)}
     names |= {name: getattr(module, name) for module, text in _MOVED.items() for name in text.split()}

@@ -143,14 +143,14 @@ def _start(body: list[ast.stmt]) -> int:
 
 
 def _expression(place: ast.expr, text: str) -> ast.expr:
-    """Return the tree of an expression with the position of another node."""
+    """Parse an expression into a syntax tree with the source position of the node ``place``."""
     statement = _at(place, text)
     assert isinstance(statement, ast.Expr)
     return statement.value
 
 
 def _at(place: ast.stmt | ast.expr | ast.excepthandler, text: str) -> ast.stmt:
-    """Return the tree of a statement with the position of another node."""
+    """Parse a statement into a syntax tree with the source position of the node ``place``."""
     statement = ast.parse(text).body[0]
     for node in ast.walk(statement):
         ast.copy_location(node, place)

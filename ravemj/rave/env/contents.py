@@ -38,7 +38,7 @@ _SELECTIONS: dict[SelectionOptions, Callable[[scene.KinBody, Collection[str]], b
 
 
 def selects(options: int, names: Collection[str], body: scene.KinBody) -> bool:
-    """Return whether options select a body; ``names`` are the arguments of ``Body`` and ``AllExceptBody``."""
+    """Return whether ``SelectionOptions`` select a body; ``names`` are the bodies of ``Body`` and ``AllExceptBody``."""
     return _SELECTIONS[SelectionOptions(options)](body, names)
 
 
@@ -72,7 +72,7 @@ class Contents(EnvironmentPart):
         self._checker: CollisionChecker | None = None
 
     def wrap(self, state: BodyState) -> KinBody:
-        """Return the API object of a body, always the same one."""
+        """Return the API object of a body; repeated calls return the same object."""
         with self._simulation.lock:
             wrapped = self._kept_objects.get(state) or self._objects.get(state)
             if wrapped is None:

@@ -63,7 +63,10 @@ def warn_of_attributes(path: str, given: Attributes) -> None:
 def read_arguments(
     caller: str, arguments: tuple[Argument, ...], named: dict[str, Argument]
 ) -> tuple[KinBody | None, str | bytes, Attributes]:
-    """Return the body to fill (or None), the file or text, and the attributes."""
+    """Parse the arguments of ``ReadKinBodyURI`` and similar methods.
+
+    Return the body to replace (or None), the file name or text, and the attributes.
+    """
     given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
     if named:
         raise TypeError(f"{caller}: has no argument {', '.join(named)}")
@@ -357,7 +360,7 @@ class Loading(Description):
         return body
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
-        """Return the first body of a reading, without adding it."""
+        """Return the first body of a parsed file, without adding it."""
         self._note(reading)
         send_warnings(reading.diagnostics)
         failure = reading.failure

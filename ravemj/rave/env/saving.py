@@ -83,7 +83,7 @@ def save_json(
 
 @contextmanager
 def placed_errors(path: str) -> Generator[None]:
-    """Convert errors about values into errors that name the file."""
+    """Context manager that converts errors about values into errors that name the file."""
     try:
         yield
     except SourceError:

@@ -279,9 +279,9 @@ class Viewing(EnvironmentPart):
             camera: ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's camera, else the file's,
                 else a view of the whole scene.
             background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else a gradient.
-            shadows: Whether lights cast shadows; None: if OpenGL draws.
-            floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto``: one where neither script
-                nor file sets a background.
+            shadows: Whether lights cast shadows; None: only if OpenGL draws the picture.
+            floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto`` draws one
+                if neither script nor file sets a background.
             lights: ``studio``, ``model`` (the model's own lights) or ``both``.
 
         Returns:
@@ -343,8 +343,8 @@ class Viewing(EnvironmentPart):
                 file's, else a view of the whole motion.
             background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else a gradient.
             shadows: Whether lights cast shadows; None: if the browser has time for them.
-            floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto``: one where neither script
-                nor file sets a background.
+            floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto`` draws one
+                if neither script nor file sets a background.
             lights: ``studio``, ``model`` (the model's own lights) or ``both``.
             notes: Lines of text in a corner of the page.
 

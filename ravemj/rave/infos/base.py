@@ -65,7 +65,7 @@ class Entry(NamedTuple):
         field: The name of the field.
         form: The conversion.
         optional: Whether the key is omitted if the field is None or has its default value.
-        of: The attribute of the described object that holds the same value, for classes that look it up.
+        of: The attribute of the described scene object that holds the same value; empty if it is not needed.
     """
 
     key: str
@@ -195,7 +195,7 @@ class _Called:
             self.add(info)
 
     def add(self, info: Described) -> None:
-        """Add an info at the end, or at its previous position."""
+        """Add an info at the end, or at its previous position if it was removed."""
         place = self._place_of.setdefault(id(info), len(self._place_of))
         self._at[place] = info
         for key in _calls("_", vars(info)):
@@ -219,7 +219,7 @@ class _Called:
 
 
 def _calls(prefix: str, fields: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-    """Yield the id and the name among some fields, unless they are empty."""
+    """Yield the fields ``id`` and ``name``, whose keys have a prefix, unless they are empty."""
     for name in ("id", "name"):
         value = fields.get(prefix + name)
         if value and isinstance(value, str):
@@ -270,7 +270,7 @@ def json_field(
         form: The conversion to JSON and back.
         default: The default value; each new info gets a copy.
         optional: Whether the key is omitted if the field is None or has its default value.
-        of: The attribute of the described object that holds the same value, for classes that look it up.
+        of: The attribute of the described scene object that holds the same value; empty if it is not needed.
         kw_only: Whether the constructor accepts the field only by keyword.
     """
     metadata = {"entry": Entry(key, "", form, optional, of)}
@@ -308,10 +308,10 @@ def _camel(name: str) -> str:
 
 @info_class
 class Info(ApiObject):
-    """Base class of infos. They compare by their fields, and print as the expression that makes them."""
+    """Base class of infos. Infos are equal if their fields are; ``repr`` is an expression that creates the info."""
 
     _called: ClassVar[str]
-    """Class name for ``repr`` and error messages; by default its own."""
+    """Name of the class for ``repr`` and error messages; by default ``__name__``."""
     _entries: ClassVar[tuple[Entry, ...]]
     """JSON keys, made from the fields."""
     _internal: ClassVar[tuple[str, ...]] = (
@@ -463,7 +463,7 @@ def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put
 
 
 def _written(value: object) -> str:
-    """Return a value as an expression without imports: arrays as lists."""
+    """Return a Python expression for a value that needs no imports; arrays are written as lists."""
     if isinstance(value, Enum):
         return f"{type(value).__name__}.{value.name}"
     if isinstance(value, np.ndarray | np.generic):

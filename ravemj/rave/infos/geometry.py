@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 
 VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
-"""Vector-valued fields of sizes, in order; scalar sizes share the first."""
+"""Fields of ``GeometryInfo`` for the sizes of a shape: one per vector size; the first one has all scalar sizes."""
 
 
 class SideWallType(NamedInt):
@@ -86,7 +86,7 @@ class AxialSlice:
 
 
 class GeometrySizes(IdentifiedInfo):
-    """Sizes of a shape by name. As in OpenRAVE, getters read the same fields for any type."""
+    """Getters and setters of a shape's sizes. As in OpenRAVE, a getter reads its field whatever the type of shape."""
 
     _type: GeometryType
     _t: ArrayLike
@@ -377,7 +377,7 @@ class GeometryInfo(GeometrySizes):
         return info
 
     def _take(self, shape: scene.Shape) -> None:
-        """Set the fields of the sizes: each vector fills a field, and scalars share the first one."""
+        """Set the size fields from a shape: one field per vector size; the first field has all scalar sizes."""
         vectors, numbers = iter(VECTORS), list[float]()
         for size in shape.sizes():
             value = getattr(shape, size.name)

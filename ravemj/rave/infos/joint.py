@@ -203,7 +203,8 @@ class JointInfo(ParameterFields):
         _vmaxvel: Velocity limits [rad/s or m/s]; _vmaxaccel, _vmaxjerk, _vmaxtorque, _vweights and _vresolution
             likewise.
         _vhardmaxvel: Velocity limits that planners never exceed, 0 for none; _vhardmaxaccel and _vhardmaxjerk likewise.
-        _voffsets: See ``Joint.SetWrapOffset``.
+        _voffsets: Centres of the intervals of one turn into which angles are wrapped [rad]; see
+            ``Joint.SetWrapOffset``.
         _bIsCircular: Whether the axis rotates without limits.
         _bIsActive: Whether the joint has DOFs.
         _vmimic: The equations of a mimic joint: for each axis a list with those of position, velocity and acceleration.
@@ -407,11 +408,11 @@ _DEFAULTS = {
 
 
 _REPORTED = {"max_torque": "own_torque"}
-"""Fields of axes that infos report in place of those that they set: the motor has its own info."""
+"""Axis fields that infos read under another name: torque limits without the motor, which has its own info."""
 
 
 def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:
-    """Return a motor with gear ratio 1 that acts as that of an axis; None if it has none."""
+    """Return the motor of an axis as an equivalent motor with gear ratio 1; None if the axis has no motor."""
     if not (axis.armature or axis.speed_torques or axis.joint_torque is not None):
         return None
     turn = 1.0 if is_slider else 2 * math.pi

@@ -309,10 +309,10 @@ class KinBody(BodyConfiguration, Interface):
         return next((info for info in infos if info._grabbedname == grabbedname), None)  # pyright: ignore[reportPrivateUsage] - OpenRAVE's field
 
     def ResetGrabbed(self, grabbedinfos: Sequence[GrabbedInfo]) -> None:
-        """Replace all grabs by those of infos, each with its relative pose.
+        """Replace all grabs by the described ones, each with its relative pose.
 
         Args:
-            grabbedinfos: The infos, results of ``GetGrabbedInfo``.
+            grabbedinfos: The descriptions, results of ``GetGrabbedInfo``.
 
         Raises:
             openrave_exception: a body or link does not exist. Nothing changes then.
@@ -348,13 +348,14 @@ class KinBody(BodyConfiguration, Interface):
         return link.GetIndex()
 
     def restorers(self, options: int) -> list[Restorer]:
-        """Return functions that restore the present state, on this body or on one of the same structure."""
+        """Return functions that restore the present state, on this body or on another body of the same structure."""
         return body_restorers(self._state, options)
 
     def __enter__(self) -> Self:
-        """Lock the environment and save the body; poses, joint values and enabled links are restored at the end.
+        """Lock the environment and save the body's state, which the end of the ``with`` block restores.
 
-        A robot's active DOFs and active manipulator are restored, too; limits, velocities and grabs are not.
+        The state consists of poses, joint values and enabled links; for a robot also of its active DOFs and active
+        manipulator. Limits, velocities and grabs are not restored.
 
         Example:
             >>> with robot:
@@ -435,7 +436,7 @@ class KinBody(BodyConfiguration, Interface):
         return checker.CheckSelfCollision(self, report)
 
     def SetSelfCollisionChecker(self, collisionchecker: "CollisionChecker | None") -> None:
-        """Set the checker of ``CheckSelfCollision``; None for ``collisionchecker`` selects that of the environment."""
+        """Set the checker of ``CheckSelfCollision``; ``collisionchecker`` None selects the environment's checker."""
         if collisionchecker is not None:
             _check_checker(collisionchecker, "SetSelfCollisionChecker")
         self._self_checker = collisionchecker
@@ -445,7 +446,7 @@ class KinBody(BodyConfiguration, Interface):
         return self._self_checker
 
     def active_dofs(self) -> tuple[int, ...]:
-        """Return the DOF indices of the active joints. Only robots can choose them; other bodies have all."""
+        """Return the DOF indices of the active joints: chosen in a robot, all in any other body."""
         return tuple(range(self.GetDOF()))
 
     def moves_as_a_whole(self) -> bool:
@@ -453,7 +454,7 @@ class KinBody(BodyConfiguration, Interface):
         return False
 
     def Enable(self, enable: bool) -> None:
-        """Enable or disable collisions of all links, as ``enable`` says."""
+        """Enable collisions of all links if ``enable``, else disable them."""
         self._state.link_enabled = [bool(enable)] * len(self._state.link_enabled)
 
     def IsEnabled(self) -> bool:

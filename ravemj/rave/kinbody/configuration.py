@@ -357,8 +357,8 @@ class BodyConfiguration(BodyPart):
                 number, this is taken as ``indices``.
             checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
             indices: The DOF indices that ``dofvelocities`` refer to; by default all. ravemj repeats an error of
-                OpenRAVE here: with k indices, only the first k DOFs count. Those of them that no index names keep their
-                velocities, and all other DOFs stop. So name all DOFs.
+                OpenRAVE here: with k indices, only the first k DOFs are set; those not in ``indices`` keep their
+                velocities. All other DOFs stop, even those in ``indices``. So pass all DOFs.
 
         Raises:
             ArgumentError: the number of velocities is wrong, or one is infinite; with ``CheckLimitsThrow``, one is

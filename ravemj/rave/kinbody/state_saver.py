@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 Restorer = Callable[["KinBody"], None]
-"""Function that restores a part of the saved state, on the saved body or on one of the same structure."""
+"""Function that restores a part of the saved state, on the saved body or on another body of the same structure."""
 
 # Plain numbers, because ``&`` of two flags takes as long as saving a pose.
 _TRANSFORMATION, _ENABLE = int(SaveParameters.LinkTransformation), int(SaveParameters.LinkEnable)
@@ -32,7 +32,7 @@ _AXIS_FIELDS = {
 
 
 def body_restorers(state: BodyState, options: int) -> list[Restorer]:
-    """Return functions that restore the current state of a body, on it or on one of the same structure.
+    """Return functions that restore the current state, on this body or on another body of the same structure.
 
     Args:
         state: The body.
@@ -79,7 +79,7 @@ class StateSaver(ApiObject):
         return self._body
 
     def Restore(self, body: "KinBody | None" = None) -> None:
-        """Restore the state. This can be done several times.
+        """Restore the state. It can be restored several times.
 
         Args:
             body: The body to change, of the same structure; by default the saved body.
@@ -129,4 +129,4 @@ def _set_axes(body: BodyPart, kept: Mapping[str, Sequence[float]]) -> None:
 
 
 KinBodyStateSaver = RobotStateSaver = StateRestoreContext = StateSaver
-"""OpenRAVE's names of the class."""
+"""Alias of ``StateSaver`` under OpenRAVE's names."""

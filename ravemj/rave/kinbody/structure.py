@@ -53,14 +53,14 @@ class BodyPart(ApiObject):
     _simulation: Simulation
 
     _known: tuple[tuple[scene.Joint, ...], dict[str, Floats]] | None = None
-    """Cache: the joints, and arrays of fields of all their axes by name.
+    """Cache: the joints for which it was computed, and fields of their axes as arrays, by name.
 
-    A change replaces the tuple of joints, so the cache is valid as long as the scene has this very tuple.
+    Every change of joints creates a new tuple, so the cache is valid if the scene still has this tuple.
     """
 
     @property
     def simulation_state(self) -> BodyState:
-        """The state of the body below OpenRAVE's API: its scene and its kinematics."""
+        """The body in the simulation: its scene description and its kinematics."""
         return self._state
 
     def _checked_link(self, index: int) -> int:
@@ -136,7 +136,7 @@ class BodyPart(ApiObject):
         self._set_axes("SetDOFJerkLimits", {"max_jerk": limits})
 
     def GetDOFHardVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the hard velocity limits, see ``SetDOFHardVelocityLimits``, or those of the DOFs ``indices``."""
+        """Return the velocities that planners never exceed, shape (dof,), or those of ``indices``; 0 for none."""
         return self._of_axes("hard_max_velocity", indices)
 
     def SetDOFHardVelocityLimits(self, limits: ArrayLike) -> None:
@@ -144,7 +144,7 @@ class BodyPart(ApiObject):
         self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits})
 
     def GetDOFHardAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the limits of ``SetDOFHardAccelerationLimits``, shape (dof,), or those of the DOFs ``indices``."""
+        """Return the accelerations that planners never exceed, shape (dof,), or those of ``indices``; 0 for none."""
         return self._of_axes("hard_max_acceleration", indices)
 
     def SetDOFHardAccelerationLimits(self, limits: ArrayLike) -> None:
@@ -152,7 +152,7 @@ class BodyPart(ApiObject):
         self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits})
 
     def GetDOFHardJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the limits of ``SetDOFHardJerkLimits``, shape (dof,), or those of the DOFs ``indices``."""
+        """Return the jerks that planners never exceed, shape (dof,), or those of ``indices``; 0 for none."""
         return self._of_axes("hard_max_jerk", indices)
 
     def SetDOFHardJerkLimits(self, limits: ArrayLike) -> None:
@@ -178,20 +178,20 @@ class BodyPart(ApiObject):
     def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown.
 
-        Motors do not count; see ``GetDOFMaxTorque``.
+        Limits of motors are ignored; see ``GetDOFMaxTorque``.
         """
         return self._of_axes("own_torque", indices)
 
     def GetDOFMaxTorque(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the torque limits [N m or N], shape (dof,), or those of the DOFs ``indices``; 0 if unknown.
 
-        Motors have the limits of their present speeds.
+        The limit of a motor is its torque limit at the present speed.
         """
         limits = [joint.GetMaxTorque() for joint in self.GetJoints() for _ in range(joint.GetDOF())]
         return np.array(limits)[checked_indices(indices, self.GetDOF())]
 
     def SetDOFTorqueLimits(self, limits: ArrayLike) -> None:
-        """Set the torque limits [N m, for sliders N], shape (dof,). Motors keep theirs."""
+        """Set the torque limits [N m, for sliders N], shape (dof,). The limits of motors do not change."""
         axes = self._state.scene.dof_axes
         motors = [dof for dof, axis in enumerate(axes) if axis.speed_torques or axis.joint_torque is not None]
         kept = self._of_axes("max_torque", motors)
@@ -532,10 +532,10 @@ class BodyPart(ApiObject):
     def GetURI(self) -> str:
         """Return the file that the body was read from, as ``file:/path``; empty for a body made in code.
 
-        Behind the path of a COLLADA file with several bodies stands ``#`` and the body's id: ``ReadRobotURI`` and
-        ``ReadKinBodyURI`` read that body alone.
+        For a COLLADA file with several bodies, ``#`` and the body's id follow the path; ``ReadRobotURI`` and
+        ``ReadKinBodyURI`` then read that body alone.
 
-        For ``InitFromBoxes`` and its like, it is their argument ``uri``.
+        After ``InitFromBoxes`` and similar methods, it is their argument ``uri``.
         """
         if self._uri is not None:
             return self._uri
@@ -727,7 +727,7 @@ class BodyPart(ApiObject):
         return True
 
     def UpdateFromKinBodyInfo(self, info: KinBodyInfo) -> UpdateFromInfoResult:
-        """Set the pose and the joint values of a description, which may also be done inside an environment.
+        """Set the body's pose and joint values to those of a description, inside or outside of an environment.
 
         Args:
             info: The description, for instance a result of ``ExtractInfo`` of a body of the same structure.
@@ -769,7 +769,7 @@ class BodyPart(ApiObject):
         return KinBodyInfo(**self.extracted(options))
 
     def extracted(self, options: int) -> dict[str, Any]:
-        """Return the fields for the info of ``ExtractInfo``.
+        """Return the fields of the description that ``ExtractInfo`` makes, by name.
 
         Args:
             options: What to include, ``ExtractInfoOptions``.
@@ -803,7 +803,7 @@ _ARCHIVE = ".zae"
 """Suffix of archives with COLLADA documents."""
 
 _NO_FILES = frozenset({FROM_SCRIPT.file, "data"})
-"""Sources of bodies that were not read from a file; readers call a text ``data``."""
+"""Source names of bodies that were not read from a file; readers of text use the name ``data``."""
 
 
 def _rows(numbers: ArrayLike, widths: tuple[int, ...], name: str) -> Floats:

@@ -32,11 +32,11 @@ if TYPE_CHECKING:
 
 
 Target = ArrayLike | IkParameterization | CollisionReport | None
-"""Goal of a tool; or, if it is left out, the report that follows it."""
+"""Tool goal of a collision check; if it is omitted, the report may take its place."""
 
 
 def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floats | None, CollisionReport | None]:
-    """Return the pose and the report; the pose may have been left out."""
+    """Return the tool pose and the report; the pose is None if the report was passed in its place."""
     if isinstance(transform, IkParameterization):
         return transform.GetTransform6D(), report
     if transform is None or isinstance(transform, CollisionReport):
@@ -365,7 +365,7 @@ class Manipulator(ArmIk):
         report: CollisionReport | None,
         T_world_tool: Floats | None,
     ) -> bool:
-        """Test pairs with the tool at its goal, by default at its present pose."""
+        """Test the geom pairs that ``find`` selects, with the tool at a goal or at its present pose."""
         checker = self._robot.GetEnv().GetCollisionChecker()
         with self._state.simulation.lock:
             world = checker.world()

@@ -142,10 +142,10 @@ class ArmIk(ApiObject):
     # Solvers
 
     def GetIkSolver(self) -> IkSolver | None:
-        """Return the solver of inverse kinematics, or None as long as there is none.
+        """Return the arm's IK solver, or None if it has none.
 
-        If the file names one by ``<iksolver>``, it is made at the first call: any name with ``ikfast`` in it stands for
-        a solver of poses or, with five joints, of the tool's position and direction.
+        The first call makes the solver that the file names by ``<iksolver>``: a name with ``ikfast`` selects a solver
+        for poses or, with five joints, for the tool's position and direction.
         """
         solver = self._robot.ik_solvers.get(self._scene.name)
         if solver is None and self._scene.ik_solver:
@@ -163,7 +163,7 @@ class ArmIk(ApiObject):
             iksolver: A solver of ``RaveCreateIkSolver``; None removes the solver.
 
         Returns:
-            Whether it fits the arm; if not, a warning says why.
+            Whether the solver fits the arm; if not, a warning says why.
         """
         if iksolver is None:
             self._robot.ik_solvers.pop(self._scene.name, None)
@@ -363,7 +363,9 @@ class ArmIk(ApiObject):
     def ik(
         self, goals: ArrayLike, iktype: IkParameterizationType = _Type.Transform6D, *, limits: bool = True
     ) -> IkBatch:
-        """Return the IK solutions of many goals, one turn of each, without collision checks.
+        """Return the IK solutions of many goals, without collision checks.
+
+        Solutions that differ by full turns of a joint are returned once.
 
         Args:
             goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the values of the goals, shape (N, k).

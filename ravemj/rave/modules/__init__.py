@@ -46,7 +46,7 @@ def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Mo
 
 
 def grasper_module(env: "Environment", xmlid: str = "Grasper") -> tuple[Module, GraspSimulation]:
-    """Make a module that simulates grasps; return it, and the object that does."""
+    """Make a module that simulates grasps; return it with its ``GraspSimulation``."""
     simulation = GraspSimulation(env)
     return _module(env, xmlid, simulation, commands_of(simulation, GRASPER_COMMANDS)), simulation
 

@@ -222,10 +222,10 @@ class Manipulation:
                 new.join(new.retimed((1.0, 1.0), retimer, ""))
 
     def straight(self, points: Floats, dofs: Sequence[int] | None = None) -> Trajectory:
-        """Return the fastest motion along straight segments through points (m, n) of joints or the active DOFs.
+        """Return the fastest motion of joints, by default the active DOFs, along straight lines between points (m, n).
 
         Raises:
-            PlanningError: the retimer finds no times.
+            PlanningError: retiming fails.
         """
         traj = Trajectory(self.env, "")
         traj.set_waypoints(Waypoints(self.groups(dofs), points))

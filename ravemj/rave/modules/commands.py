@@ -164,7 +164,7 @@ _READERS: Mapping[object, Reader] = {
 
 
 def readers_of(kind: type) -> dict[str, Reader]:
-    """Return a reader for each option of a motion, by its type."""
+    """Return a reader for each field of an options class, selected by the type of the field."""
     return {row.name: _READERS[row.type] for row in fields(kind)}
 
 
@@ -219,7 +219,7 @@ def _final_and_reply(manipulation: Manipulation, motion: tuple[Floats, Trajector
 
 
 def some(options: Options, *names: str) -> dict[str, Any]:
-    """Return those of the options that have one of the names."""
+    """Return the options with the given names, if they are set."""
     return {name: options[name] for name in names if name in options}
 
 
@@ -449,10 +449,10 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
     "rotation": lambda tokens: IkParameterization(tokens.numbers(4), _KIND.Rotation3D),
     "ikparam": lambda tokens: IkParameterization.take(tokens.words),
 }
-"""Arguments with one tool goal."""
+"""Readers of options with one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
-"""Arguments with several tool goals, and the argument with one of these."""
+"""For each option with several tool goals: the option with a single goal, whose reader is repeated."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),

@@ -34,28 +34,28 @@ _RANDOM = np.random.default_rng()
 """Source of noise."""
 
 _MOST = 16
-"""Maximum number of contacts of a first test of force closure; OpenRAVE's."""
+"""Maximum number of contacts in the first, fast test of force closure; OpenRAVE's value."""
 
 _CLOSED = 1e-9
-"""Distance to the wrench hull from which the first test counts; OpenRAVE's."""
+"""Minimum distance to the boundary of the wrench hull at which the fast test suffices; OpenRAVE's value."""
 
 _BLOCK = 32
-"""Number of candidates that a process gets at a time."""
+"""Number of candidates per task of a worker process."""
 
 _CHECKED = int(IkFilterOptions.CheckEnvCollisions)
 
 
 @dataclass(frozen=True, kw_only=True)
 class GraspRequest:
-    """A grasp, and what to compute about it.
+    """A grasp, and the quantities to compute about it.
 
     Attributes:
-        parameters: How the hand comes.
+        parameters: Approach of the hand.
         chuckingdirection: Sign of the motion of each gripper joint; None: the manipulator's.
         friction: Friction coefficient.
         forceclosure: Whether to compute the distance and the volume of the wrench hull.
         stablecontacts: Whether only contacts count that the fingers press against the target.
-        least: Least distance to the wrench hull that a grasp needs; below, its volume is 0.
+        least: Distance to the boundary of the wrench hull below which the volume is not computed, but 0.
     """
 
     parameters: GraspParameters = field(default_factory=GraspParameters)
@@ -67,7 +67,7 @@ class GraspRequest:
 
 
 class GraspAnswer(NamedTuple):
-    """A grasp that was found.
+    """Result of a simulated grasp.
 
     Attributes:
         contacts: Contact points [m] and normals out of the target in the world, shape (n, 6).
@@ -88,13 +88,13 @@ class GraspAnswer(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Candidates:
-    """Grasps to try: all combinations of their parts.
+    """Grasp candidates: all combinations of rays, rolls, preshapes, standoffs and directions.
 
     Attributes:
         rays: Start of the tool and direction of the motion, in the target, shape (n, 6).
         rolls: Rotations of the tool [rad].
         preshapes: Values of the gripper [rad or m], shape (n, gripper dof).
-        standoffs: Distances back after the contact [m].
+        standoffs: Distances by which the hand moves back after the contact [m].
         directions: Directions of the tool, in its own frame, shape (n, 3).
     """
 
@@ -109,7 +109,7 @@ class Candidates:
         return math.prod(len(part) for part in parts)
 
     def all(self, parameters: GraspParameters) -> Iterator[tuple[GraspParameters, Floats]]:
-        """Yield parameters and preshape of each in OpenRAVE's order: the standoff changes first, the direction last."""
+        """Yield the parameters and preshape of each candidate; standoffs vary fastest, directions slowest."""
         for tool, ray, roll, preshape, standoff in product(
             self.directions, self.rays, self.rolls, self.preshapes, self.standoffs
         ):
@@ -118,12 +118,12 @@ class Candidates:
 
 
 class Sweep(NamedTuple):
-    """Which candidates to try, and which grasps to keep.
+    """Range of candidates to test, and criteria for grasps to keep.
 
     Attributes:
         start: Index of the first candidate.
-        most: Maximum number of grasps; 0 means any.
-        threshold: Least distance to the wrench hull; None: any grasp counts.
+        most: Maximum number of grasps; 0 means no limit.
+        threshold: Minimum distance to the boundary of the wrench hull; None accepts all grasps.
         tries: Number of grasps with noise that have to succeed.
         checkik: Whether the arm has to reach the grasp without collisions.
     """
@@ -136,7 +136,7 @@ class Sweep(NamedTuple):
 
 
 class Found(NamedTuple):
-    """A candidate that was kept, with its preshape."""
+    """An accepted candidate, with its preshape."""
 
     parameters: GraspParameters
     preshape: Floats
@@ -150,7 +150,7 @@ class GraspSimulation(Manipulation):
         """Simulate a grasp from the present configuration.
 
         Raises:
-            PlanningError: it fails; ``parameter`` is the ``Reason``.
+            PlanningError: the grasp fails; ``parameter`` is the ``Reason``.
             ArgumentError: a parameter is wrong.
         """
         self._check_target(request)
@@ -169,12 +169,12 @@ class GraspSimulation(Manipulation):
     def sweep(
         self, candidates: Candidates, request: GraspRequest, sweep: Sweep, processes: int = 1
     ) -> tuple[int, list[Found]]:
-        """Simulate candidates, and keep those that are good enough.
+        """Simulate candidates, and keep those that meet the criteria.
 
         Args:
             candidates: The candidates.
-            request: How hands come, and what is computed.
-            sweep: Which candidates, and which grasps.
+            request: Approach of the hand, and quantities to compute.
+            sweep: Range of candidates, and criteria for grasps.
             processes: Number of processes; few candidates are simulated in this one. The grasps are the same.
 
         Returns:
@@ -201,7 +201,7 @@ class GraspSimulation(Manipulation):
     def good_ones(
         self, candidates: Candidates, request: GraspRequest, sweep: Sweep, span: tuple[int, int]
     ) -> Generator[tuple[int, Found]]:
-        """Yield the index of each candidate within a span that is good enough, and its grasp."""
+        """Yield the index and the grasp of each candidate in a range of indices that meets the criteria."""
         manip, state = self._manipulator(), self.robot.simulation_state
         gripper = manip.GetGripperIndices()
         with state.simulation.lock, kept_in_place(state):
@@ -241,7 +241,7 @@ class GraspSimulation(Manipulation):
         return manip.FindIKSolution(answer.end.T_world_base @ T_base_tool, _CHECKED) is not None
 
     def stable_contacts(self, direction: Floats, friction: float) -> tuple[Floats, Ints]:
-        """Return the contacts of the hand in the present configuration that closing presses against other bodies.
+        """Return the present contacts of the hand at which closing the fingers presses against other bodies.
 
         Args:
             direction: Velocity of links that no gripper joint moves, shape (3,).
@@ -280,7 +280,7 @@ class GraspSimulation(Manipulation):
         return manip
 
     def _sides(self, chuckingdirection: Sequence[float] | None) -> Mapping[int, float]:
-        """Return the sign of the motion of each active joint; 0 for those that are not of the gripper."""
+        """Return the sign of the motion of each active joint; 0 for joints that are not in the gripper."""
         manip = self._manipulator()
         gripper = manip.GetGripperIndices().tolist()
         signs = manip.GetChuckingDirection().tolist() if chuckingdirection is None else list(chuckingdirection)
@@ -322,7 +322,7 @@ class GraspSimulation(Manipulation):
 
 
 def _sweep_part(content: bytes, span: tuple[int, int]) -> list[tuple[int, Found]]:
-    """Return the good candidates within a span, without their target, in another process."""
+    """Simulate a range of candidates in a worker process; return the accepted grasps without their target."""
     robot, candidates, request, sweep = _unpickled(content)
     simulation = GraspSimulation(robot.GetEnv())
     simulation.choose(robot.GetName())

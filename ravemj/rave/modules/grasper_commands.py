@@ -1,4 +1,4 @@
-"""The commands of the module ``Grasper``: texts in, texts out."""
+"""Text commands of the module ``Grasper``."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -31,12 +31,12 @@ _PARAMETERS: Mapping[str, Reader] = {
 
 
 def _optional_flag(tokens: Tokens) -> bool:
-    """Return whether the next token is 1; True if it is neither 0 nor 1, which is the next word."""
+    """Return whether an option is on: its value is 1, or it has no value (0 or 1)."""
     return flag(tokens) if tokens and tokens.words[0] in {"0", "1"} else True
 
 
 def _grasp(grasper: GraspSimulation, arguments: str) -> str:
-    """Flies the hand to a target, closes its fingers, and returns the contacts."""
+    """Move the hand to a target, close its fingers, and return the contacts."""
     avoided: list[str] = []
     manip = grasper.robot.GetActiveManipulator()
     gripper, active = manip.GetGripperDOF() if manip else 0, len(grasper.robot.GetActiveDOFIndices())
@@ -69,7 +69,7 @@ def _grasp(grasper: GraspSimulation, arguments: str) -> str:
 
 
 def _grasp_threaded(grasper: GraspSimulation, arguments: str) -> str:
-    """Tries all combinations of rays, rolls, preshapes, standoffs and directions, and returns the good grasps."""
+    """Try all combinations of rays, rolls, preshapes, standoffs and directions, and return the accepted grasps."""
     manip = grasper.robot.GetActiveManipulator()
     gripper = manip.GetGripperDOF() if manip else 0
     readers: dict[str, Reader] = {
@@ -108,7 +108,7 @@ def _grasp_threaded(grasper: GraspSimulation, arguments: str) -> str:
 
 
 def candidates_of(grasper: GraspSimulation, options: Options) -> Candidates:
-    """Return the combinations of given parts; parts that are missing are those of the robot now."""
+    """Return the grasp candidates of options; missing preshapes and directions are the robot's present ones."""
     manip = grasper.robot.GetActiveManipulator()
     if manip is None:
         raise ArgumentError("GraspThreaded: the robot has no active manipulator")
@@ -134,7 +134,7 @@ def _found_text(grasp: Found) -> str:
 
 
 def _convex_hull(grasper: GraspSimulation, arguments: str) -> str | None:
-    """Returns planes, faces, triangles and the volume of the convex hull of points."""
+    """Return planes, faces, triangles and the volume of the convex hull of points."""
     del grasper
     wanted = ("returnplanes", "returnfaces", "returntriangles", "returnvolume")
     readers: dict[str, Reader] = dict.fromkeys(wanted, flag)
@@ -158,7 +158,7 @@ def _points(tokens: Tokens) -> Floats:
 
 
 def _get_stable_contacts(grasper: GraspSimulation, arguments: str) -> str:
-    """Returns the contacts that closing fingers press against other bodies."""
+    """Return the contacts that closing fingers press against other bodies."""
     readers: dict[str, Reader] = {"direction": lambda tokens: tokens.numbers(3), "friction": Tokens.number}
     options = read_options(arguments, {**readers, "getlinkcollisions": _optional_flag})
     if not options.get("friction", 0.0) > 0:
@@ -168,7 +168,7 @@ def _get_stable_contacts(grasper: GraspSimulation, arguments: str) -> str:
 
 
 def _compute_distance_map(grasper: GraspSimulation, arguments: str) -> str:
-    """Is refused: no script uses random distance maps."""
+    """Raise an error: random distance maps are not supported, since no script uses them."""
     del grasper, arguments
     raise UnsupportedError(
         "Grasper.ComputeDistanceMap", "random maps of distances; cast rays with env.CheckCollisionRays"

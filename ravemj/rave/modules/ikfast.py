@@ -1,4 +1,4 @@
-"""The module ``ikfast`` of OpenRAVE's plugin ikfastsolvers, by which old scripts give arms their solvers."""
+"""The module ``ikfast`` of OpenRAVE's plugin ikfastsolvers, with which old scripts assign IK solvers to arms."""
 
 import logging
 from typing import NoReturn
@@ -15,10 +15,10 @@ _INSTEAD = "databases.inversekinematics.InverseKinematicsModel(robot, iktype=…
 
 
 def ikfast_module(env: Environment, xmlid: str) -> Module:
-    """Make a module that gives active manipulators solvers of inverse kinematics; none is compiled."""
+    """Make a module that assigns IK solvers to the active manipulators of robots; none is compiled."""
 
     def load_solver(arguments: str) -> str | None:
-        """Give the active manipulator a solver: ``LoadIKFastSolver ROBOT TYPE [STEPS OF FREE JOINTS]``."""
+        """Assign an IK solver to the active manipulator: ``LoadIKFastSolver ROBOT TYPE [STEPS OF FREE JOINTS]``."""
         name, *rest = arguments.split() or [""]
         robot = env.GetRobot(name)
         if robot is None or not rest:
@@ -47,7 +47,7 @@ def ikfast_module(env: Environment, xmlid: str) -> Module:
 
 
 def _type(word: str) -> IkParameterizationType:
-    """Return the type of goal that a number or a name stands for."""
+    """Return the goal type of a number or a name."""
     for kind in GOAL_TYPES:
         if word in {kind.name, str(int(kind))}:
             return kind

@@ -128,7 +128,7 @@ _STEP = 0.01
 
 
 _ANY = np.array([0.0, 0.0, 1.0])
-"""Direction of approach where the hand does not fly."""
+"""Placeholder for the approach direction if the hand does not move."""
 
 
 def _check_motion(directions: Floats, step: float) -> None:
@@ -138,7 +138,7 @@ def _check_motion(directions: Floats, step: float) -> None:
 
 
 def finger_steps(options: Options) -> Steps:
-    """Return the step lengths of options; a coarse step alone makes the fine one a hundredth of it, as in OpenRAVE."""
+    """Return the step lengths that options select; the fine step is by default a hundredth of a given coarse step."""
     coarse = options.get("coarsestep", STEPS.coarse)
     fine = options.get("finestep", coarse / 100)
     return Steps(coarse, fine, options.get("translationstepmult", STEPS.per_radian))
@@ -190,7 +190,7 @@ class TaskManipulation(Manipulation):
 
         Args:
             directions: Sign of the motion of each joint; None: the closing direction.
-            offsets: How far the motion goes on from there, in the direction of each joint [rad or m].
+            offsets: Distance that each joint moves on after it has stopped, in its direction [rad or m].
             steps: Step lengths.
 
         Raises:
@@ -227,7 +227,7 @@ class TaskManipulation(Manipulation):
         return final, self._motion(dofs, final)
 
     def _fingers(self, dofs: Sequence[int], directions: Floats, steps: Steps, approach: Approach) -> Floats:
-        """Return the values at which fingers stop that move one after the other."""
+        """Simulate fingers that move one after the other; return the joint values at which they stop."""
         _check_motion(directions, min(steps))
         manip, state = self.robot.GetActiveManipulator(), self.robot.simulation_state
         assert manip is not None, "it has a gripper"
@@ -240,7 +240,7 @@ class TaskManipulation(Manipulation):
         return closed.values[list(dofs)]
 
     def release_active(self, directions: Floats, step: float = _STEP) -> tuple[Floats, Trajectory]:
-        """Move each active joint in the direction of its sign in ``directions``; return last values and motion."""
+        """Move each active joint in its direction until contact or its limit; return the last values and the motion."""
         dofs = [int(dof) for dof in self.robot.GetActiveDOFIndices()]
         if len(directions) != len(dofs):
             raise ArgumentError(f"movingdir: has {len(directions)} numbers, and there are {len(dofs)} active joints")
@@ -258,7 +258,7 @@ class TaskManipulation(Manipulation):
         return self.straight(np.stack([self.robot.GetDOFValues(dofs), final]), dofs)
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
-        """Return the values at which joints stop."""
+        """Simulate joints that move until contact or to their limits; return the values at which they stop."""
         _check_motion(directions, step)
         return move_until_contact(
             self.bodies_of(dofs),

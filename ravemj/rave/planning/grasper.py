@@ -1,4 +1,4 @@
-"""The planner ``Grasper``: a hand flies to a body and closes around it."""
+"""The planner ``Grasper``: a hand moves to a body and closes around it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -29,7 +29,7 @@ _VECTORS = {
     "vmanipulatordirection": ("manipulatordirection", 3),
     "vintersectplane": ("vintersectplane", 4),
 }
-"""Tags of vectors: the field of ``GraspParameters``, and the number of numbers."""
+"""XML tags of vector parameters: the field of ``GraspParameters``, and the length of the vector."""
 
 _NUMBERS = {
     "ftargetroll": "roll",
@@ -44,7 +44,7 @@ _SWITCHES = {
     "bonlycontacttarget": ("onlycontacttarget", True),
     "bavoidcontact": ("avoidcontact", False),
 }
-"""Tags that are on or off: the field of ``GraspParameters``, and the planner's default."""
+"""XML tags of boolean parameters: the field of ``GraspParameters``, and the planner's default."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,11 +54,11 @@ class GraspParameters:
     Attributes:
         target: The body to grasp; None if only fingers close.
         direction: Direction of the motion of the hand, shape (3,).
-        roll: Rotation about ``manipulatordirection`` before [rad].
+        roll: Rotation about ``manipulatordirection`` before the motion [rad].
         position: Start of the tool [m], shape (3,).
         manipulatordirection: Direction of the tool that is turned to ``direction``, in the frame of the tool; None: the
             manipulator's.
-        standoff: Distance back after the contact [m].
+        standoff: Distance by which the hand moves back after the contact [m].
         vintersectplane: Plane on which the tool stops, in place of a standoff: n.x + d = 0, shape (4,).
         transformrobot: Whether the hand is placed and moves to the target.
         onlycontacttarget: Whether contact with another body is a failure.
@@ -67,8 +67,8 @@ class GraspParameters:
         avoidlinks: Indices of links that must touch nothing.
         graspingnoise: Largest random displacement of the target along each axis [m].
         coarsestep: Step of fingers until contact [rad].
-        finestep: Step from which the tolerance of contacts follows [rad].
-        translationstepmult: Factor of both steps for sliders and for the flight [m/rad].
+        finestep: Step that determines the tolerance of contacts [rad].
+        translationstepmult: Factor of both steps for sliders and for the translation of the hand [m/rad].
         ordereddofindices: DOF indices of the fingers in the order of closing; None: that of the active DOFs.
     """
 
@@ -91,7 +91,7 @@ class GraspParameters:
     ordereddofindices: Sequence[int] | None = None
 
     def approach(self, manip: Manipulator) -> Approach:
-        """Return the approach of a manipulator.
+        """Return the parameters of the hand's approach for a manipulator.
 
         Raises:
             ArgumentError: a number is not finite, a direction has no length, or a step is not positive.
@@ -122,11 +122,11 @@ class GraspParameters:
 def simulate(
     robot: Robot, parameters: GraspParameters, sides: Mapping[int, float], random: np.random.Generator
 ) -> Grasped:
-    """Simulate a grasp from the present configuration of a robot, which is as before afterwards.
+    """Simulate a grasp from the present configuration of a robot, which is restored afterwards.
 
     Args:
         robot: The robot; its active manipulator grasps.
-        parameters: How it comes.
+        parameters: The approach of the hand.
         sides: The sign of the motion of each joint that closes, by DOF index.
         random: Source of the noise.
 
@@ -189,7 +189,7 @@ def motion_of(robot: Robot, dofs: Sequence[int], path: Sequence[Waypoint]) -> Wa
 
 
 class Grasper(Planner):
-    """``Grasper``: the hand of a robot flies to a target, and its fingers close one by one.
+    """``Grasper``: the hand of a robot moves to a target, and its fingers close one by one.
 
     The problem is that of ``SetRobotActiveJoints``; ``SetInitialConfig`` has the preshape, and ``SetGoalConfig`` the
     sign of the motion of each joint. ``SetExtraParameters`` has OpenRAVE's ``GraspParameters`` as elements:

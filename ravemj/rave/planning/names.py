@@ -148,5 +148,5 @@ def scaled(params: PlannerParameters, extra: str, maxvelmult: float, maxaccelmul
 
 
 def alone(extra: str) -> str:
-    """Return XML parameters for a directly called retimer, which does not round times to a step length."""
+    """Return ``extra`` with the XML parameter that stops a retimer from rounding times to a step length."""
     return f"<_fsteplength>0</_fsteplength>{extra}"

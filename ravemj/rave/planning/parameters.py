@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 RootSets = Callable[[], Floats | None] | RegionLike | Sequence[RegionLike] | None
-"""Source of starts or goals: a function that returns one, or regions."""
+"""Source of starts or goals: regions, or a function that returns a configuration or None."""
 
 
 def check_movable(robot: Robot) -> None:
@@ -145,15 +145,15 @@ class PlannerParameters(ApiObject):
         self._set("_vgoalconfigvelocities", velocities)
 
     def SetConfigVelocityLimit(self, velocities: ArrayLike) -> None:
-        """Set the limits of ``velocities`` [rad/s or m/s], shape (GetDOF(),)."""
+        """Set the velocity limits to ``velocities`` [rad/s or m/s], shape (GetDOF(),)."""
         self._set("_vconfigvelocitylimit", velocities)
 
     def SetConfigAccelerationLimit(self, accelerations: ArrayLike) -> None:
-        """Set the limits of ``accelerations`` [rad/s^2 or m/s^2], shape (GetDOF(),)."""
+        """Set the acceleration limits to ``accelerations`` [rad/s^2 or m/s^2], shape (GetDOF(),)."""
         self._set("_vconfigaccelerationlimit", accelerations)
 
     def SetConfigJerkLimit(self, jerks: ArrayLike) -> None:
-        """Set the limits of ``jerks`` [rad/s^3 or m/s^3], shape (GetDOF(),)."""
+        """Set the jerk limits to ``jerks`` [rad/s^3 or m/s^3], shape (GetDOF(),)."""
         self._set("_vconfigjerklimit", jerks)
 
     def SetConfigResolution(self, resolution: ArrayLike) -> None:

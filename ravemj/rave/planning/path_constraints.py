@@ -100,7 +100,7 @@ def _lacking(
 def _test(
     bodies: Bodies, given: object, manip: Callable[[], Manipulator], tolerance: float, holding: KinBody | None
 ) -> Constraint:
-    """Return the membership test of a set without error function; it is called with the bodies at the configuration."""
+    """Return the membership test of a set without error function; the bodies are at the tested configuration."""
     if isinstance(given, Sets):
         tests = [_test(bodies, member, manip, tolerance, holding) for member in given.members]
         combine = any if given.any else all

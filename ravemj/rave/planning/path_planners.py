@@ -31,7 +31,7 @@ _SPACING = 10
 
 
 _STRICT_ITERATIONS, _STRICT_EFFORT = 50, 4
-"""Minimum number of iterations, and multiple of those of the first search, if each edge has to be certified."""
+"""Iteration limit if each edge has to be certified: the minimum, and the factor on the first search's iterations."""
 
 
 class PathPlanner(Planner):
@@ -65,7 +65,7 @@ class PathPlanner(Planner):
         values.check()
 
     def _stated(self, values: Values, enough: int) -> Problem | PlannerStatus:
-        """Return the problem, or the status if no start or no goal is allowed. Use it within ``conditions.kept``.
+        """Return the problem, or the failure status if no start or no goal is valid. Call within ``conditions.kept``.
 
         ``enough`` is the number of starts and of goals to sample from regions.
         """
@@ -120,9 +120,10 @@ class PathPlanner(Planner):
         return self._certified(values, traj, status) if status and values.certify else status
 
     def _found(self, values: Values, *, strict_iterations: int = 0) -> Search | PlannerStatus:
-        """Return a search that found a path, or the failure.
+        """Return a search that found a path, or the status of the failure.
 
-        With ``strict_iterations``, each edge of the path is certified, and this is the maximum number of iterations.
+        If ``strict_iterations`` is not 0, each edge of the path is certified, and it is the maximum number of
+        iterations.
         """
         with values.conditions.kept():
             problem = self._stated(values, enough=FIRST_ROOTS)
@@ -170,7 +171,7 @@ class PathPlanner(Planner):
     def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
         """Yield alternative paths with their post-processing parameters, which certify each line that shortens a path.
 
-        Of the last one, all edges are certified.
+        In the last path, all edges are certified.
         """
         assert search is not None, "it has found the motion"
         proving = replace(values, conditions=replace(values.conditions, proves=True))
@@ -268,7 +269,7 @@ def _with_first_roots(
     """Return the starts or goals, including those drawn by a sampler before the search; ``name`` says which.
 
     Raises:
-        RefusedError: there are no others, and none of the poses sampled from regions can be reached.
+        RefusedError: there is no start or goal, and none of the poses sampled from regions can be reached.
     """
     roots = [*given, *([] if sampler is None else draw(sampler.source))]
     tally = None if sampler is None else sampler.source.tally
@@ -278,7 +279,7 @@ def _with_first_roots(
 
 
 def _further(sampler: Sampler | None, refuse: Refuse) -> MoreRoots | None:
-    """Return a source of further roots without refused ones."""
+    """Return a source of further starts or goals that omits refused ones."""
     return None if sampler is None else MoreRoots(lambda: sampler.source.next(refuse), sampler.probability)
 
 

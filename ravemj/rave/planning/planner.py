@@ -88,12 +88,12 @@ class PlannerStatus(ApiObject):
 
     @property
     def causes_by_region(self) -> dict[str, dict[str, int]]:
-        """The same for each region by name; empty without regions."""
+        """``causes`` of each region, by name; empty without regions."""
         return {} if self.tally is None else self.tally.named()
 
     @property
     def examples(self) -> dict[str, Floats]:
-        """A configuration for each cause [rad or m], shape (dof,); empty for poses that are out of reach."""
+        """An example configuration for each cause [rad or m], shape (dof,); empty if the poses are out of reach."""
         return (
             {}
             if self.tally is None

@@ -144,7 +144,7 @@ def _curved(
 ) -> tuple[Waypoints, Certificate | None]:
     """Return a smooth motion through a path on a constraint; with corners if a smooth one would leave the constraint.
 
-    ``run`` retimes the path with the retimer of a name.
+    ``run`` retimes the path with the named retimer.
     """
     try:
         curve, _ = run(SPLINE)

@@ -37,7 +37,7 @@ _STEPS = 20
 """Maximum number of steps of a projection onto a region."""
 
 _MOST_ROWS = 16
-"""Maximum number of tested solutions of a pose, one turn of each branch first; arms may have hundreds."""
+"""Maximum number of IK solutions that are tested for a pose; arms with ranges of several turns may have hundreds."""
 
 _SAME = 1e-9
 """Tolerance of equal values [rad or m]."""
@@ -158,7 +158,7 @@ class _PoseSolver:
         self.solves_poses = self._given is not None or manip.GetArmDOF() >= _FULL_POSE
 
     def solve(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
-        """Return the joint values of all IK branches and turns for a pose of a region.
+        """Return all IK solutions for a pose of a region, including those that differ by full turns.
 
         Solvers of other goal types leave a part of the pose free; their solutions are projected onto the region.
         """
@@ -198,7 +198,10 @@ class _PoseSolver:
         return Cause.LIMITS if shortfall(solver, goal)[1] else Cause.REACH
 
     def shortfall(self, region: int, poses: PoseSet, T_world_tool: Floats) -> str:
-        """Describe how far the arm stays from a region: a local minimum, from the configuration nearest to one pose."""
+        """Describe how far the tool stays from a region at best.
+
+        This is a local minimum, found from the reachable configuration nearest to one pose of the region.
+        """
         solver, base = self._manip.ik_solver(_Type.Transform6D), self._manip.GetBase()
         T_world_base = np.eye(4) if base is None else base.GetTransform()
         near = solver.nearest_reachable(inverse(T_world_base) @ T_world_tool, self._manip.GetArmDOFValues())
@@ -230,9 +233,9 @@ class _PoseSolver:
 
 
 def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
-    """Return a subset of many solutions: for each branch the nearest turn, then adjacent turns.
+    """Return a subset of many solutions: the nearest of those that differ by full turns, in random order, then others.
 
-    Paths to farther turns are long, without new options at the goal.
+    Paths to configurations that are several turns away are long, and reach the same tool pose.
     """
     rows = rows[np.argsort(np.linalg.norm(rows - near, axis=1), kind="stable")]
     first = np.unique(np.round(np.mod(rows, 2 * np.pi), 6), axis=0, return_index=True)[1]

@@ -51,7 +51,7 @@ CHAIN = (
 """Default post-processing of paths: the first planner, and its parameters, which name the second."""
 
 CERTIFIED_CHAIN = "parabolicsmoother", _SECOND
-"""The default if motions should be certified: without lines that shorten the path, which are not removed again."""
+"""Default post-processing of certified motions: without ``linearsmoother``, since its shortcuts are not undone."""
 
 _SAME = 1e-9
 """Tolerance of equal configuration values [rad or m]."""

@@ -103,7 +103,7 @@ class Robot(ActiveDofs):
             self.active_choice = ActiveChoice()  # the indices of the old choice no longer mean the same DOFs
 
     def GetXMLId(self) -> str:
-        """Return OpenRAVE's name of the kind of robot."""
+        """Return OpenRAVE's name of the robot type, always ``GenericRobot``."""
         return "GenericRobot"
 
     def Grab(  # pyright: ignore[reportIncompatibleMethodOverride] - a robot has an arm to grab with
@@ -345,7 +345,7 @@ class Robot(ActiveDofs):
         return self.InitFromKinBodyInfo(info)
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
-        """Replace the robot, including its name, by the one of a description.
+        """Rebuild the robot, including its name, from a description.
 
         Args:
             info: The description, for instance a result of ``ExtractInfo``. A ``RobotBaseInfo`` has grippers and
@@ -394,7 +394,7 @@ class Robot(ActiveDofs):
         return self._connected.without_their_parts(info)
 
     def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
-        """Copy another body, as ``KinBody.Clone`` does, and of a robot also the sensors and the user's choices.
+        """Copy another body, as ``KinBody.Clone`` does; from a robot, also copy the sensors and the user's choices.
 
         These choices are the active DOFs, the active manipulator and the IK solvers.
 
@@ -421,7 +421,7 @@ class Robot(ActiveDofs):
         self.devices.take_over(other.devices)
 
     def restorers(self, options: int) -> list[Restorer]:
-        """Return functions that restore the current state of this robot, on it or on one of the same structure."""
+        """Return functions that restore the current state, on this robot or on another robot of the same structure."""
         restorers = super().restorers(options)
         if options & _ACTIVE_DOF:
             choice = self.active_choice
@@ -437,7 +437,7 @@ class Robot(ActiveDofs):
         return restorers
 
     devices: Devices
-    """Sensor objects that were used so far; others are not created."""
+    """Sensor objects of the attached sensors, created on first use."""
     _connected: ConnectedBodies
     ik_solvers: dict[str, IkSolver]
     """The IK solvers, by the names of their manipulators."""
@@ -537,7 +537,7 @@ class Robot(ActiveDofs):
 
         Args:
             manipinfo: The description of the manipulator.
-            removeduplicate: Whether it replaces a manipulator of the same name.
+            removeduplicate: Whether to replace an existing manipulator of the same name.
 
         Returns:
             The new manipulator.
@@ -633,7 +633,7 @@ class Robot(ActiveDofs):
 
         Args:
             gripperInfo: The description.
-            removeduplicate: Whether it replaces a description of the same name.
+            removeduplicate: Whether to replace an existing description of the same name.
 
         Returns:
             True.
@@ -673,7 +673,7 @@ class Robot(ActiveDofs):
 
         Args:
             attachedsensorinfo: The description of the sensor.
-            removeduplicate: Whether it replaces one of the same name.
+            removeduplicate: Whether to replace an existing sensor of the same name.
 
         Returns:
             The new attached sensor.
@@ -744,7 +744,7 @@ class Robot(ActiveDofs):
 
         Args:
             connectedbodyinfo: The description of the body.
-            removeduplicate: Whether it replaces one of the same name.
+            removeduplicate: Whether to replace an existing connected body of the same name.
 
         Returns:
             The body.
@@ -783,7 +783,7 @@ class Robot(ActiveDofs):
     def _place(
         self, name: str, parts: Sequence[scene.Manipulator | scene.AttachedSensor], replaces: bool, caller: str
     ) -> int:
-        """Return the index for a new part: that of the part of the same name, or the end.
+        """Return the list index for a new part: the index of the part that it replaces, else the length of the list.
 
         Raises:
             ArgumentError: the name is taken, and the new part does not replace the old one.

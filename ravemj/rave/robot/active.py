@@ -27,7 +27,7 @@ Topic = TypeVar("Topic")
 
 @dataclass
 class AffineKind:
-    """Settings of one type of affine DOFs, arrays of shape (n,)."""
+    """Limits, planning resolution and weights of one type of affine DOFs, arrays of shape (n,)."""
 
     lower: Floats
     upper: Floats
@@ -65,7 +65,7 @@ _SETTINGS = {
     "Resolution": (("resolution",), "the planners' steps of the base's {values} [{unit}], shape ({size},)."),
     "Weights": (("weight",), "the weights of the base's {values} in distances, shape ({size},)."),
 }
-"""Suffix of a method name, its fields of ``AffineKind``, and words for its docstring."""
+"""By suffix of the method names: the fields of ``AffineKind``, and words for the docstrings."""
 
 _ARGUMENTS = {
     "MaxVels": "\n\nArgs:\n    {argument}: Largest velocities.",
@@ -74,11 +74,11 @@ _ARGUMENTS = {
 
 
 def affine_numbers(kinds: Mapping[str, AffineKind], affine: int, axis: Vec3, name: str) -> Floats:
-    """Return one setting of several components of a pose, shape (n,).
+    """Return one setting of the active affine DOFs, shape (n,).
 
     Args:
         kinds: The settings.
-        affine: The components, bits of ``DOFAffine``.
+        affine: The active components of the base's pose, bits of ``DOFAffine``.
         axis: The axis of ``DOFAffine.RotationAxis``.
         name: The setting, a field of ``AffineKind``.
     """
@@ -95,7 +95,7 @@ def affine_numbers(kinds: Mapping[str, AffineKind], affine: int, axis: Vec3, nam
 
 
 def default_kinds() -> dict[str, AffineKind]:
-    """Return OpenRAVE's defaults, rounded to single precision as in OpenRAVE."""
+    """Return OpenRAVE's default settings of affine DOFs, rounded to single precision as in OpenRAVE."""
     defaults = {name: (-values.limit, values.limit, *values[2:5]) for name, values in _KINDS.items()}
     return {
         name: AffineKind(*(np.full(_KINDS[name].size, float(np.float32(value))) for value in values))
@@ -322,23 +322,23 @@ class ActiveDofs(KinBody):
         return self._with_affine(self.GetDOFVelocityLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFMaxAccel(self) -> Floats:
-        """Return the acceleration limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the acceleration limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFAccelerationLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFMaxJerk(self) -> Floats:
-        """Return the jerk limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the jerk limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFJerkLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxVel(self) -> Floats:
-        """Return the hard velocity limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the hard velocity limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFHardVelocityLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxAccel(self) -> Floats:
-        """Return the hard acceleration limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the hard acceleration limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFHardAccelerationLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxJerk(self) -> Floats:
-        """Return the hard jerk limits of the active values, shape (n,); for the base its velocity limits."""
+        """Return the hard jerk limits of the active values, shape (n,); for the base, the velocity limits."""
         return self._with_affine(self.GetDOFHardJerkLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFResolutions(self) -> Floats:

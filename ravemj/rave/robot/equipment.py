@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class AttachedSensor(ApiObject):
-    """Sensor mount on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
+    """Sensor mount on a link, with or without a device; ``robot.GetAttachedSensors()`` returns the mounts."""
 
     _internal = ("description", "edit", "state")
 
@@ -42,7 +42,7 @@ class AttachedSensor(ApiObject):
 
     @property
     def state(self) -> BodyState:
-        """The body of the robot."""
+        """The robot in the simulation."""
         return self._state
 
     @property
@@ -54,7 +54,7 @@ class AttachedSensor(ApiObject):
         return description
 
     def edit(self, **changes: Any) -> scene.AttachedSensor:  # noqa: ANN401 - the fields of a scene.AttachedSensor
-        """Change the description, and return it."""
+        """Change fields of the description in the scene, and return the new description."""
         with self._state.simulation.lock:
             changed = replace(self.description, **changes)
             sensors = (changed if sensor.name == changed.name else sensor for sensor in self._state.scene.sensors)
@@ -85,7 +85,7 @@ class AttachedSensor(ApiObject):
         return None if self.description.link is None else Link(self._robot, self._state, self.description.link)
 
     def GetRelativeTransform(self) -> Floats:
-        """Return ``T_link_sensor``, the pose in the link, shape (4, 4)."""
+        """Return the sensor's pose in the link frame, ``T_link_sensor``, shape (4, 4)."""
         return self.description.T_link_sensor.matrix()
 
     def SetRelativeTransform(self, transform: ArrayLike) -> None:
@@ -253,7 +253,7 @@ class ConnectedBody(ApiObject):
         return pose_of(self.GetTransform()).numbers()
 
     def GetRelativeTransform(self) -> Floats:
-        """Return ``T_link_body``, shape (4, 4)."""
+        """Return the body's pose in the frame of the robot's link, ``T_link_body``, shape (4, 4)."""
         return np.array(checked_transform(self._info._trelative, "ConnectedBodyInfo._trelative"))
 
     def GetRelativeTransformPose(self) -> Floats:
@@ -285,12 +285,12 @@ class ConnectedBody(ApiObject):
         return resolvedManipulatorName in {self._resolved(info._name) for info in self._info._manipulatorInfos}
 
     def SetLinkEnable(self, enable: bool) -> None:
-        """Enable collisions of its links if ``enable``, while it is connected."""
+        """Enable collisions of the body's links if ``enable``, else disable them; no effect unless it is connected."""
         for link in filter(None, self.GetResolvedLinks()):
             link.Enable(enable)
 
     def SetLinkVisible(self, visible: bool) -> None:
-        """Show its links if ``visible``, else hide them, while it is connected."""
+        """Show the body's links if ``visible``, else hide them; no effect unless it is connected."""
         for link in filter(None, self.GetResolvedLinks()):
             link.SetVisible(visible)
 
@@ -302,7 +302,7 @@ class ConnectedBody(ApiObject):
 
 
 class ConnectedBodies:
-    """Connected bodies of a robot, with the state whether active ones are merged into it now.
+    """Connected bodies of a robot, and whether the active ones are merged into it at present.
 
     Args:
         robot: The robot.
@@ -349,7 +349,7 @@ class ConnectedBodies:
             self._own_parts = own
 
     def disconnect(self) -> None:
-        """Remove their parts from the robot, which must not be in an environment."""
+        """Remove the parts of the connected bodies from the robot, which must not be in an environment."""
         if self._own_parts is not None:
             own = self._robot.ExtractInfo()
             self._own_parts = None

@@ -68,12 +68,12 @@ class WholeBodyResult:
     cost: float
 
     def __bool__(self) -> bool:
-        """Return whether it converged."""
+        """Return ``converged``."""
         return self.converged
 
 
 class WholeBodyTask(ApiObject):
-    """Task of a ``WholeBodyIK``; its ``add_…`` methods return tasks. All attributes can be changed at any time."""
+    """Task of a ``WholeBodyIK``, as its ``add_…`` methods return it. The attributes can be changed at any time."""
 
     _internal = ("task",)
 

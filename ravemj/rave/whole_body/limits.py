@@ -14,7 +14,7 @@ class WholeBodyLimits:
     Attributes:
         values: Whether to keep joint limits.
         velocities: Whether ``step`` and ``follow`` keep joint velocity limits.
-        accelerations: Whether they keep joint acceleration limits, and brake before joint limits.
+        accelerations: Whether ``step`` and ``follow`` keep joint acceleration limits, and brake before joint limits.
         base_velocity: Maximum of each component of the base's twist [m/s and rad/s]; None means no limit.
     """
 
@@ -25,7 +25,7 @@ class WholeBodyLimits:
 
 
 def limits_of(moving: Moving, limits: WholeBodyLimits) -> MotionLimits:
-    """Return the limits of the variables.
+    """Return the numerical limits of the joint and base displacements of a step.
 
     Raises:
         ArgumentError: the velocity of the base is negative or no finite number.
