@@ -21,6 +21,7 @@ _PARENTS_COUNT = int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
 _MOST = 8
 """Maximum number of contact points of a pair; the others lie between the kept points."""
 
+_ONES = np.ones(3)
 _SAME = 1e-7  # m; contact points of one pair that are nearer to each other count as one
 
 
@@ -47,33 +48,38 @@ def _of_pair(world: CollisionWorld, pair: Pair, contacts: list[Contact]) -> list
 
 def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Contact]]:
     """Return MuJoCo's last contacts of the given pairs, by pair; the smaller geom of a key comes first."""
-    wanted = {ordered_pair(*pair): pair for pair in pairs}
+    wanted = {ordered_pair(*pair): pair[0] for pair in pairs}
     by_pair: dict[Pair, list[Contact]] = {}
     data = world.model.data
     if not data.ncon:
         return by_pair
     contacts = data.contact
-    rows = zip(contacts.geom.tolist(), contacts.pos.copy(), contacts.frame[:, :3].copy(), contacts.dist, strict=True)
-    for (first, second), position, normal, distance in rows:
+    positions, normals, depths = contacts.pos.copy(), contacts.frame[:, :3].copy(), (-contacts.dist).tolist()
+    for row, (first, second) in enumerate(contacts.geom.tolist()):
         key = ordered_pair(first, second)
         if key in wanted:  # MuJoCo's normal points from its first geom to its second
-            away = normal if wanted[key][0] == second else -normal
-            by_pair.setdefault(key, []).append(Contact(position, away, max(-float(distance), 0.0)))
+            away = normals[row] if wanted[key] == second else -normals[row]
+            by_pair.setdefault(key, []).append(Contact(positions[row], away, max(depths[row], 0.0)))
     return {key: spread(some) for key, some in by_pair.items()}
 
 
 def spread(contacts: list[Contact]) -> list[Contact]:
     """Return at most ``_MOST`` contacts without duplicates, the deepest first, chosen far from each other."""
-    rest, chosen = sorted(contacts, key=lambda contact: -contact.depth), list[Contact]()
-    if not rest:
-        return chosen
+    if len(contacts) < 2:
+        return contacts
+    rest, chosen = sorted(contacts, key=_depth, reverse=True), list[Contact]()
     positions = np.array([contact.position for contact in rest])
-    gaps, number = np.full(len(rest), np.inf), 0
-    while len(chosen) < _MOST and gaps[number] > _SAME:
+    squares, number = np.full(len(rest), np.inf), 0
+    while len(chosen) < _MOST and squares[number] > _SAME * _SAME:
         chosen.append(rest[number])
-        gaps = np.minimum(gaps, np.linalg.norm(positions - positions[number], axis=1))
-        number = int(gaps.argmax())
-    return sorted(chosen, key=lambda contact: -contact.depth)
+        apart = positions - positions[number]
+        squares = np.minimum(squares, (apart * apart) @ _ONES)
+        number = int(squares.argmax())
+    return sorted(chosen, key=_depth, reverse=True)
+
+
+def _depth(contact: Contact) -> float:
+    return contact.depth
 
 
 def contact_rows(contacts: Iterable[Contact]) -> Floats:
