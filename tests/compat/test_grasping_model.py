@@ -319,6 +319,7 @@ def interrupted(gmodel, monkeypatch, after):
     monkeypatch.setattr(grasp_generation, "tried", original)
 
 
+@pytest.mark.stress
 def test_ctrl_c_keeps_what_is_done(env, gmodel, database, monkeypatch, caplog):
     from ravemj.compat.databases import grasp_generation
 
@@ -401,6 +402,7 @@ def test_a_killed_generation_goes_on(env, gmodel, database, tmp_path, processes)
     assert np.array_equal(gmodel.grasps, found.rows)
 
 
+@pytest.mark.stress
 def test_processes_do_not_repeat_the_script(tmp_path, gmodel):
     """A script without a guard for processes runs once."""
     script = tmp_path / "plain.py"

@@ -340,6 +340,7 @@ def venv(tmp_path_factory):
     return Venv(tmp_path_factory.mktemp("venv") / "venv")
 
 
+@pytest.mark.stress
 def test_alias_installs_runs_old_scripts_and_is_removed(venv, folder):
     without = venv.python(folder, "import ravemj, ravemj.cli\nimport openravepy")
     assert without.stderr.endswith("ModuleNotFoundError: No module named 'openravepy'\n"), "importing ravemj shadows"
@@ -382,6 +383,7 @@ def test_alias_installs_runs_old_scripts_and_is_removed(venv, folder):
     assert venv.ravemj(folder, "alias", "--remove").returncode == 0
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("place", one_in(3, ["package", "module", "elsewhere"]))
 def test_alias_leaves_a_real_openravepy_alone(venv, folder, place):
     outside = folder / "elsewhere"

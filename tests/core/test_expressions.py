@@ -235,6 +235,7 @@ def test_bounds(text):
     assert len(str(caught.value)) < 250
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize(
     "text",
     [

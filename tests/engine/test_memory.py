@@ -153,6 +153,7 @@ def test_memory_does_not_grow(env, work, shown):
     assert np.all(np.min(growths[1:], axis=0) < [0.1, CYCLES[work] / 2]), growths
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize(
     "work", one_in(3, [work for work in CYCLES if work is not exceed_limits]), ids=lambda work: work.__name__
 )

@@ -108,6 +108,7 @@ def meaning(data: bytes, deep: bool = False) -> tuple[int, str, list[str]]:
         return links, PLACE.sub("", text), [str(finding) for finding in reading.diagnostics]
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("batch", one_in(BATCHES, range(BATCHES)))
 def test_documents(batch, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)

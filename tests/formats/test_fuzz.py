@@ -26,6 +26,7 @@ class TestDamaged:
         monkeypatch.chdir(tmp_path)
         monkeypatch.setenv("RAVEMJ_CACHE", "off")
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("batch", one_in(10, range(BATCHES)))
     def test_documents(self, batch, capfd, tmp_path):
         fuzzer = Fuzzer(seed=0)
@@ -113,6 +114,7 @@ class TestHostile:
         assert outcome.links == 0
         assert any(name.startswith("failure") for name in outcome.signature)
 
+    @pytest.mark.stress
     @pytest.mark.parametrize(
         "content",
         [
@@ -239,6 +241,7 @@ class TestFound:
     def test_entities_in_attributes(self, run):
         assert run("<!DOCTYPE x [<!ENTITY a 'zzz'>]>" + body("<Body name='&a;'/>")).links == 0
 
+    @pytest.mark.stress
     def test_inclusions_that_double(self, run):
         files = {
             f"f{i}": f"<KinBody><KinBody file='f{i + 1}.xml'/><KinBody file='f{i + 1}.xml'/></KinBody>"

@@ -101,6 +101,7 @@ _IDS = (
 )
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize(
     ("make", "work"),
     [
@@ -127,6 +128,7 @@ def test_reading_and_writing(make, work):
     assert steps(lambda: work(large)) < MOST * steps(lambda: work(small))
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("make", [star, chain, bodies])
 def test_info(make, tmp_path):
     def info(count):
@@ -138,6 +140,7 @@ def test_info(make, tmp_path):
     assert steps(lambda: info(2 * FEW), "info.py") < MOST * steps(lambda: info(FEW), "info.py")
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("suffix", [".json", ".dae"])
 def test_environments(suffix, tmp_path):
     """Load, rename and remove many bodies of one name, and a body of many links."""
@@ -161,6 +164,7 @@ def test_environments(suffix, tmp_path):
     assert steps(lambda: work(2 * FEW)) < MOST * steps(lambda: work(FEW))
 
 
+@pytest.mark.stress
 def test_a_body_of_very_many_links(tmp_path):
     (tmp_path / "star.xml").write_text(star(10_000))
     (body,) = read_file(tmp_path / "star.xml").scene.bodies

@@ -121,6 +121,7 @@ def test_files_that_are_too_large(refused, monkeypatch):
     refused("large.stl", bytes(1001), "1,001 bytes or more, and 1,000 are read")
 
 
+@pytest.mark.stress
 def test_repeated_nodes(refused):
     doubling = "\n".join(f"DEF n{k} Group {{ USE n{k - 1} USE n{k - 1} }}" for k in range(1, 40))
     refused("use.iv", f"#Inventor V2.1 ascii\nDEF n0 Info {{ }}\n{doubling}", "repeated too often")
@@ -142,6 +143,7 @@ def test_repeated_prototypes(refused):
     refused("proto.wrl", f"#VRML V2.0 utf8\n{text}\nP39 {{ }}", "too many nodes")
 
 
+@pytest.mark.stress
 def test_repeated_files(tmp_path, refused):
     for number in range(40):
         inner = f'Inline {{ url "{number - 1}.wrl" }} ' * 2 if number else "Shape { geometry Box { } }"

@@ -54,6 +54,7 @@ def converted(name, folder, **choices):
     return path, {warning.message.code for warning in caught if isinstance(warning.message, ravemj.RavemjWarning)}
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("name", quick(NAMES))
 def test_a_robot_can_be_simulated(name, tmp_path):
     path, codes = converted(name, tmp_path)

@@ -45,6 +45,7 @@ def mutated(text: bytes, source: random.Random) -> bytes:
     return damage(text, source) if source.random() < 0.1 else text
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("batch", one_in(2, range(BATCHES)))
 def test_mutations(batch, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)

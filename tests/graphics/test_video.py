@@ -491,6 +491,7 @@ def run_script(script, *arguments):
 # Resources
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("name", ["a.mp4", "a"])
 def test_memory_does_not_grow_with_the_number_of_frames(tmp_path, name):
     script = """

@@ -584,6 +584,7 @@ class TestTrouble:
         )
         assert delays == [500, 1000, 2000, 4000, 8000, 10000, 10000, 10000, 500]
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("number", one_in(3, [signal.SIGKILL, signal.SIGTERM, signal.SIGINT]))
     def test_with_port_and_token_it_comes_back_after_any_end(self, browser, folder, number):
         with socket.create_server(("127.0.0.1", 0)) as free:
@@ -603,6 +604,7 @@ class TestTrouble:
                 page.keyboard.press("Escape")
                 page.wait_for_selector("[data-mode=interaction]")
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("number", one_in(2, [signal.SIGKILL, signal.SIGINT]))
     def test_with_another_address_at_each_start_it_says_that_its_server_has_ended(self, browser, folder, number):
         with contextlib.closing(browser.new_page()) as page:

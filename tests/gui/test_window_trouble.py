@@ -96,6 +96,7 @@ print('end')
     assert finish(terminal)[1] == 0
 
 
+@pytest.mark.stress
 def test_the_prompt_of_ipython_stays_free_and_sees_what_the_user_drags(display, folder):
     script = (folder / "myscript.py").read_text().rpartition("    play_trajectory")[0]
     (folder / "still.py").write_text(script.replace("import openravepy", "import ravemj as openravepy"))

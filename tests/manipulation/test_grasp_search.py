@@ -40,6 +40,7 @@ def add_box(env, name, numbers):
     return body
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("method", ["fly", "antipodal"])
 def test_processes_find_the_same(method):
     robot, box = kitchen()
@@ -89,6 +90,7 @@ def test_the_panda_holds_the_box(method):
         np.testing.assert_allclose(inside.max(axis=1), 1, atol=2e-3)
 
 
+@pytest.mark.stress
 def test_each_reason_is_given():
     seen: set[str] = set()
     robot, box = kitchen(floor=True)
@@ -220,6 +222,7 @@ def test_a_manipulator_without_a_gripper_names_one_with_it():
         ravemj.grasps(robot, box)
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("method", ["fly", "antipodal"])
 def test_turned_worlds_have_the_same_candidates(method):
     robot, box = kitchen()

@@ -296,6 +296,7 @@ def many_candidates(scene):
     return {"approachrays": rays, **parts, "target": scene.thing, "forceclosurethreshold": 1e-9}
 
 
+@pytest.mark.stress
 def test_processes_find_the_same_grasps():
     scene = Scene()
     grasper, parts = interfaces.Grasper(scene.robot, 0.4), many_candidates(scene)
@@ -336,6 +337,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("processes", ["1", "2"])
 def test_ctrl_c_cancels_it(tmp_path, processes):
     script = tmp_path / "slow.py"

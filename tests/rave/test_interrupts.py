@@ -57,6 +57,7 @@ def plan(env, robot):
     ravemj.interfaces.BaseManipulation(robot).MoveActiveJoints(goal=THERE, execute=False, outputtrajobj=True)
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize(("action", "most"), [(with_robot, 300), (with_saver, 200), (plan, 25)])
 def test_what_moves_a_body_moves_it_back(env, robot, action, most):
     for place in interrupts(lambda: action(env, robot), most):
@@ -150,6 +151,7 @@ ACTIONS = {
 }
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("name", one_in(2, list(ACTIONS)))
 def test_no_lock_stays_held(env, robot, name):
     for place in interrupts(lambda: ACTIONS[name](env, robot), 40):
