@@ -63,7 +63,7 @@ def test_rows_of_a_part_are_those_of_the_whole(name, first, count):
         np.testing.assert_array_equal(some, together[part])
 
 
-@pytest.mark.parametrize("count", [-1, 1.5, None])
+@pytest.mark.parametrize("count", [-1, 1.5, None, 1025, 10**400], ids=lambda count: str(count)[:9])
 def test_wrong_numbers_of_threads(count):
     with pytest.raises(ravemj.openrave_exception, match="set_batch_threads: count"):
         ravemj.set_batch_threads(count)
