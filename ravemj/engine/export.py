@@ -42,7 +42,7 @@ def is_folder(path: AnyPath) -> bool:
 
 
 def write(path: AnyPath, model: AnyPath, translation: Translation, read: Collection[str]) -> Path:
-    """Write a translated model to a file or, with a scene, to a folder; return the path of the MJCF file.
+    """Write a translated model as an MJCF file or, if it has a scene with a floor, as a folder; return the MJCF file.
 
     Args:
         path: The file or folder. An existing folder must be empty or contain an older translation of the model.

@@ -104,7 +104,7 @@ def _axes(name: str, index: int, joint: Joint, T_base_parent: Pose) -> list[_Mov
 
 
 def _following(body: KinBody, manipulator: Manipulator, inner: Chain, moving: Sequence[_MovingAxis]) -> FollowingChain:
-    """Return the chain whose variables are the DOFs of an arm, given the chain ``inner`` of all its joints."""
+    """Wrap the chain of all joints of an arm, mimic joints included, as a chain in the DOFs of the arm alone."""
     places = {
         dof: (index, dofs.index(dof))
         for index in range(len(body.joints))

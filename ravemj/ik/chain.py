@@ -210,7 +210,7 @@ class Chain:
         return [column[None] if sliding else turn for column, turn, sliding in joints]
 
     def tool_columns(self, turns: Turns) -> Floats:
-        """Return the tool's x, y, z and origin, shape (4, 3, M), for joint values in the form of ``turns``."""
+        """Return axes x, y, z and origin of the tool, shape (4, 3, M), for joint values given as ``Turns``."""
         if len(turns) and turns[0].shape[-1] <= _FEW:
             return self._tool_of(self._few_poses(turns))
         return self._frames(turns)[-1]

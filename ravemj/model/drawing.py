@@ -204,7 +204,7 @@ def plane(transform: Floats, extents: Floats, texture: Floats) -> Primitives:
 
 
 def _averaged(texture: Floats, axis: int) -> Floats:
-    """Average a texture along an axis to at most the maximum number of cells."""
+    """Reduce a texture along an axis to at most ``_TEXTURE_CELLS`` pixels, by averages."""
     count = texture.shape[axis]
     cells = min(count, _TEXTURE_CELLS)
     edges: Ints = np.arange(cells, dtype=np.int_) * count // cells

@@ -143,9 +143,9 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return ``distance`` of the nearest candidate; candidates are sorted by their lower bounds.
+        """Return the smallest distance of the candidates [m], at most ``limit``; they are sorted by their lower bounds.
 
-        Triangles are measured against the geom ``place`` of the scratch model, until one is within ``enough`` [m].
+        Triangles are measured in the scratch model against its geom ``place``, until one is within ``enough`` [m].
         """
         best, nearest = limit, np.zeros(6)
         for bound, triangle, other in candidates:

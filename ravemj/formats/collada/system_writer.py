@@ -102,7 +102,7 @@ class SystemWriter:
             out.element_inside("acceleration", "float", _in_file(joint, place, axis.max_acceleration))
 
     def _write_scene(self) -> None:
-        """Write the instance in the kinematics scene, and the bindings to nodes and values."""
+        """Write the instance of the kinematics scene, with its bindings of joint axes to nodes and values."""
         out, scope = self._sections.kinematics_scene, f"{self._name}_scene"
         url = f"#{self._name}_motion"
         with out.inside("instance_articulated_system", url=url, sid=scope, name=self._body.name):

@@ -98,10 +98,10 @@ def _by_content(
     read: Callable[[bytes], tuple[Parts, ReferencedFiles]],
     permits: Callable[[str], bool],
 ) -> tuple[Parts, ReferencedFiles]:
-    """Return the parts, and the other files from which they were read.
+    """Return the parts of a mesh file from the cache, or read and cache them; and the other files that it refers to.
 
-    If there are other files, the entry is valid for the folder ``home`` only, since their names are relative to it. All
-    of them must be permitted.
+    If there are other files, the cache entry is valid for the folder ``home`` only, since their names are relative to
+    it. All of them must be permitted.
     """
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"

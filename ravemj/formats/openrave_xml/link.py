@@ -54,7 +54,7 @@ class _LinkScope(Placed):
         self.context.walk(element, LINK_TAGS, {}, self)
 
     def _include(self, element: Element) -> None:
-        """Read the file of a Body like a nested Body."""
+        """Read the file that ``<Body file="…">`` names, as if its content stood inside of the element."""
         root = self.context.include(element)
         if root is not None and root.tag == "body":
             self.read_nested(root)

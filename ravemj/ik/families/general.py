@@ -115,7 +115,7 @@ def _right(screws: Sequence[Screw], motion: Transform) -> Floats:
 
 
 def _numbers(line: Floats, point: Floats) -> Floats:
-    """Return l, p, p·p, p·l, p x l and (p·p) l - 2 (p·l) p."""
+    """Stack l, p, p·p, p·l, p x l and (p·p) l - 2 (p·l) p for directions l and points p: 14 rows."""
     line, point = np.broadcast_arrays(line, point)
     square, along = dot(point, point), dot(point, line)
     return np.concatenate(

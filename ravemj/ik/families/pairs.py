@@ -167,7 +167,7 @@ class Pair:
         return solve_parabola(factors[0], factors[1], rest)
 
     def _both_sliding(self, factors: tuple[Floats, Floats], rest: Floats) -> tuple[Floats, Floats]:
-        """Solve for two distances: eliminate one by the first equation, which is linear."""
+        """Solve for two prismatic joints: the first equation is linear, and eliminates one of both values."""
         slope, start = -factors[1][0, 0] / factors[0][0, 0], rest[0] / factors[0][0, 0]
         (a1, b1), (a3, b3) = factors[0][1], factors[1][1]
         linear, square = a3 + a1 * slope + 2 * b1 * start * slope, b3 + b1 * slope * slope

@@ -50,7 +50,7 @@ class Mechanism(Protocol):
     """Protocol of a moving mechanism; its variables are joint values and a twist of the base."""
 
     def values(self) -> Floats:
-        """Return the values subject to limits, shape (n,); 0 for the base."""
+        """Return the joint values to compare with limits, and zeros for the base, which has none; shape (n,)."""
         ...
 
     def move(self, displacement: Floats) -> None:

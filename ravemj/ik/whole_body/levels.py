@@ -96,7 +96,7 @@ def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, 
 
 
 def _coordinates(jacobian: Floats, error: Floats, damping: float, room: _Room) -> Floats:
-    """Return the coordinates of least cost; 0 if daqp fails, which keeps the earlier levels."""
+    """Minimize the cost of a level in its null-space coordinates; return zeros, which change nothing, if daqp fails."""
     hessian = jacobian.T @ jacobian
     gradient = -(jacobian.T @ error)
     count = len(hessian)

@@ -221,7 +221,8 @@ def tool_start(approach: Approach) -> Floats:
 def displaced(target: Target, noise: float, random: np.random.Generator) -> Target:
     """Return a target with a random error of its pose, OpenRAVE's ``graspingnoise``.
 
-    A random number divides the noise between a translation and a rotation about the centre of the sphere. As in
+    A random number divides the noise between a translation and a rotation about the centre of its bounding
+    sphere. As in
     OpenRAVE, the angle [rad] is proportional to the radius [m], not to its inverse.
 
     Args:

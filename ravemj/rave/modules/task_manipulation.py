@@ -71,7 +71,7 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
     """Return a motion of the arm to one of several grasps.
 
     Raises:
-        ArgumentError: the table has no grasp poses, or the robot has grabbed the target already.
+        ArgumentError: the table of grasps has no poses, or the robot has grabbed the target already.
         PlanningError: no grasp can be reached.
     """
     manip = base.arm()

@@ -120,7 +120,7 @@ class _Flattening:
             self.pieces.setdefault(self._material_of(element.get("material", ""), bound), []).append(placed)
 
     def _geometry(self, instance: Element) -> Element | None:
-        """Return the geometry of an instance; for a controller, the shape that it deforms."""
+        """Return the geometry of an instance; for a COLLADA controller (skin or morph), the undeformed geometry."""
         url = instance.get("url")
         for _ in range(10):  # controllers of controllers
             geometry = self._document.find("geometry", url)
