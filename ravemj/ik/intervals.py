@@ -71,7 +71,7 @@ Found = tuple[Floats, Solutions | None]
 
 
 def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, solutions: Solutions) -> Iterator[Found]:
-    """Yield solutions for values of the free joints between their samples.
+    """Yield solutions with free joint values between the sampled ones.
 
     Args:
         solver: A solver in closed form.

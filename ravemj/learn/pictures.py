@@ -45,7 +45,7 @@ class Shown(NamedTuple):
 
     @property
     def floor(self) -> str:
-        """Choice of the floor: none if it would hide what is below it."""
+        """Option ``floor`` of the picture: ``auto``, or ``off`` without bodies."""
         return "auto" if self.env.GetBodies() else "off"
 
 

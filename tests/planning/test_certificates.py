@@ -380,6 +380,32 @@ class TestPlanning:
             base.MoveActiveJoints(goal=[1.0], certify="required", execute=False, outputtrajobj=True)
         assert base.prob.SendCommand("MoveActiveJoints goal 1.0 certify required outputtraj") is None
 
+    @pytest.mark.parametrize("depth", [5e-5, 1e-3])
+    def test_a_motion_from_a_start_in_collision_has_a_certificate_as_a_whole(self, depth):
+        """The planner begins beside the start, and the motion is extended to it."""
+        robot = swing()
+        arm = next(link for link in robot.GetLinks() if link.GetName() == "link").ComputeAABB()
+        wall = ravemj.RaveCreateKinBody(robot.GetEnv(), "")
+        wall.InitFromBoxes([[*(arm.pos() - [0, arm.extents()[1] + 0.1 - depth, 0]), 0.1, 0.1, 0.1]])
+        wall.SetName("wall")
+        robot.GetEnv().Add(wall)
+        assert robot.GetEnv().CheckCollision(robot)
+        base = ravemj.interfaces.BaseManipulation(robot)
+
+        def planned(certify):
+            return base.MoveActiveJoints(goal=[0.2], certify=certify, execute=False, outputtrajobj=True, jitter=0.1)
+
+        certificate = planned(True).certificate
+        assert certificate.certified == (depth < 1e-4)  # what touches is exempt until it is apart
+        names = ("link 'link' of 'arm'", "link 'base' of 'wall'")
+        spans = certificate.exempt if certificate.certified else certificate.undecided
+        assert {span.pair for span in spans} == {names}
+        if certificate.certified:
+            assert planned("required").certificate.certified
+        else:
+            with pytest.raises(ravemj.PlanningError, match=r"not certified from the start to the goal: .*'wall'"):
+                planned("required")
+
     def test_a_wrong_word_is_an_error(self):
         params = ravemj.Planner.PlannerParameters()
         with pytest.raises(ravemj.openrave_exception, match="certify: is 'please'"):

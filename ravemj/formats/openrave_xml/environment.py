@@ -261,7 +261,7 @@ class _EnvironmentScope:
                     self.document.context.leave_out(child, NO_PHYSICS)
 
     def read_interface(self, element: Element) -> None:
-        """Report an interface that is not part of a model; in OpenRAVE, an unknown class is an error."""
+        """Report an interface that ravemj ignores, such as a viewer; an unknown class is an error, as in OpenRAVE."""
         kind = element.attributes.get("type", "")
         name = kind.split()[0].lower() if kind.split() else ""
         if name and name not in _KNOWN_CLASSES:

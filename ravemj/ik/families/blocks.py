@@ -132,7 +132,7 @@ class Planar:
         return [three, two, one] if self.backward else [one, two, three]
 
     def _solve_between(self, motion: RigidMotion) -> list[Floats]:
-        """Solve for a revolute joint, given by the rotation, and two prismatic ones around it, by linear equations."""
+        """Solve for a revolute joint between two prismatic ones: its angle follows from the rotation."""
         first, middle, last = self._order
         turn = turn_between(middle, self._side, motion.turned(self._side))
         way = motion.moved(middle.point) - middle.point

@@ -182,6 +182,8 @@ class Manipulation:
             if status:
                 if any(map(is_not, itertools.chain(*moved), itertools.chain(*wanted))):
                     self._join(traj, values.groups, wanted, moved)
+                    if options.certify and not traj.certify().certified and options.certify == "required":
+                        raise PlanningError(f"not certified from the start to the goal: {traj.certificate}")
                 traj.start_index, traj.goal_index = status.start_index, status.goal_index
                 return traj
         raise PlanningError(status.description, status=status)
