@@ -7,7 +7,8 @@ from enum import Enum
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.collision.findings import Findings, GeometryOf
+from ravemj.engine.collision.findings import Findings
+from ravemj.engine.collision.world import GeometryOf
 from ravemj.manipulation.bodies import ENV_COLLISION, SELF_COLLISION, USER, Bodies, Conditions
 from ravemj.planning.edges import Allowed
 from ravemj.planning.space import Space

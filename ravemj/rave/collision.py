@@ -13,11 +13,11 @@ from ravemj.core.arrays import checked_transform
 from ravemj.core.blocks import always, exit_in_c
 from ravemj.core.transforms import Floats, Ints, Pose, pose_of
 from ravemj.engine.collision import queries
-from ravemj.engine.collision.findings import Collision, Findings, GeometryOf, Listed, Wanted, find
+from ravemj.engine.collision.findings import Collision, Findings, Listed, Wanted, find
 from ravemj.engine.collision.geometry_groups import GeometryGroups, has_group
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import LinkOf, Links, MovedBy
-from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.collision.world import CollisionWorld, GeometryOf
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import AABB, Ray
@@ -299,7 +299,7 @@ class CollisionChecker(Interface):
         if hit is not None and report is not None:
             distance = hit.fraction * float(np.linalg.norm(ray.dir()))
             contact = hit.position, hit.normal, distance
-            report.collisionInfos.append(CollisionPairInfo(self._part(GeometryOf.of(world, hit.geom)), None, [contact]))
+            report.collisionInfos.append(CollisionPairInfo(self._part(world.geometry(hit.geom)), None, [contact]))
             report.minDistance = distance
         return hit is not None
 

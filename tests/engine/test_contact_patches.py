@@ -90,6 +90,17 @@ def test_it_does_not_matter_whether_joints_move_the_bodies(env, moves):
     assert not env.CheckCollision(one, other)
 
 
+@pytest.mark.parametrize("moves", [(False, False), (True, False), (True, True)])
+def test_contacts_are_those_of_the_present_poses(env, moves):
+    one, other = box(env, (0.02, 0.03, 0.02), joint=moves[0]), box(env, (0.005, 0.01, 0.03), joint=moves[1])
+    for depth in (DEPTH, 3 * DEPTH, 2 * DEPTH):
+        place(other, 0.025 - depth, 0, 0)
+        for _ in range(2):
+            report = contacts(env, one, other)[2]
+            assert [contact.depth for contact in report.contacts] == pytest.approx([depth] * 4, abs=1e-7)
+        assert env.CheckCollision(other)
+
+
 def test_a_cylinder_on_its_side_touches_along_a_line_and_a_sphere_in_a_point(env):
     floor = box(env, (0.1, 0.1, 0.1))
     rod = body(env, "<Geom type='cylinder'><radius>.02</radius><height>.08</height></Geom>")  # along y
@@ -152,3 +163,20 @@ def test_one_point_for_pairs_that_are_deep_in_each_other_without_a_direction(env
     points, normals, _ = contacts(env, one, other)
     assert np.isfinite(points).all()
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+
+
+def test_contacts_of_an_end_effector_are_those_of_the_given_pose(env):
+    env.LoadData(
+        "<Robot name='arm'><KinBody><Body name='base'/><Body name='hand'><offsetfrom>base</offsetfrom>"
+        "<Geom type='box'><extents>.02 .03 .02</extents></Geom></Body><Joint name='j' type='slider'><Body>base</Body>"
+        "<Body>hand</Body><axis>1 0 0</axis></Joint></KinBody><Manipulator name='m'><base>base</base>"
+        "<effector>hand</effector></Manipulator></Robot>"
+    )
+    wall, arm = box(env, (0.005, 0.01, 0.03)), env.GetRobot("arm")
+    place(wall, 0.025 - DEPTH, 0, 0)
+    report = CollisionReport()
+    assert env.CheckCollision(arm, report)
+    assert report.contacts[0].depth == pytest.approx(DEPTH, abs=1e-7)
+    T = matrixFromPose([1, 0, 0, 0, 2 * DEPTH, 0, 0])
+    assert arm.GetActiveManipulator().CheckEndEffectorCollision(T, report)
+    assert report.contacts[0].depth == pytest.approx(3 * DEPTH, abs=1e-7)

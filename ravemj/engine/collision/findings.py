@@ -7,24 +7,10 @@ from ravemj.core.graphs import Pair
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.patches import patches
 from ravemj.engine.collision.shapes import Contact
-from ravemj.engine.collision.world import CollisionWorld
-from ravemj.engine.simulation import BodyState
+from ravemj.engine.collision.world import CollisionWorld, GeometryOf
 
 Listed = Literal["first pair", "links", "geometries"]
 """Pairs to list: only the first pair of links, each pair of links, or each pair of geometries."""
-
-
-class GeometryOf(NamedTuple):
-    """Geometry by its body, link index and geometry index."""
-
-    body: BodyState
-    link: int
-    geometry: int
-
-    @classmethod
-    def of(cls, world: CollisionWorld, geom: int) -> "GeometryOf":
-        """Return the geometry of a MuJoCo geom."""
-        return cls(*world.geometry(geom))
 
 
 class Collision(NamedTuple):
@@ -93,7 +79,7 @@ def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, c
     if wanted.distance:
         distance, near = world.nearest(pairs, distance)
         distance = max(distance, 0.0)
-        nearest = near and Collision(GeometryOf.of(world, near[0]), GeometryOf.of(world, near[1]), [])
+        nearest = near and Collision(world.geometry(near[0]), world.geometry(near[1]), [])
     within = 0 if wanted.tolerance is None else world.count_within(pairs, wanted.tolerance)
     return Findings(collisions, distance, nearest, within)
 
@@ -102,7 +88,7 @@ def _collisions(world: CollisionWorld, pairs: Pairs, wanted: Wanted, counts: Cou
     listed = wanted.listed
     collisions: dict[object, tuple[Collision, list[Pair]]] = {}
     for pair in world.hits(pairs):
-        first, second = (GeometryOf.of(world, geom) for geom in pair)
+        first, second = world.geometry(pair[0]), world.geometry(pair[1])
         key = (first, second) if listed == "geometries" else (first[:2], second[:2])
         if key not in collisions:
             if collisions and listed == "first pair":

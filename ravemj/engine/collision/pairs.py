@@ -76,6 +76,12 @@ class Detection:
         self._admitted: Masks | None = None  # the masks of ``_queried``, those of the last query
         self._stamp, self._found_stamp, self._questions, self._is_shared = -1, -1, 0, False
         self._found: NDArray[np.int32] | None = None
+        self._contacts_stamp = -1
+
+    @property
+    def has_contacts(self) -> bool:
+        """Whether ``data.contact`` are the contacts that ``detect`` last found in the present configuration."""
+        return self._contacts_stamp == self.model.stamp and not self.is_overruled
 
     def are_welded(self, first: Ints, second: Ints) -> Bools:
         """Return for each pair of geoms whether there is no joint between them."""
@@ -126,6 +132,7 @@ class Detection:
         mujoco.mj_collision(self._queried, self._data)
         count = self._data.ncon
         self._found = _NO_GEOMS if not count else self._data.contact.geom.copy() if count < self._most else None
+        self._contacts_stamp = -1 if self._found is None else self._stamp
         self._found_stamp = self._stamp if self._is_shared else -1  # last, as an interrupt may have come before
         return self._found
 
@@ -146,6 +153,7 @@ class Detection:
 
     def overlaps(self, masks: Masks) -> Callable[[], None]:
         """Return a function that runs MuJoCo's detection of overlapping hulls with the given masks."""
+        self._contacts_stamp = -1  # here, since the function is called in hot loops, between two stamps
         model, data, detect = self._model, self._data, mujoco.mj_collision
         if masks is self.all:
             return partial(detect, model, data)
@@ -165,7 +173,7 @@ class Detection:
     @block
     def masked(self, masks: Masks) -> Generator[None]:
         """Context manager that restricts MuJoCo to the masks' pairs."""
-        flags = self._option.disableflags
+        self._contacts_stamp, flags = -1, self._option.disableflags
         with restoring(lambda: self._mask(self.all, flags)):
             self._mask(masks, flags | self._no_trees)
             yield

@@ -5,13 +5,14 @@ corners (``multiccd``, on by default), but only of bodies with a joint between t
 treated as such.
 """
 
+import math
 from collections.abc import Generator, Iterable, Sequence
 
 import mujoco
 import numpy as np
 
 from ravemj.core.blocks import block, restoring
-from ravemj.core.graphs import Pair, ordered_pair
+from ravemj.core.graphs import Pair
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.pairs import Masks
 from ravemj.engine.collision.shapes import Contact
@@ -31,51 +32,65 @@ def patches(world: CollisionWorld, pairs: Sequence[Pair]) -> list[list[Contact]]
     A pair for which MuJoCo finds none has the point of ``ShapeTests.contact``. The caller holds the lock.
     """
     convex = [pair for pair in pairs if not any(map(world.shapes.is_concave, pair))]
-    contacts: dict[Pair, list[Contact]] = {}
-    if convex and not world.detection.is_overruled:
-        bodies = {int(world.model.model.geom_bodyid[geom]) for pair in convex for geom in pair}
+    contacts = present(world, convex) if world.detection.has_contacts else {}
+    missing = [pair for pair in convex if pair not in contacts]
+    if missing and not world.detection.is_overruled:
+        bodies = {int(world.model.model.geom_bodyid[geom]) for pair in missing for geom in pair}
         with _all_separate(world, sorted(bodies)) as masks:
             world.detection.detect_near(world.detection.overlaps(masks))
-        contacts = present(world, convex)
-    return [_of_pair(world, pair, contacts.get(ordered_pair(*pair), [])) for pair in pairs]
+        contacts |= present(world, missing)
+    return [contacts.get(pair) or _of_pair(world, pair) for pair in pairs]
 
 
-def _of_pair(world: CollisionWorld, pair: Pair, contacts: list[Contact]) -> list[Contact]:
+def _of_pair(world: CollisionWorld, pair: Pair) -> list[Contact]:
     if any(map(world.shapes.is_concave, pair)):
         return spread(world.shapes.contacts_of_triangles(*pair))
-    return contacts or [world.shapes.contact(*pair)]
+    return [world.shapes.contact(*pair)]
 
 
-def present(world: CollisionWorld, pairs: Iterable[Pair]) -> dict[Pair, list[Contact]]:
-    """Return MuJoCo's last contacts of the given pairs, by pair; the smaller geom of a key comes first."""
-    wanted = {ordered_pair(*pair): pair[0] for pair in pairs}
+def present(world: CollisionWorld, pairs: Sequence[Pair]) -> dict[Pair, list[Contact]]:
+    """Return MuJoCo's last contacts of those of the given pairs that have any."""
+    if not pairs or not world.model.data.ncon:
+        return {}
+    wanted: dict[Pair, tuple[Pair, bool]] = {}
+    for pair in pairs:
+        wanted[pair], wanted[pair[::-1]] = (pair, True), (pair, False)
     by_pair: dict[Pair, list[Contact]] = {}
-    data = world.model.data
-    if not data.ncon:
-        return by_pair
-    contacts = data.contact
-    positions, normals, depths = contacts.pos.copy(), contacts.frame[:, :3].copy(), (-contacts.dist).tolist()
+    contacts = world.model.data.contact
+    positions, normals, distances = contacts.pos.copy(), contacts.frame[:, :3].copy(), contacts.dist.tolist()
     for row, (first, second) in enumerate(contacts.geom.tolist()):
-        key = ordered_pair(first, second)
-        if key in wanted:  # MuJoCo's normal points from its first geom to its second
-            away = normals[row] if wanted[key] == second else -normals[row]
-            by_pair.setdefault(key, []).append(Contact(positions[row], away, max(depths[row], 0.0)))
-    return {key: spread(some) for key, some in by_pair.items()}
+        if (first, second) in wanted:  # MuJoCo's normal points from its first geom to its second
+            pair, is_outwards = wanted[first, second]
+            normal = -normals[row] if is_outwards else normals[row]
+            by_pair.setdefault(pair, []).append(Contact(positions[row], normal, max(-distances[row], 0.0)))
+    return {pair: spread(some) for pair, some in by_pair.items()}
 
 
 def spread(contacts: list[Contact]) -> list[Contact]:
     """Return at most ``_MOST`` contacts without duplicates, the deepest first, chosen far from each other."""
-    if len(contacts) < 2:
-        return contacts
-    rest, chosen = sorted(contacts, key=_depth, reverse=True), list[Contact]()
-    positions = np.array([contact.position for contact in rest])
-    squares, number = np.full(len(rest), np.inf), 0
+    rest = sorted(contacts, key=_depth, reverse=True) if len(contacts) > 1 else contacts
+    if len(rest) > _MOST:
+        return sorted(_farthest(rest), key=_depth, reverse=True)
+    chosen: list[Contact] = []
+    positions: list[list[float]] = []
+    for contact in rest:
+        position = contact.position.tolist()
+        if all(math.dist(position, other) > _SAME for other in positions):
+            chosen.append(contact)
+            positions.append(position)
+    return chosen
+
+
+def _farthest(contacts: list[Contact]) -> list[Contact]:
+    """Return at most ``_MOST`` contacts: the first one, then always the one farthest from those chosen before."""
+    positions, chosen = np.array([contact.position for contact in contacts]), list[Contact]()
+    squares, number = np.full(len(contacts), np.inf), 0
     while len(chosen) < _MOST and squares[number] > _SAME * _SAME:
-        chosen.append(rest[number])
+        chosen.append(contacts[number])
         apart = positions - positions[number]
         squares = np.minimum(squares, (apart * apart) @ _ONES)
         number = int(squares.argmax())
-    return sorted(chosen, key=_depth, reverse=True)
+    return chosen
 
 
 def _depth(contact: Contact) -> float:

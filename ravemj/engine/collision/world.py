@@ -1,7 +1,7 @@
 """Collision world: owners of geoms, and cached geom pairs of queries."""
 
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import mujoco
 import numpy as np
@@ -34,6 +34,14 @@ _WORTH_MASKS = 1.5
 _POSITIONS = 1  # mjSTAGE_POS: results of joint positions, including contacts
 
 
+class GeometryOf(NamedTuple):
+    """Geometry by its body, link index and geometry index."""
+
+    body: BodyState
+    link: int
+    geometry: int
+
+
 class CollisionWorld:
     """Geoms of all bodies in the present model, and cached pairs of queries.
 
@@ -50,7 +58,7 @@ class CollisionWorld:
         self._pairs: dict[Hashable, Pairs] = {}
         self.known_pairs = self._pairs.get  # of a query that was asked before, or None
         self._kept: dict[Hashable, Any] = {}
-        self._geometries: dict[int, tuple[BodyState, int, int]] = {}
+        self._geometries: dict[int, GeometryOf] = {}
         self._pair_count = 0
         self._find_owners(model.model)
 
@@ -94,15 +102,15 @@ class CollisionWorld:
         """Return the body and the index of the link that a geom belongs to."""
         return self.bodies[int(self._owner[geom])], int(self._link[geom])
 
-    def geometry(self, geom: int) -> tuple[BodyState, int, int]:
-        """Return the body, the link index and the geometry index of a geom."""
+    def geometry(self, geom: int) -> GeometryOf:
+        """Return the geometry that a geom belongs to."""
         known = self._geometries.get(geom)
         if known is None:
             body, link = self.owner(geom)
             part = self.model.part(body)
             number = geom - int(self._model.body_geomadr[part.body_ids[link]])
             place = int(np.searchsorted(np.cumsum(part.names.geoms[link]), number, side="right"))
-            known = self._geometries[geom] = body, link, place
+            known = self._geometries[geom] = GeometryOf(body, link, place)
         return known
 
     def labels(self, geoms: NDArray[np.int32]) -> Ints:
