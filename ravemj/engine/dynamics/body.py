@@ -81,6 +81,10 @@ class BodyDynamics:
     """Jacobians and dynamics of one body.
 
     Link velocities are linear (of the link's origin) [m/s], then angular [rad/s], in world axes.
+
+    Attributes:
+        free_joint: Name of a passive joint that is neither a weld nor a mimic joint: the DOFs do not determine its
+            motion; None if there is none.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:
@@ -89,6 +93,8 @@ class BodyDynamics:
         self.tree = CoordinateTree(kinematics)
         self.couplings = CouplingMap(kinematics, self.tree)
         self.motors = Motors.for_body(kinematics, self.tree)
+        passive = kinematics.body.passive_joints
+        self.free_joint = next((joint.name for joint in passive if joint.mimic is None and not joint.static), None)
         self._body_ids: list[int] = kinematics.body_ids.tolist()
         self._root_ids = model.body_rootid[kinematics.body_ids]
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]

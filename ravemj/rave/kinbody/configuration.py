@@ -671,17 +671,13 @@ class BodyConfiguration(BodyPart):
         """
         accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
         pushes = self._checked_pushes(externalforcetorque, "externalforcetorque")
-        for joint in self._state.scene.passive_joints:
-            if joint.mimic is None and not joint.static:  # random api-5000-92; graph-5000-102 where it closes a loop
-                message = f"joint '{joint.name}' has no DOF and mimics no other, so no torques determine its motion"
-                raise RavemjError(
-                    f"ComputeInverseDynamics: {message}; batch_inverse_dynamics takes it as fixed", ErrorCode.Assert
-                )
         state, simulation = self._state, self._simulation
         lock = simulation.lock
         try:
             lock.acquire()  # as in ``SetDOFValues``
             dynamics = state.dynamics
+            if dynamics.free_joint is not None:  # random api-5000-92; graph-5000-102 where it closes a loop
+                raise _undetermined(dynamics.free_joint)
             needed = dynamics.inverse_components if returncomponents else dynamics.inverse
             torques = needed(state.present_velocities, accelerations, simulation.gravity, pushes)
         except BaseException:
@@ -839,6 +835,11 @@ class BodyConfiguration(BodyPart):
         rows = checked_rows(values, self.GetDOF(), "batch_distances: values")
         with self._simulation.lock:
             return batch_distances(self._state, rows, Among(itself=itself_too))
+
+
+def _undetermined(joint: str) -> RavemjError:
+    message = f"joint '{joint}' has no DOF and mimics no other, so no torques determine its motion"
+    return RavemjError(f"ComputeInverseDynamics: {message}; batch_inverse_dynamics takes it as fixed", ErrorCode.Assert)
 
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
