@@ -16,11 +16,11 @@ from ravemj.ik.vectors import Floats
 from ravemj.ik.whole_body.tasks import Inequality, TaskRows
 
 _RANK = 1e-9
-"""Relative singular value below which a direction counts as part of the null space."""
+"""Singular value, relative to the largest, up to which a direction belongs to the null space."""
 _SOLVED = 1
 """Exit flag of daqp for an optimal solution."""
 _CAUTION = 1e-2
-"""Damping of the recovery from violated inequalities, whose rows may vanish near the maximum distance."""
+"""Damping of the correction of violated inequalities, whose rows may vanish near the maximum distance."""
 _SETTINGS = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 2000}
 
 
@@ -87,7 +87,11 @@ _Room = tuple[Floats, Floats, Floats]
 
 
 def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, basis: Floats) -> _Room:
-    """Return the constraints of coordinates z: a matrix and bounds of its product with z. z = 0 satisfies them."""
+    """Return a matrix, lower and upper bounds: the constraints on a change z in null-space coordinates.
+
+    They keep ``x + basis @ z`` within the box and the inequalities; violated ones may not get worse, so z = 0 is
+    allowed.
+    """
     below = np.concatenate([np.minimum(lower - x, 0.0), np.minimum(least - rows @ x, 0.0)])
     above = np.concatenate([np.maximum(upper - x, 0.0), np.full(len(least), 1e30)])
     matrix = np.vstack([basis, rows @ basis])
@@ -96,7 +100,7 @@ def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, 
 
 
 def _coordinates(jacobian: Floats, error: Floats, damping: float, room: _Room) -> Floats:
-    """Minimize the cost of a level in its null-space coordinates; return zeros, which change nothing, if daqp fails."""
+    """Return the change z, in null-space coordinates, that minimizes a level's cost; zeros if daqp fails."""
     hessian = jacobian.T @ jacobian
     gradient = -(jacobian.T @ error)
     count = len(hessian)
@@ -119,7 +123,7 @@ def _solve(
 
 
 def _null_space(jacobian: Floats) -> Floats:
-    """Return an orthonormal basis of the null space of the rows, shape (n, k)."""
+    """Return an orthonormal basis, shape (n, k), of the null space of a Jacobian."""
     _, sizes, rows = np.linalg.svd(jacobian)
     rank = int((sizes > _RANK * max(float(sizes.max(initial=0.0)), 1e-12)).sum())
     return rows[rank:].T
