@@ -23,16 +23,16 @@ from ravemj.model.scene import Manipulator
 from ravemj.planning.space import Space
 
 _LINE_STEP = 0.01
-"""The spacing of tested poses on the straight approach to a grasp [m]."""
+"""Spacing of tested poses on the straight approach to a grasp [m]."""
 
 _IN_LIMITS = 1e-3
-"""The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
+"""Amount by which values of a preshape may exceed the joint limits [rad or m], as in OpenRAVE."""
 
 _BACK = 1e-3  # m, step of a hand back out of the target, as in OpenRAVE
 _MOST_BACK = 300  # steps
 
 _POSES = ("grasptrans_nocol", "igrasptrans")
-"""Properties with the pose of the tool; the first has precedence."""
+"""Names of grasp table columns with the pose of the tool; the first has precedence."""
 
 
 class GraspTable(NamedTuple):
@@ -175,7 +175,7 @@ class GraspSearch:
                 yield grasp
 
     def _grasp(self, number: int) -> Grasp | None:
-        """Return a grasp if it is reachable, else None. The robot and the target are not restored."""
+        """Return the grasp of a table row if it is reachable, else None. Robot and target are not restored."""
         preshape = self._preshaped(number)
         if preshape is None:
             return None
@@ -189,7 +189,7 @@ class GraspSearch:
         return grasp if grasp.rows and (grasp.T_world_goals or not self._places) else None
 
     def _pose(self, number: int) -> Floats | None:
-        """Return ``T_target_tool`` of a row, simulated if the row has none; None if the simulation fails.
+        """Return ``T_target_tool`` of a table row, simulated if it has none; None if the simulation fails.
 
         After the simulation, the open hand is moved back until it does not touch the target.
         """
@@ -214,7 +214,7 @@ class GraspSearch:
         return inverse(target.T_world_target) @ T_world_base @ flying.T_base_tool
 
     def _preshaped(self, number: int) -> Floats | None:
-        """Move the gripper to the preshape of a grasp and return its values; None if they are outside the limits."""
+        """Move the gripper to the preshape of a table row, and return its values; None if they violate the limits."""
         body, dofs = self._hand.body, list(self._hand.arm.gripper_dofs)
         values = body.kinematics.values()
         if not dofs:
@@ -230,7 +230,7 @@ class GraspSearch:
         return values[dofs]
 
     def _direction(self, number: int, T_world_tool: Floats) -> Floats:
-        """Return the approach direction of the hand, a unit vector in the world."""
+        """Return the approach direction of the hand in the world frame."""
         in_target = self._table.numbers(number, "igraspdir", 3)
         if in_target is not None:
             direction = self._target.link_transform(0)[:3, :3] @ in_target
@@ -240,7 +240,7 @@ class GraspSearch:
         return _unit(direction)
 
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
-        """Return arm values from which the tool reaches a grasp along a straight line in the approach direction."""
+        """Return the arm's IK solutions before the straight approach, if the approach to the grasp is possible."""
         start = T_world_tool.copy()
         start[:3, 3] -= self._options.approachoffset * direction
         rows: list[Floats] = []
@@ -264,7 +264,7 @@ class GraspSearch:
             return len(follow_goals(self._hand.space, row, count, search)) == count + 1
 
     def _goals(self, T_target_tool: Floats) -> list[Floats]:
-        """Return the tool poses at the destinations where the target can be put down with a grasp."""
+        """Return the tool poses at the destinations where the target can be put down with this grasp."""
         options, goals = self._options, list[Floats]()
         count = len(self._places)
         for place in self._random.permutation(count).tolist() if options.randomdests else range(count):
@@ -277,7 +277,7 @@ class GraspSearch:
         return goals
 
     def _is_free(self, T_world_target: Floats) -> bool:
-        """Return whether the target at a pose collides with nothing but the robot."""
+        """Return whether the target, moved to a pose, collides with nothing except the robot."""
         with self._kept(), _disabled(self._hand.body):
             self._target.set_transform(T_world_target)
             checker = self._hand.checker()
@@ -290,7 +290,7 @@ class GraspSearch:
 
     @block
     def _kept(self) -> Generator[None]:
-        """Context manager that acquires the lock, and restores the robot and the target."""
+        """Context manager that holds the lock, and restores the robot and the target afterwards."""
         bodies = self._hand.body, self._target
         with self._hand.body.simulation.lock:
             saved = [(body, body.configuration()) for body in bodies]
@@ -309,7 +309,7 @@ def _restore(saved: Sequence[tuple[BodyState, SavedConfiguration]]) -> None:
 
 @block
 def _disabled(body: BodyState) -> Generator[None]:
-    """Context manager that excludes a body from collision checks, and then restores its enabled links."""
+    """Context manager that excludes a body from collision checks, and restores its enabled links afterwards."""
     enabled = body.link_enabled
 
     def restore() -> None:

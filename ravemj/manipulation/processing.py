@@ -31,10 +31,10 @@ _TRIES = 100
 """OpenRAVE's default for the number of attempted shortcuts."""
 
 _TRIES_PER_LINE = 3
-"""Number of further attempts for each line of a path whose lines are kept."""
+"""Number of additional shortcut attempts for each straight line that the path must keep."""
 
 _DETOURS = 5
-"""Maximum number of lines of a path that are replaced by detours because they cannot be certified."""
+"""Maximum number of straight lines replaced by detours because they cannot be certified."""
 
 TOPP_RA = ("toppra", "toppratrajectoryretimer")
 
@@ -135,13 +135,13 @@ class Processor:
                 raise RetimingError(f"the trajectory has no group '{group.name}'")
 
     def _is_of_goals(self) -> bool:
-        """Return whether the path consists of tool poses; OpenRAVE retimes their numbers like joint values."""
+        """Return whether the path consists of IK goals; OpenRAVE retimes their numbers like joint values."""
         return all(group.name.startswith("ikparam_values") for group in self.groups)
 
     # Retimers
 
     def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> tuple[Waypoints, None]:
-        """Time waypoints within the velocity and acceleration limits. Collisions are ignored."""
+        """Time waypoints within velocity and acceleration limits, regardless of collisions."""
         profile, options, coordinates = profile_of(self.name, self.options), self.options, self.limits.coordinates
         is_base = bool(coordinates.translation or coordinates.rotation) and not self._is_of_goals()
         if is_base and profile.interpolation != "linear":
@@ -208,9 +208,9 @@ class Processor:
             raise RetimingError(str(error)) from None
 
     def _certified(self, motion: ShortenedMotion, edges: Edges, tries: int) -> Certificate | None:
-        """Certify a motion, without the shortcuts and lines that prevent it; return None if that fails.
+        """Certify a motion, after removing shortcuts and lines that cannot be certified; return None if that fails.
 
-        With a line, all shortcuts from it and to it are lost, so there are further attempts then.
+        Replacing a line removes the shortcuts that start or end on it, so new ones are attempted.
         """
         certifier = edges.certifier()
         if certifier is None or not motion.segments:
@@ -233,7 +233,7 @@ class Processor:
             motion.shorten(edges, self.limits, tries, self.random, self.proceed)
 
     def _written(self, profile: Interpolated, timed: Timed, *, marks: bool = False) -> Waypoints:
-        """Convert a timed path to waypoints; ``marks`` adds a group ``iswaypoint``."""
+        """Convert a timed path to waypoints in the trajectory's layout; ``marks`` adds a group ``iswaypoint``."""
         groups = copied(self.groups)
         for group in groups:
             group.interpolation = profile.interpolation
@@ -258,7 +258,7 @@ class Processor:
 
 
 def _timed(motion: list[MotionSegment], points: Floats) -> Timed:
-    """Return a motion as a timed path, which starts and ends exactly at the first and last of the given points."""
+    """Return a motion as a timed path that starts and ends exactly at the first and last of ``points``."""
     rest = np.zeros_like(points[0])
     values = np.array([*(piece.values for piece in motion), points[-1]])
     values[0] = points[0]

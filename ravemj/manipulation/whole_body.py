@@ -20,7 +20,7 @@ from ravemj.model.scene import Axis
 _ROTATION = int(DOFAffine.RotationMask)
 _BASE = 6
 _APPROACH = 0.5
-"""Fraction of the remaining clearance that a step may use, since surfaces are curved."""
+"""Maximum share of the remaining clearance used in one step, since surfaces are curved."""
 
 
 class Keeper(NamedTuple):
@@ -81,7 +81,7 @@ class Moving:
         return len(self._frames) - 1
 
     def _new_rows(self) -> WholeBodyRows | None:
-        """Return the buffer for all Jacobians at once; None if only parts of the base move, or joints are coupled."""
+        """Return the buffer for all Jacobians at once; None if only parts of the base move or joints are coupled."""
         has_base = self._base.shape[1] > 0
         if has_base and not self._is_free:
             return None
@@ -230,7 +230,7 @@ class Moving:
         return distance, " and ".join(body.scene.links[link].name for body, link in owners)
 
     def _near(self, keeper: Keeper) -> list[tuple[float, tuple[tuple[BodyState, int], tuple[BodyState, int]], Floats]]:
-        """Return for each near pair the distance, both links, and the segment between them, shape (6,)."""
+        """Return distance, both links and the connecting segment, shape (6,), of each pair of geoms near each other."""
         world, pairs = keeper.pairs()
         near: list[tuple[float, tuple[tuple[BodyState, int], tuple[BodyState, int]], Floats]] = []
         for number in np.flatnonzero(pairs.gaps() < keeper.seen).tolist():
@@ -241,7 +241,7 @@ class Moving:
         return near
 
     def _distances(self, keeper: Keeper) -> Inequality | None:
-        """Return constraints that keep near pairs apart by the minimum distance; None if no pair is near."""
+        """Return inequalities that keep the minimum distance of near pairs; None if no pair is near."""
         near = self._near(keeper)
         if not near:
             return None
@@ -259,14 +259,14 @@ class Moving:
 
 
 def _carrier(robot: BodyState, body: BodyState, link: int) -> int | None:
-    """Return the robot's link that moves a link of a body: its own, or the grabbing link; else None."""
+    """Return the robot's link that moves ``link`` of ``body``: itself, or the link that grabs the body; else None."""
     if body is robot:
         return link
     return next((grab.link for grab in robot.grabs if grab.body.carries(body)), None)
 
 
 def _weight(body: BodyState) -> tuple[float, Floats]:
-    """Return the mass [kg] and the centre of mass [m] of a body with its grabbed bodies."""
+    """Return mass [kg] and centre of mass [m] of a body together with its grabbed bodies."""
     mass = float(body.inertias.masses.sum())
     moment = mass * np.nan_to_num(body.inertias.center_of_mass(body.link_transforms()))
     for grab in body.grabs:
@@ -276,14 +276,14 @@ def _weight(body: BodyState) -> tuple[float, Floats]:
 
 
 def _angular(affine: int, axis: Vec3) -> Floats:
-    """Return the angular velocity directions of affine DOFs as columns, shape (3, 0, 1 or 3)."""
+    """Return the rotation axes of a base's affine DOFs as columns, shape (3, 0, 1 or 3)."""
     if affine & int(DOFAffine.RotationAxis):
         return np.array(axis).reshape(3, 1) / np.linalg.norm(axis)
     return np.eye(3) if affine & _ROTATION else np.zeros((3, 0))
 
 
 def _moved(pose: Pose, twist: Sequence[float]) -> Pose:
-    """Return a pose after a displacement of its origin and a rotation by a vector, in world axes."""
+    """Return a pose after a displacement of its origin and a rotation, both in the world frame."""
     (x, y, z), (dx, dy, dz, a, b, c) = pose.position, twist
     angle = math.sqrt(a * a + b * b + c * c)
     half = math.sin(angle / 2) / angle if angle > 1e-12 else 0.5

@@ -18,10 +18,10 @@ Ompl = Any
 """Object of OMPL, which has no type annotations."""
 
 _PATIENCE = 0.02
-"""Interval [s] between checks of the budget for planners that do not call it themselves."""
+"""Interval [s] between checks of the budget, for planners that do not call the termination condition themselves."""
 
 _NO_SETTINGS = ("up", "name")
-"""OMPL methods ``setup`` and ``setName`` that do not set parameters."""
+"""OMPL methods ``setup`` and ``setName``, which do not set parameters."""
 
 
 class OmplError(Exception):
@@ -129,7 +129,10 @@ def _nearest(space: Space, configurations: Sequence[Floats], configuration: Floa
 
 
 def _apply(solver: Ompl, settings: Mapping[str, str]) -> None:
-    """Set the parameters of a planner by their setters, as ``goal_bias`` by ``setGoalBias``, to numbers or booleans."""
+    """Set OMPL parameters by their setters, such as ``goal_bias`` by ``setGoalBias``; others are ignored.
+
+    A value is parsed as an integer, else as a float, else as a boolean.
+    """
     for name, text in settings.items():
         setter = getattr(solver, "set" + "".join(map(str.capitalize, name.split("_"))), None)
         if name in _NO_SETTINGS or setter is None:
@@ -156,7 +159,7 @@ class _Questions:
         self.count = 0
 
     def safely(self, test: Callable[[], bool]) -> bool:
-        """Return the result of a test; False after an exception."""
+        """Return the result of a test; False after an exception, which is stored."""
         try:
             return not self._errors and bool(test())  # numpy has its own booleans
         except BaseException as error:  # raised again after the return from C++
@@ -164,7 +167,7 @@ class _Questions:
             return False
 
     def check(self) -> None:
-        """Raise a stored exception, and drop the reference to it, since its traceback refers to OMPL's objects."""
+        """Raise the stored exception, if any, and drop it, since its traceback refers to OMPL's objects."""
         if self._errors:
             raise self._errors.pop()
 
@@ -173,11 +176,11 @@ class _Questions:
         return self.safely(lambda: self._edges.space.outside(values) is None and self._edges.allowed(values))
 
     def line(self, start: Floats, end: Floats) -> bool:
-        """Return whether a line is allowed."""
+        """Return whether the line between two configurations is allowed."""
         return self.safely(lambda: self._edges.line(start, self._edges.space.difference(end, start)))
 
     def is_over(self) -> bool:
-        """Return whether the search must end."""
+        """Count one iteration; return whether the search must end."""
 
         def proceeds() -> bool:
             self.end = self._budget.end(self.count)
@@ -188,7 +191,7 @@ class _Questions:
 
 
 class _OmplSpace:
-    """Configuration space for OMPL: a box of weighted values, and a circle for each circular value."""
+    """Configuration space for OMPL: a box of weighted joint values, and a circle for each circular joint value."""
 
     def __init__(self, base: Ompl, space: Space) -> None:
         circular = space.coordinates.circular

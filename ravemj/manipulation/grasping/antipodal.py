@@ -26,10 +26,9 @@ _INSIDE = 1e-5
 _ROUNDING = 1e-9
 
 _AROUND = 8
-"""Number of lines to try around a normal, at each of two angles from it."""
+"""Number of lines tried around a surface normal, at each of two angles from it."""
 
 _SAME = 1e-3
-"""Tolerance of equal points [m]."""
 
 
 class Jaws(NamedTuple):
@@ -139,7 +138,7 @@ def tool_poses(pair: Pair, jaws: Jaws, rolls: int = 8) -> list[Floats]:
 
 
 def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
-    """Yield unit vectors, shape (n, 3): the inward normals, then some around each in its friction cone."""
+    """Yield lines into the object, unit vectors (n, 3): inward normals, then others in their friction cones."""
     yield inward.copy()
     side = np.eye(3)[np.abs(inward).argmin(axis=1)]
     side -= inward * (inward * side).sum(axis=1, keepdims=True)
@@ -152,7 +151,7 @@ def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
 
 
 def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bool) -> tuple[NDArray[np.bool_], Floats]:
-    """Return the mask of lines that leave the object within ``width``, and the nearest or farthest exit points."""
+    """Return which lines leave the object within ``width``, and the nearest or farthest exit points."""
     if near:
         return cast(np.hstack([rows[:, :3] + _INSIDE * lines, (width - _INSIDE) * lines]))
     hit, points = cast(np.hstack([rows[:, :3] + width * lines, -width * lines]))

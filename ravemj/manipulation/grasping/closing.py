@@ -27,16 +27,16 @@ _TEXTS: Mapping[Kind, str] = {
 }
 
 _BACK = 0.05
-"""Step by which a hand in contact with the target is moved back before the approach [m]; OpenRAVE's."""
+"""Step by which a hand that touches the target is moved back before the approach [m]; OpenRAVE's."""
 
 _FINER = 16.0
-"""Ratio of the fine step to the tolerance of contacts."""
+"""Ratio of the fine step to the tolerance of contact positions."""
 
 _PARALLEL = 1e-9
-"""Cosine of the angle between normal and approach below which a plane counts as never reached."""
+"""Cosine of the angle between a stop plane's normal and the approach below which the hand never reaches the plane."""
 
 _IS_PLANE = 0.5
-"""Minimum squared norm of the four numbers of a valid plane; OpenRAVE's."""
+"""Squared norm of the four numbers of a stop plane above which it is used; OpenRAVE's."""
 
 
 class Touches(Protocol):
@@ -259,7 +259,7 @@ def close(hand: Hand, target: Target | None, approach: Approach, touches: Touche
 
 
 class _ClosingSimulation:
-    """State of a simulated grasp: configuration of the robot, and its collision tests."""
+    """Simulation of one grasp: configuration of the hand, and its collision tests."""
 
     def __init__(self, hand: Hand, approach: Approach, touches: Touches, steps: Steps) -> None:
         self._hand, self._approach, self._touches, self._steps = hand, approach, touches, steps
@@ -305,7 +305,7 @@ class _ClosingSimulation:
         return None
 
     def _fly(self, target: Target) -> Reason | None:
-        """Place the hand outside of the target, fly to the contact, and retreat by the standoff.
+        """Start the hand outside the target, move it into contact, and retreat by the standoff.
 
         Returns:
             The reason of a failure, or None.
@@ -342,11 +342,11 @@ class _ClosingSimulation:
         return None
 
     def _stop(self, hit: float, hidden: float, T_target_tool: Floats) -> float:
-        """Return the distance that the hand flies [m], given by the plane or the standoff.
+        """Return the distance at which the approach stops [m], given by the stop plane, else by the standoff.
 
         Args:
             hit: Distance of the contact [m].
-            hidden: Distance from the contact to the target, if an obstacle is in between [m].
+            hidden: Distance from the contact to the target [m]; 0 if no obstacle is in between.
             T_target_tool: Pose of the tool at the start.
         """
         plane, along = self._approach.plane, _unit(self._approach.direction)
@@ -356,7 +356,7 @@ class _ClosingSimulation:
         return hit - max(self._approach.standoff, hidden) if self._approach.standoff > 0 else hit
 
     def _close_finger(self, finger: Finger) -> Reason | None:
-        """Move a finger to its contact or limit; return the reason if that fails, else None."""
+        """Move a finger to its contact or limit; return the reason of a failure, or None."""
         if not finger.side:
             return None
         side, factor = float(np.sign(finger.side)), self._steps.per_radian if finger.is_slider else 1.0
@@ -390,13 +390,13 @@ def _unit(vector: Floats) -> Floats:
 
 
 def _range(finger: Finger, value: float) -> float:
-    """Return the distance from a joint value to the limit in the closing direction; 2 pi without limit [rad or m]."""
+    """Return the distance from a joint value to the limit in the closing direction; 2 pi if there is no limit."""
     most = (finger.limits[1] - value) if finger.side > 0 else (value - finger.limits[0])
     return max(most, 0.0) if np.isfinite(most) else 2 * np.pi
 
 
 def _contact(touches: Callable[[float], bool], start: float, end: float, step: float, tolerance: float) -> float | None:
-    """Return the first position in contact, at most ``tolerance`` beyond the exact one; None if there is none."""
+    """Return the first position in contact, at most ``tolerance`` too far; None if there is no contact."""
     if touches(start):
         return start
     free = start

@@ -123,11 +123,11 @@ def _nearest(points: Floats, noise: float) -> Facet | None:
 
 
 class _CycleError(ArithmeticError):
-    """A point was added twice, since rounding errors make nearly coplanar facets inconsistent."""
+    """Error of a point that is added twice; rounding errors made nearly coplanar facets inconsistent."""
 
 
 def _joggled(points: Floats, noise: float) -> Floats:
-    """Return points with random displacements, ``noise`` times the largest coordinate, which avoid coplanar facets."""
+    """Return points displaced randomly by up to ``noise`` times the largest coordinate, against coplanar facets."""
     if not noise:
         return points
     return points + noise * np.abs(points).max() * np.random.default_rng(2).uniform(-1, 1, points.shape)
@@ -139,13 +139,13 @@ def missing_direction(points: Floats) -> Floats:
 
 
 def _sorted(points: Floats) -> tuple[Floats, Ints]:
-    """Return the points in lexicographic order, and the order; the first of equally far points is then a vertex."""
+    """Return the points in lexicographic order, and their former indices; of equally far points, the first wins."""
     order = np.lexsort(points.T[::-1])
     return points[order], order
 
 
 class _HullGrowth:
-    """Convex hull of a growing set of points, as simplices."""
+    """Incremental convex hull of points, as simplices."""
 
     def __init__(self, points: Floats, simplex: Ints, tolerance: float) -> None:
         self.points = points
@@ -160,7 +160,7 @@ class _HullGrowth:
 
     @classmethod
     def start(cls, points: Floats) -> "_HullGrowth | None":
-        """Begin with a large simplex; None if the points are flat."""
+        """Start with a large simplex of the points; return None if the points are flat."""
         if len(points) <= points.shape[1]:
             return None
         tolerance = _TOLERANCE * max(float(np.abs(points).max()), np.finfo(float).tiny)
@@ -176,7 +176,7 @@ class _HullGrowth:
         return cls(points, np.array(simplex), tolerance)
 
     def add(self, index: int) -> None:
-        """Add a point: replace the facets that it sees by facets between the point and their border."""
+        """Add a point: replace the facets visible from it by facets between the point and their border."""
         if index in self._taken:
             raise _CycleError
         self._taken.add(index)
@@ -196,7 +196,7 @@ class _HullGrowth:
         self._final = np.concatenate([self._final[kept], np.zeros(len(facets), bool)])
 
     def complete(self) -> None:
-        """Add points until none is outside."""
+        """Add points until the hull contains all of them."""
         while len(pending := np.flatnonzero(~self._final)[:_CHUNK]):
             heights = self.points @ self.normals[pending].T - self.offsets[pending]
             highest = heights.max(axis=0)
@@ -217,7 +217,10 @@ class _HullGrowth:
         return True
 
     def _planes(self, facets: Ints) -> tuple[Floats, Floats]:
-        """Return outward unit normals and offsets; the center is inside, so each plane is ``n.(x - center) = 1``."""
+        """Return outward unit normals and offsets of facets.
+
+        The center is inside the hull, so each plane is the solution of n·(x - center) = 1 for its corners.
+        """
         corners = self.points[facets] - self.center
         ones = np.ones((len(facets), corners.shape[2], 1))
         scaled: Floats = np.asarray(np.linalg.solve(corners, ones), float)[:, :, 0]
@@ -226,7 +229,7 @@ class _HullGrowth:
         return normals, 1 / lengths + normals @ self.center
 
     def volume(self) -> float:
-        """Return the volume of the complete hull."""
+        """Return the volume of the hull, once complete."""
         return float(np.abs(np.linalg.det(self.points[self.facets] - self.center)).sum()) / factorial(
             self.points.shape[1]
         )

@@ -31,10 +31,10 @@ from ravemj.model.scene import Manipulator
 Method = Literal["fly", "antipodal"]
 
 _FREE = 1e-4
-"""Distance along the approach from the contact at which the open hand no longer touches the object [m]."""
+"""Retreat of the open hand from its grasp, at which reachability is tested without contact [m]."""
 
 _BACK = 0.1
-"""Length of the straight line by which jaws approach [m]."""
+"""Length of the straight approach of jaws [m]."""
 
 _STEP = 0.01  # m, between tested poses on that line
 _STANDOFFS = (0.0, 0.025)
@@ -238,7 +238,7 @@ def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, 
 
 @contextmanager
 def _at_origin(body: BodyState) -> Generator[None]:
-    """Context manager that moves a body to the origin of the world, and restores its pose afterwards."""
+    """Context manager that moves a body to the world's origin, and restores its configuration afterwards."""
     saved = body.configuration()
     body.set_transform(np.eye(4))
     try:
@@ -249,7 +249,7 @@ def _at_origin(body: BodyState) -> Generator[None]:
 
 @contextmanager
 def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
-    """Context manager that opens the gripper to its limits, and restores the robot afterwards."""
+    """Context manager that opens the gripper to its limits, and restores the robot's configuration afterwards."""
     saved = robot.configuration()
     try:
         _open(robot, arm)
@@ -271,7 +271,7 @@ def _open(robot: BodyState, arm: Manipulator) -> None:
 
 
 class _Candidate(NamedTuple):
-    """Simulated candidate: pose of the robot, approach direction, result of closing, and reason of a failure."""
+    """Simulated grasp: base pose of the hand, approach direction, result of closing, and reason of a failure."""
 
     T_world_base: Floats
     approach: Floats
@@ -280,11 +280,11 @@ class _Candidate(NamedTuple):
 
 
 _Make = Callable[[HandTests], _Candidate]
-"""Function that simulates a candidate."""
+"""Function that simulates a candidate grasp."""
 
 
 class _CandidateSearch:
-    """Search for grasps by one robot of one object."""
+    """Grasp search for one robot and one object."""
 
     def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> None:
         self._robot, self._arm, self._target, self._choices = robot, arm, target, choices
@@ -305,7 +305,7 @@ class _CandidateSearch:
         self._center, self._radius = self._mass_center(T_target_links)
 
     def _mass_center(self, T_target_links: Floats) -> tuple[Floats, float]:
-        """Return the centre of mass in the object's frame, and the distance of the farthest point from it [m]."""
+        """Return the centre of mass in the object's frame, and its distance to the farthest bounding box corner [m]."""
         links = self._target.scene.links
         masses = np.array([link.inertial.mass for link in links])
         centers = np.array(
@@ -315,7 +315,7 @@ class _CandidateSearch:
         return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
 
     def candidates(self) -> list[_Make]:
-        """Return functions that simulate the candidates.
+        """Return functions that simulate the candidate grasps.
 
         The target is temporarily moved to the origin, so that rounding errors do not depend on its pose.
         """
@@ -336,17 +336,17 @@ class _CandidateSearch:
         return judged
 
     def _surface(self) -> Floats:
-        """Return points of the surface and outward normals in the object's frame, shape (n, 6)."""
+        """Return points and outward normals of the object's surface in its frame, shape (n, 6)."""
         rays = box_rays((self._low + self._high) / 2, (self._high - self._low) / 2, self._choices.delta).numbers()
         hit, rows = self._cast(rays)
         return rows[hit & ((rows[:, 3:] * rays[:, 3:]).sum(axis=1) < 0)]
 
     def _cast(self, rays: Floats) -> tuple[NDArray[np.bool_], Floats]:
-        """Return first hits of rays in the object's frame; the object is at the origin."""
+        """Return the first hits of rays with the object, which must be at the origin."""
         return self._robot.simulation.collisions().rays.first_hits(rays, self._geoms)
 
     def _flown(self, surface: Floats) -> Iterator[_Make]:
-        """Yield candidates that fly to each surface point, with each roll and standoff."""
+        """Yield candidates in which the hand flies to each surface point, with each roll and standoff."""
         tool_direction = np.array(self._arm.direction)
         for row in surface:
             for roll in 2 * np.pi * np.arange(self._choices.rolls) / self._choices.rolls:
@@ -359,7 +359,7 @@ class _CandidateSearch:
         return _Candidate(closed.T_world_base, approach.direction, closed, reason)
 
     def _jawed(self, surface: Floats) -> Iterator[_Make]:
-        """Yield candidates that place the jaws at each pair of opposite points."""
+        """Yield candidates in which the jaws close on each pair of opposite surface points."""
         jaws = jaws_of(self._robot, self._arm)
         for pair in antipodal.pairs(surface, self._cast, self._choices.friction, jaws.width - CLEARANCE):
             if pair.reason:
@@ -373,7 +373,7 @@ class _CandidateSearch:
         return _Candidate(self._T_world_target @ inverse(self._hand.T_base_tool), np.zeros(3), None, reason)
 
     def _close_jaws(self, T_target_tool: Floats, tool_direction: Floats, tests: HandTests) -> _Candidate:
-        """Move the jaws to a pose along a straight line, and close them."""
+        """Move the open jaws to a pose along a straight line, and close them."""
         T_world_base = self._T_world_target @ T_target_tool @ inverse(self._hand.T_base_tool)
         along = T_target_tool[:3, :3] @ tool_direction
         hits = self._approach(T_world_base, self._T_world_target[:3, :3] @ along, tests)
@@ -394,7 +394,7 @@ class _CandidateSearch:
         return None
 
     def _judged(self, candidate: _Candidate, tests: HandTests) -> Grasp:
-        """Return a candidate as a grasp, with contacts and quality, or with the reason for its rejection."""
+        """Evaluate a candidate: return its grasp with contacts and quality, or with the reason of rejection."""
         pose = inverse(self._T_world_target) @ candidate.T_world_base @ self._hand.T_base_tool
         preshape, closed = self._hand.values[self._gripper], candidate.closed
         values = self._hand.values if closed is None else closed.values
@@ -418,7 +418,7 @@ class _CandidateSearch:
         )
 
     def _stuck(self, values: Floats, candidate: _Candidate, tests: HandTests) -> str:
-        """Return a reason for rejection if an unmoved finger touches the object; else an empty string."""
+        """Return a reason of rejection if a finger that did not move touches the object, else an empty string."""
         for finger in self._hand.fingers:
             is_open = finger.side and values[finger.dof] == self._hand.values[finger.dof]
             if is_open and tests(finger.links, candidate.T_world_base, values, "target"):
@@ -426,7 +426,7 @@ class _CandidateSearch:
         return ""
 
     def _reached(self, grasp: Grasp, reach: Reach) -> Grasp:
-        """Return a grasp with joint values of the arm, or with the reason why the arm does not reach it."""
+        """Return a grasp with the arm's joint values, or with the reason why the arm does not reach it."""
         T_world_tool = self._T_world_target @ grasp.pose
         T_world_tool[:3, 3] -= _FREE * self._T_world_target[:3, :3] @ grasp.approach
         reached = reach(T_world_tool)
