@@ -12,10 +12,10 @@ from ravemj.model.look import FLOOR, first_rotation
 NAME = "scene.xml"
 
 _HALF_VIEW = np.radians(45.0 / 2)
-"""Half of the angle of view of MuJoCo's cameras."""
+"""Half the field of view of MuJoCo's default camera [rad]."""
 
 _ROOM = 1.1
-"""Camera distance as a multiple of that at which everything just fits."""
+"""Camera distance, as a multiple of the distance at which the scene just fits."""
 
 
 def scene_text(translation: Translation, file: str) -> str:
@@ -52,7 +52,7 @@ def scene_text(translation: Translation, file: str) -> str:
 
 
 def _is_static(translation: Translation, body: int) -> bool:
-    """Return whether a body is a static part of the environment, not of a robot."""
+    """Return whether a body belongs to the static environment, and not to a robot."""
     name = translation.model.body(body).name
     for described, names in zip(translation.bodies, translation.mjcf.names, strict=True):
         if name in names.links:
@@ -61,7 +61,7 @@ def _is_static(translation: Translation, body: int) -> bool:
 
 
 def _sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:
-    """Return centre and radius of a bounding sphere of all finite geoms."""
+    """Return centre and radius [m] of a bounding sphere of all geoms except infinite planes."""
     some = model.geom_rbound > 0
     if not some.any():
         return np.zeros(3), 1.0

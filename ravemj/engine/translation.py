@@ -36,10 +36,10 @@ HOME = "home"
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 _LIGHT = 1e-8
-"""Inertia [kg m^2 or kg] of a joint below which a warning is given."""
+"""Inertia at a joint below which a warning is given [kg m² or kg]."""
 
 _LIGHT_DISTANCE = 2.0
-"""Distance of lights from the centre of a model, in multiples of its extent."""
+"""Distance of lights from the centre of a model, as a multiple of the model's extent."""
 
 
 class TranslationChoices(NamedTuple):
@@ -214,7 +214,7 @@ def translate(scene: Scene, diagnostics: Diagnostics, choices: TranslationChoice
 
 
 def _scene_text(scene: Scene, excluded: Sequence[tuple[str, str]]) -> XmlLines:
-    """Return the text of scene properties that belong to no body, for reading the document again."""
+    """Return ravemj's text of scene properties that belong to no body, which it reads again from the document."""
     content = XmlLines(2)
     content.text_element(SCENE, scene_text(scene, excluded))
     return content
@@ -229,7 +229,7 @@ def _check_state(scene: Scene, choices: TranslationChoices) -> None:
 def _gains(
     scene: Scene, starts: Sequence[Floats], choices: TranslationChoices, diagnostics: Diagnostics
 ) -> tuple[Gains | None, ...]:
-    """Return the servo gains of each body: from the gains file if given, else computed."""
+    """Return the servo gains of each body: from the gains file if one is given, else computed; None without DOFs."""
     given = [] if choices.gains is None else read_gains(choices.gains)
     check_used(given, [name for body in scene.bodies for name in body.dof_names])
     timestep = choices.timestep or TIMESTEP
@@ -254,7 +254,7 @@ def _with_given(body: KinBody, loads: ServoLoads, timestep: float, given: Sequen
 
 
 def _warn_of_motors(body: KinBody, loads: ServoLoads, diagnostics: Diagnostics) -> None:
-    """Warn of motors that are too weak for their load at the start pose, and of suspicious inertias."""
+    """Warn of motors too weak for their load at the start pose, and of suspicious inertias."""
     unlimited: list[Joint] = []
     dof = 0
     for joint in body.joints:
@@ -281,7 +281,7 @@ def _warn_of_motors(body: KinBody, loads: ServoLoads, diagnostics: Diagnostics) 
 
 
 class _Poses:
-    """Configurations of bodies as ``qpos`` of a common model."""
+    """Converter of joint values of several bodies to ``qpos`` of their common model."""
 
     def __init__(self, model: mujoco.MjModel, names: Sequence[mjcf.BodyNames], bodies: Sequence[KinBody]) -> None:
         self.model = model
@@ -289,7 +289,7 @@ class _Poses:
         self._names = names
 
     def qpos(self, values: Sequence[Floats]) -> Floats:
-        """Return ``qpos`` for joint values of each body, each of shape (dof,)."""
+        """Return ``qpos`` for the joint values of each body, shape (dof,) each."""
         qpos = self.model.qpos0.copy()
         for kinematics, names, chosen in zip(self._kinematics, self._names, values, strict=True):
             if kinematics is not None:
@@ -302,7 +302,7 @@ class _Poses:
         return qpos
 
     def targets(self, qpos: Floats) -> Floats:
-        """Return the targets of servos that hold a pose, shape (nu,); servos have the names of their joints."""
+        """Return the servo targets that hold a pose, shape (nu,). A servo has the name of its joint."""
         model, joints = self.model, {name for body in self._names for names in body.joints for name in names}
         names = [model.actuator(number).name for number in range(model.nu)]
         return np.array([qpos[model.joint(name).qposadr[0]] if name in joints else 0.0 for name in names])
@@ -311,7 +311,7 @@ class _Poses:
 def _touching(compiled: Compiled, names: Sequence[mjcf.BodyNames], qpos: Floats) -> tuple[tuple[str, str], ...]:
     """Return the pairs of links that touch in a configuration, sorted.
 
-    A movable body may lie on others, so only its own link pairs are included.
+    Pairs of a falling body with other bodies are left out, as it may lie on them.
     """
     model, data = compiled.model, compiled.data
     data.qpos[:] = qpos
@@ -341,7 +341,7 @@ def _add_excludes(document: MjcfSections, pairs: Sequence[tuple[str, str]]) -> N
 def _keyframes(
     poses: _Poses, bodies: Sequence[KinBody], starts: Sequence[Floats], choices: TranslationChoices
 ) -> XmlLines:
-    """Return the keyframe of the start pose, and one for each other named configuration."""
+    """Return keyframes of the start pose and of each other named configuration."""
     content = XmlLines(2)
     for name, values in _named_poses(bodies, starts, choices):
         qpos = poses.qpos(values)
@@ -367,7 +367,7 @@ def _named_poses(
 
 
 def _place_lights(document: MjcfSections, model: mujoco.MjModel) -> None:
-    """Place the directional lights so that the shadow maps of MuJoCo's viewers contain all bodies."""
+    """Move the directional lights so that the shadow maps of MuJoCo's viewers cover all bodies."""
     for number in range(model.nlight):
         light = model.light(number)
         if light.name.startswith(STUDIO_PREFIX):

@@ -61,7 +61,7 @@ class KinematicState:
         return self._outward(self.screws * accelerations[:, None] + turned * velocities[:, None])
 
     def _outward(self, own: Floats) -> Floats:
-        """Accumulate the values of coordinates from the base outwards, in place."""
+        """Add to each coordinate's values those of all coordinates between it and the base, in place."""
         for coordinate, parent in enumerate(self.tree.parents):
             if parent != NONE:
                 own[coordinate] += own[parent]
@@ -119,6 +119,6 @@ def cross(first: Floats, other: Floats) -> Floats:
 
 
 def _carried(twists: Floats, screws: Floats) -> Floats:
-    """Return the time derivative of screws moving with given twists."""
+    """Return the time derivative of screws that move with the given twists."""
     spin, axis = twists[:, :3], screws[:, :3]
     return np.concatenate((cross(spin, axis), cross(spin, screws[:, 3:]) + cross(twists[:, 3:], axis)), axis=1)

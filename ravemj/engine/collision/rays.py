@@ -15,7 +15,7 @@ _GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 _FAR = 1e10
 
 _SHORTEST = 1e-14
-"""Length of a direction [m] slightly above that which MuJoCo treats as zero."""
+"""Minimum length of a ray's direction [m]; MuJoCo treats shorter ones as zero."""
 
 
 class RayHit(NamedTuple):
@@ -121,7 +121,7 @@ class RayCaster:
 
 
 def _of_one_start(rays: Floats, chosen: Ints) -> list[Ints]:
-    """Group the chosen rays by start; return their indices."""
+    """Group the chosen rays by common starting point; return their indices."""
     order = chosen[np.lexsort(rays[chosen, :3].T)]
     ends = np.flatnonzero((rays[order[1:], :3] != rays[order[:-1], :3]).any(axis=1)) + 1
     return np.split(order, ends)

@@ -27,7 +27,7 @@ _XML = """<mujoco><asset>
 _TRIANGLE, _OTHER_TRIANGLE, _SOLID = range(3)
 
 _Candidate = tuple[float, Floats, Floats | None]
-"""Lower bound of the distance [m], triangle of a mesh, and triangle of the other mesh, or None for a solid."""
+"""Pair to measure: lower bound of the distance [m], triangle, and triangle of the other mesh (None for a solid)."""
 
 _SLACK = 1e-4  # [m]; margin of boxes, since FCL's test of a box and a triangle has errors of 1e-6
 
@@ -126,7 +126,7 @@ class TriangleTests:
         return ((-np.inf, first, two) for first, two in zip(ours, theirs, strict=True))
 
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
-        """Put a solid into the scratch model; return centre and half extents of its box in the mesh's frame."""
+        """Copy a solid to the scratch model; return centre and half extents of its bounding box in the mesh's frame."""
         rotation, position = self._pose_in(mesh, solid)
         self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]
         self._scratch.geom_size[_SOLID] = self._model.geom_size[solid]
@@ -143,9 +143,10 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return the smallest distance of the candidates [m], at most ``limit``; they are sorted by their lower bounds.
+        """Return the smallest distance of the candidates [m], at most ``limit``; they are sorted by lower bound.
 
-        Triangles are measured in the scratch model against its geom ``place``, until one is within ``enough`` [m].
+        Triangles are measured in the scratch model against its geom ``place``, until a distance is at most ``enough``
+        [m].
         """
         best, nearest = limit, np.zeros(6)
         for bound, triangle, other in candidates:
@@ -181,12 +182,12 @@ class TriangleTests:
         return self._data.geom_xmat[geom].reshape(3, 3), self._data.geom_xpos[geom]
 
     def _pose_in(self, first: int, second: int) -> tuple[Floats, Floats]:
-        """Return the rotation and the position of the second geom in the first one's frame."""
+        """Return the rotation and position of geom ``second`` in the frame of geom ``first``."""
         (rotation, position), (second_rotation, second_position) = self._pose(first), self._pose(second)
         return rotation.T @ second_rotation, rotation.T @ (second_position - position)
 
     def _placed(self, geom: int) -> fcl.CollisionObject:
-        """Return a mesh at its present pose, or the bounding box of another shape, for FCL."""
+        """Return the FCL object of a geom at its present pose: a mesh, or the bounding box of another shape."""
         rotation, position = self._pose(geom)
         if not self._is_mesh(geom):
             position = position + rotation @ self._model.geom_aabb[geom, :3]
@@ -213,7 +214,7 @@ class _Triangles:
         self.tree.endModel()
 
     def near(self, centre: Floats, half: Floats, limit: float) -> Iterable[_Candidate]:
-        """Yield the triangles whose boxes are within ``limit`` of another box, the nearest first.
+        """Yield the triangles whose bounding boxes are within ``limit`` of another box, the nearest first.
 
         ``centre`` and ``half`` are the other box's centre and half extents in the frame of the mesh [m], shape (3,).
         """
@@ -226,7 +227,7 @@ class _Triangles:
 
 
 def _mesh_arrays(model: mujoco.MjModel, mesh: int) -> tuple[Floats, Ints]:
-    """Return vertices and triangles of a mesh, in the frame of its geoms."""
+    """Return vertices and triangles of a mesh, in the frame of geoms that use it."""
     first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
     first_face, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
     vertices = model.mesh_vert[first : first + count].astype(np.float64)

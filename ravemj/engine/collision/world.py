@@ -29,7 +29,7 @@ MOST_AT_ONCE = 1000
 """Maximum number of configurations per multithreaded call, which bounds memory."""
 
 _WORTH_MASKS = 1.5
-"""Minimum factor of saved pairs with which masks are worthwhile."""
+"""Minimum ratio of all pairs to those left by masks, from which masks save time."""
 
 _POSITIONS = 1  # mjSTAGE_POS: results of joint positions, including contacts
 
@@ -55,7 +55,7 @@ class CollisionWorld:
         self._find_owners(model.model)
 
     def _find_owners(self, model: mujoco.MjModel) -> None:
-        """Find body and link of each geom, in arrays over MuJoCo's bodies."""
+        """Find the body and link of each geom."""
         owners, links = np.full(model.nbody, -1), np.zeros(model.nbody, dtype=int)
         enabled = np.zeros(model.nbody, dtype=bool)
         for number, body in enumerate(self.bodies):
@@ -167,7 +167,7 @@ class CollisionWorld:
         return batch.bind("ncon")[:count] > 0
 
     def _have_contacts_one_by_one(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Compute ``have_contacts`` in one thread; a ``Batch`` would be slower, since it computes more."""
+        """Compute ``have_contacts`` in one thread, where a ``Batch`` would be slower, since it computes more."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
         counts: list[int] = []
@@ -180,7 +180,7 @@ class CollisionWorld:
         return np.array(counts) > 0
 
     def _batch(self, threads: int) -> "Batch":
-        """States of the model for several threads; they share the model, in which bodies without joints move, too."""
+        """Return states of the model for several threads; they share the model, and with it poses of fixed bodies."""
         from mujoco.batch import Batch  # noqa: PLC0415 - slow to import
 
         batch = Batch(self._model, MOST_AT_ONCE, threads)

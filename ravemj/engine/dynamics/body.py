@@ -113,7 +113,7 @@ class BodyDynamics:
         self._rest_qacc = np.zeros(model.nv)
 
     def _columns(self) -> Ints | None:
-        """Column of each DOF among MuJoCo's velocities, ``nv`` if it has none; None if DOFs are coupled."""
+        """Index of each DOF among MuJoCo's velocities, ``nv`` if its joint is fixed; None if DOFs are coupled."""
         constant = self.couplings.constant
         if constant is None or not self.couplings.is_one_to_one:
             return None
@@ -122,17 +122,17 @@ class BodyDynamics:
         return columns
 
     def _matrix(self, coupling: Coupling) -> Floats:
-        """Return the coupling matrix with a row for each of MuJoCo's velocities, shape (nv, dof)."""
+        """Return the coupling matrix from DOF to MuJoCo velocities, shape (nv, dof)."""
         matrix = np.zeros((self._model.nv, self._kinematics.dof))
         matrix[self._inner] = coupling.forward(np.eye(self._kinematics.dof))
         return matrix
 
     def _coupling(self, *, second: bool = False) -> Coupling:
-        """Return the coupling in the present configuration."""
+        """Return the coupling of MuJoCo's velocities to the DOFs in the present configuration."""
         return self.couplings.constant or self.couplings.at(self._kinematics.values(), second=second)
 
     def _of_dofs(self, rows: DerivativeRows) -> Floats:
-        """Return a copy of MuJoCo's result as a derivative by the DOFs, shape (..., dof)."""
+        """Return a copy of MuJoCo's Jacobian with a column per DOF, shape (..., dof)."""
         if self._are_one_to_one:
             return rows.of_dofs(None)
         matrix = self._coupling_matrix
@@ -236,7 +236,10 @@ class BodyDynamics:
         return qvel
 
     def _set_roots(self, target: Floats, values: Mapping[int, Floats] | Floats) -> None:
-        """Write velocities or accelerations of roots, by link: linear in world axes, angular in link axes."""
+        """Write velocities or accelerations of root links, given by link in world axes.
+
+        MuJoCo expects the angular part in link axes.
+        """
         self._kinematics.place()
         for root, first in zip(self._kinematics.roots, self._kinematics.root_qvel, strict=True):
             target[first : first + 3] = values[root][:3]
@@ -249,7 +252,7 @@ class BodyDynamics:
         return self._data.xpos.take(ids, 0) - self._data.subtree_com.take(self._root_ids, 0)
 
     def _present_velocities(self, arms: Floats) -> Floats:
-        """Return the link velocities in MuJoCo's data, shape (links, 6); ``arms`` are ``_arms``."""
+        """Return the link velocities in MuJoCo's data, shape (links, 6); ``arms`` is the result of ``_arms``."""
         motions = self._data.cvel.take(self._kinematics.body_ids, 0)
         spins = motions[:, :3]
         return np.concatenate((motions[:, 3:] + cross_rows(spins, arms), spins), axis=1)
@@ -299,8 +302,7 @@ class BodyDynamics:
         """Write velocities and derived quantities into MuJoCo's data, unless they are already there.
 
         Args:
-            velocities: Link velocities, shape (links, 6), in an immutable array; they determine those of roots and
-                joints.
+            velocities: Link velocities, shape (links, 6), in an immutable array; they determine all joint velocities.
             with_roots: Whether to set the velocities of the roots, too.
         """
         kinematics = self._kinematics
@@ -325,7 +327,7 @@ class BodyDynamics:
         mujoco.mj_comVel(self._model, self._data)
 
     def _set_joint_velocities(self) -> None:
-        """Write the joint velocities, and the accelerations of coupled joints at constant DOF velocities."""
+        """Write joint velocities, and the accelerations that coupled joints have at constant DOF velocities."""
         if self._coupling_matrix is not None:
             self._coupling_matrix.dot(self._rates, self._qvel)
             return
@@ -336,7 +338,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write the sum of DOF, velocity-dependent and additional root accelerations (6,) into ``qacc``."""
+        """Write the sum of DOF, velocity-dependent and additional root link accelerations, (6,), into ``qacc``."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0
@@ -373,7 +375,7 @@ class BodyDynamics:
         return self._of_dofs(self._forces)
 
     def _needed(self, forces: Floats) -> None:
-        """Write the generalised forces that the motion in MuJoCo's data requires, shape (nv,)."""
+        """Write the generalized forces that cause the motion in MuJoCo's data, shape (nv,), motors included."""
         mujoco.mj_rne(self._model, self._data, 1, forces)
         if self.motors is not None:
             inner = self._inner
@@ -399,7 +401,7 @@ class BodyDynamics:
         return self._of_dofs(self._forces), self._of_dofs(self._by_velocity), self._of_dofs(self._rest)
 
     def _write_parts_of_joints(self) -> None:
-        """Write the force components of the motion in MuJoCo's data, if only joints without motors move.
+        """Write the forces due to acceleration, velocity and gravity, if only joints without motors move.
 
         MuJoCo can omit accelerations; without gravity, only velocity effects remain.
         """
@@ -412,9 +414,9 @@ class BodyDynamics:
         rest -= by_velocity
 
     def _write_parts_of_all(self, velocities: Floats) -> None:
-        """Write the force components of the motion in MuJoCo's data.
+        """Write the forces of the motion in MuJoCo's data, split into acceleration, joint velocity and rest.
 
-        The component of joint velocities is computed with the base at rest and without gravity.
+        The part of joint velocities is computed with the base at rest and without gravity.
         """
         by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
         self._needed(by_acceleration)
@@ -433,12 +435,12 @@ class BodyDynamics:
         self._gravity[...] = self._free_fall[1]
 
     def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
-        """Add forces and moments on links at their centres of mass."""
+        """Add external wrenches on links, at their centres of mass, to the generalized forces."""
         for link, wrench in external.items():
             body_id = self._body_ids[link]
             mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], self._xipos[body_id], body_id, forces)
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:
-    """Return the acceleration of a link with constant angular velocity, shape (6,): ``w x v`` of its origin, then 0."""
+    """Return the acceleration of a link at constant angular velocity, shape (6,): ``w x v`` at its origin, then 0."""
     return np.concatenate((cross_rows(velocity[3:], velocity[:3]), np.zeros(3)))

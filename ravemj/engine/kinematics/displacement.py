@@ -37,7 +37,7 @@ def place_links(kinematics: "BodyKinematics", T_world_links: Floats, last_values
 
 
 def _displace(kinematics: "BodyKinematics", placed: Floats, wanted: Floats) -> None:
-    """Change the links' fixed poses so that the links reach the wanted poses."""
+    """Change the fixed poses of links in their parents so that the links move from ``placed`` to ``wanted``."""
     link_of = np.zeros(kinematics.model.nbody, dtype=int)
     link_of[kinematics.body_ids] = np.arange(len(placed))
     parents = link_of[kinematics.model.body_parentid[kinematics.body_ids]]
@@ -50,7 +50,7 @@ def _displace(kinematics: "BodyKinematics", placed: Floats, wanted: Floats) -> N
 
 
 def _inverses(transforms: Floats) -> Floats:
-    """Return the inverse of each of many rigid transforms, shape (n, 4, 4)."""
+    """Return the inverses of rigid transforms, shape (n, 4, 4)."""
     inverses = np.zeros_like(transforms)
     inverses[:, :3, :3] = rotations = transforms[:, :3, :3].transpose(0, 2, 1)
     inverses[:, :3, 3:] = -rotations @ transforms[:, :3, 3:]

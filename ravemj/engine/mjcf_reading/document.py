@@ -23,12 +23,12 @@ _TAG = re.compile(
 _ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _FOLDERS = {"mesh": ("meshdir", "assetdir"), "hfield": ("assetdir", "texturedir", "meshdir"), "model": ("assetdir",)}
 _NUMBERS = ("hfield",)
-"""Elements that refer to files of raw numbers."""
+"""XML elements that refer to files of raw numbers."""
 
 _COPIES = {"replicate": "count", "composite": "count", "flexcomp": "count"}
 _MOST_COPIES = 100_000
 _MOST_LOOKED_AT = 100
-"""Maximum number of files in a folder that are searched for the model that includes a partial one."""
+"""Maximum number of files of a folder that are searched for the model that includes a partial model."""
 
 
 class StartTag(NamedTuple):
@@ -152,10 +152,10 @@ class MjcfDocument:
         return next((path for path in paths if os.path.isfile(path)), None)
 
     def _read(self, path: str, name: str, tag: StartTag) -> None:
-        """Record that a file is read.
+        """Record a file as read.
 
         Raises:
-            SourceError: it must not be read.
+            SourceError: the file must not be read.
         """
         is_raw = tag.name in _NUMBERS and not path.lower().endswith(".png")
         folder = os.path.abspath(os.path.dirname(self.path))
@@ -167,7 +167,7 @@ class MjcfDocument:
         self.access.files.setdefault(path, tag.source)
 
     def _check_files(self) -> None:
-        """Check the files of meshes, height fields and attached models; MuJoCo opens them at the same paths."""
+        """Check that meshes, height fields and attached models may be read; MuJoCo opens them at the same paths."""
         folders = {key: tag.attributes[key] for tag in self.tags for key in _KEYS if key in tag.attributes}
         for tag in self.tags:
             name = tag.attributes.get("file")
@@ -188,7 +188,7 @@ class MjcfDocument:
                 MjcfDocument.parse(path, content_of(path, tag.source), self.access)
 
     def _check_counts(self) -> None:
-        """Reject excessive numbers of replicas before MuJoCo creates them."""
+        """Reject models with too many replicas, before MuJoCo creates them."""
         for tag in self.tags:
             total = 1.0
             for word in tag.attributes.get(_COPIES.get(tag.name, ""), "").split():

@@ -103,7 +103,7 @@ class TreeReader:
         return BodyTree(0, builder, {0: 0})
 
     def _add(self, tree: BodyTree, body: int) -> None:
-        """Add a body after its parent: its joints, the links between them, and its own link."""
+        """Add a body to the tree: its joints, the links between them, and its own link; its parent is already there."""
         model, builder = self._model, tree.builder
         T_parent_body = self.pose(body)
         parent = int(model.body_parentid[body])
@@ -135,7 +135,7 @@ class TreeReader:
         builder.is_robot = builder.is_robot or bool(joints)
 
     def _between(self, body_name: str, joint: int, body: int) -> LinkBuilder:
-        """Return the massless link after one of several joints of a body."""
+        """Return the massless link between two joints of the same body."""
         name = self.names.link(f"{body_name}/{self.names.joints[joint]}")
         return LinkBuilder(name, self.source(body), self._poses[body], inertial=MASSLESS)
 
