@@ -36,10 +36,10 @@ from ravemj.trajectories.bodies import body_groups
 _POSE = IkParameterizationType.Transform6D
 
 _BLOCK = 64
-"""Number of candidates per task of a worker process."""
+"""Number of candidate grasps per task of a worker process."""
 
 _ARROW = 0.035
-"""Length of the arrow of a contact [m]."""
+"""Length of the arrow drawn for a contact [m]."""
 
 _THIN = 0.0012  # m, radius of an arrow
 _LIMITING, _OTHER = (0.9, 0.25, 0.1), (0.15, 0.55, 0.25)
@@ -116,7 +116,7 @@ def grasps(  # noqa: PLR0913 - keyword arguments
 
 
 class _Query(NamedTuple):
-    """Grasp search of a robot's active manipulator; ``reach`` tells whether the arm has to reach the grasps."""
+    """Grasp search with a robot's active manipulator; ``reach`` tells whether the arm must reach the grasps."""
 
     robot: Robot
     body: KinBody
@@ -124,7 +124,7 @@ class _Query(NamedTuple):
     reach: bool
 
     def run(self, span: tuple[int, int] | None = None, progress: Callable[[int], object] | None = None) -> list[Grasp]:
-        """Test the candidates in a range of indices, by default all."""
+        """Test the candidate grasps in a range of indices, by default all."""
         arm, target = _active(self.robot), self.body.simulation_state
         reach = _reach(self.robot, arm) if self.reach else None
         state = self.robot.simulation_state
@@ -132,7 +132,7 @@ class _Query(NamedTuple):
 
 
 def _searched(query: _Query, processes: int) -> list[Grasp]:
-    """Test all candidates in this process or in several, and return them."""
+    """Test all candidate grasps, in this process or in several; return them."""
     robot, target = query.robot.simulation_state, query.body.simulation_state
     count = count_candidates(robot, _closing(_active(query.robot)), target, query.choices)
     with progress_bar("grasps", count) as show:
@@ -146,7 +146,7 @@ def _searched(query: _Query, processes: int) -> list[Grasp]:
 
 
 def _tried_part(content: bytes, span: tuple[int, int]) -> list[Grasp]:
-    """Test a range of candidates in a worker process."""
+    """Test a range of candidate grasps in a worker process; ``content`` is the pickled query."""
     query = _unpickled(content)
     with query.robot.GetEnv():
         return query.run(span)
@@ -188,12 +188,12 @@ def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:
 
 
 def _radius(body: KinBody) -> float:
-    """Return the radius of a sphere around a body [m]: arrows of this length stick out of it."""
+    """Return the radius of a sphere around a body [m], the length of arrows that stick out of it."""
     return float(np.linalg.norm(body.ComputeAABB().extents()))
 
 
 def _larger_part(wrench: Floats) -> tuple[Floats, tuple[float, float, float]]:
-    """Return the direction of a wrench's force or torque, whichever is larger, and the colour of its arrow."""
+    """Return the unit direction of a wrench's force or torque, whichever is larger, and its arrow's colour."""
     force, torque = wrench[:3], wrench[3:]
     part, colour = (force, _FORCE) if np.linalg.norm(force) >= np.linalg.norm(torque) else (torque, _TORQUE)
     return part / np.linalg.norm(part), colour
@@ -230,7 +230,7 @@ def _checked(method: str, friction: float, delta: float, rolls: int | None) -> C
 
 
 def _reach(robot: Robot, arm: Manipulator) -> Reach | None:
-    """Return the function that solves inverse kinematics without collisions; None for a hand without an arm."""
+    """Return a function that solves IK regardless of collisions; None if the hand has no arm."""
     if not arm.GetArmDOF():
         return None
     from ravemj.ik.candidates import ranked  # noqa: PLC0415 - slow to import

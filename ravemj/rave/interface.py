@@ -194,7 +194,6 @@ class EnvironmentPart(ApiObject):
         return cast("Environment", self)
 
     def _check_alive(self) -> None:
-        """Raise an error if the environment has been destroyed."""
         if self._is_destroyed:
             raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)
 

@@ -79,7 +79,7 @@ class Joint(Member):
             return dynamics.joint_velocities(velocities, [self._scene])[0]
 
     def _own(self, values: Floats) -> Floats:
-        """Return this active joint's entries of a vector over all DOFs, shape (axes,)."""
+        """Return this active joint's elements of a vector over all DOFs of the body, shape (axes,)."""
         first = self._state.kinematics.first_dofs[self._index]
         return values[first : first + self.GetDOF()]
 
@@ -309,14 +309,13 @@ class Joint(Member):
     UpdateAndGetInfo = GetInfo
 
     def _shown_values(self) -> list[float]:
-        """Return the joint values; for a body outside of an environment, those of its link poses."""
+        """Return the joint values; if the body is outside of an environment, they are measured from the link poses."""
         if self._state.index:
             return self.GetValues().tolist()
         parent, child = (pose_of(self._state.link_transform(i)) for i in (self._scene.parent, self._scene.child))
         return list(measured_values(self._scene, parent.inverse() @ child))
 
     def _repr_html_(self) -> str:
-        """Return the table that notebooks show for a joint."""
         from ravemj.rave.tables import joint_table  # noqa: PLC0415 - html is slow to import
 
         return joint_table(self)
@@ -485,10 +484,10 @@ class Joint(Member):
         self._set_axes("SetResolution", resolution=[resolution] * len(self._scene.axes))
 
     def _axis(self, axis: int) -> scene.Axis:
-        """Return one axis.
+        """Return an axis of the joint.
 
         Raises:
-            IndexError: the joint has no such axis.
+            IndexError: the joint has no axis with this index.
         """
         checked_indices([axis], len(self._scene.axes), "axis")
         return self._scene.axes[axis]
@@ -497,7 +496,7 @@ class Joint(Member):
         return np.array([getattr(axis, field) for axis in self._scene.axes], dtype=np.float64)
 
     def _set_axes(self, caller: str, **fields: ArrayLike) -> None:
-        """Set fields of the axes; on an error, none is changed."""
+        """Set fields of all axes of the joint; on an error, none is changed."""
         axes = list(self._scene.axes)
         for field, values in fields.items():
             numbers = checked_numbers(values, f"{caller}: values")

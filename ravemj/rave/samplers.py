@@ -151,10 +151,10 @@ class SpaceSampler(Interface):
 
 
 class _Random:
-    """Independent, uniformly distributed samples of the standard Mersenne Twister, seeded as in OpenRAVE."""
+    """Independent, uniform samples from the standard Mersenne Twister, seeded as in OpenRAVE."""
 
     kinds = frozenset(SampleDataType)
-    """The kinds of numbers."""
+    """Supported kinds of numbers."""
 
     def __init__(self) -> None:
         self._generator = np.random.RandomState()  # newer generators seed in another way
@@ -167,19 +167,19 @@ class _Random:
         self._dof = dof
 
     def limits(self) -> tuple[Floats, Floats]:
-        """Return the minima and maxima of real numbers, shape (dof,) each."""
+        """Return the minimum and maximum of real samples, shape (dof,) each."""
         return np.zeros(self._dof), np.ones(self._dof)
 
     def start(self, seed: int) -> None:
         self._generator.seed(seed)
 
     def reals(self, count: int) -> Floats:
-        """Return the next points, shape (count, dof)."""
+        """Return the next ``count`` samples, shape (count, dof)."""
         lower, upper = self.limits()
         return lower + (upper - lower) * (self.integers(count) / 2**32)
 
     def integers(self, count: int) -> NDArray[np.uint32]:
-        """Return the next points as integers, shape (count, dof)."""
+        """Return the next ``count`` samples as integers, shape (count, dof)."""
         return self._generator.randint(0, 2**32, (count, self.dof()), dtype=np.uint32)
 
 
@@ -202,7 +202,7 @@ class _Halton(_Random):
 
 
 class _Configurations(_Random):
-    """Random configurations within limits: of all DOFs of a body, or of the active DOFs of a robot."""
+    """Random configurations within limits, of all DOFs of a body or of a robot's active DOFs."""
 
     kinds = frozenset({SampleDataType.Real})
 

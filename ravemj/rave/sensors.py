@@ -83,16 +83,16 @@ class DescribedSensor(Interface):
             self.attached.edit(**changes)
 
     def _moved(self) -> None:
-        """Handle a new pose of a sensor without a robot."""
+        """React to a new pose of a sensor without a robot."""
 
     def _take_over(self) -> None:
-        """Restart after a change of the constant properties."""
+        """Restart after a change of the sensor's constant properties."""
 
     def take_state(self, other: "DescribedSensor") -> None:
         """Copy the state of another sensor of the same kind."""
 
     def _problem(self) -> str | None:
-        """Return the reason why the sensor cannot measure, or None."""
+        """Return the reason why the sensor cannot measure, or None if it can."""
         description, device = self.description, self.device
         if self.attached is not None and description.link is None:
             return "it is attached to no link"
@@ -234,15 +234,15 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
         SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
     }
 )
-"""Devices whose measurements, and devices whose geometry, viewers can draw."""
+"""Device classes that viewers can draw, by command: for their measurements, and for their geometry."""
 
 _OFF = 1
-"""Offset from the number of an "on" command to that of its "off" command."""
+"""Difference between the numbers of an "off" command and its "on" command."""
 
 _SWITCH_BITS = 0x30  # the bits of a command's number that select what it switches
 
 _SLACK = 1e-9
-"""Tolerance of the measurement time [s], for rounding errors in the sum of many time steps."""
+"""Time by which a measurement may be early [s], for rounding errors in sums of many time steps."""
 
 
 class Sensor(DescribedSensor):
@@ -486,7 +486,7 @@ class Sensor(DescribedSensor):
         return Place(self.GetTransform(), carrier)
 
     def _measured(self, stamp: int) -> SensorData:
-        """Measure, and draw the measurement if that is switched on."""
+        """Return a new measurement; draw it if drawing measurements is switched on."""
         device = self.device
         data = self._instrument.measured(device, self._place(), stamp)
         scanned = self._instrument.scanned
@@ -499,7 +499,7 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw the sensor geometry if this drawing is on; ``anew`` redraws it after a possible change."""
+        """Draw the sensor geometry if that is switched on; ``anew`` redraws it after a change."""
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
         device = self.device

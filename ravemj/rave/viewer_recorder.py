@@ -17,14 +17,13 @@ if TYPE_CHECKING:
 _WAITING = 8
 """Maximum number of frames in the encoder's queue; drawing blocks when it is full."""
 _PATIENCE = 0.2
-"""Interval [s] at which the encoder checks whether the script has ended without ``Stop``; without this check, its
-thread would keep the process alive."""
+"""Interval [s] at which the encoder thread checks whether the script has ended without ``Stop``, and then ends, too."""
 
 _TIMINGS = ("simtime", "realtime", "controller")
 
 
 class _Order(NamedTuple):
-    """Settings of a video, from the command ``Start``."""
+    """Settings of a video, given by the command ``Start``."""
 
     width: int
     height: int
@@ -76,7 +75,7 @@ class ViewerRecorder(Module):
         return self._drawn > before
 
     def _picture(self, width: int, height: int) -> Frame:
-        """Return a frame like those of viewers; it has shadows if OpenGL draws with a graphics card."""
+        """Return a frame as viewers draw it, with shadows if OpenGL uses a graphics card."""
         env = self._env
         return env.renderer.render(env.default_camera(width / height), env.look(), Format(width, height))
 

@@ -203,10 +203,10 @@ class Clearances:
         return flat[first] + flat[second]
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
-        """Raise the bounds of gaps of some cases by separation along directions, unit vectors or NaN, shape (k, 3).
+        """Raise gap bounds of some cases by separating planes; ``directions`` are unit normals or NaN, shape (k, 3).
 
-        The default directions are those of the last measurements. Unless ``exactly``, meshes are replaced by their
-        bounding boxes.
+        The default normals are the directions of the last measurements. Unless ``exactly``, meshes are replaced by
+        their bounding boxes.
         """
         if not len(some):
             return

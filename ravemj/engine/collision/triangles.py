@@ -73,7 +73,7 @@ class TriangleTests:
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
 
     def _near_solid(self, mesh: int, solid: int, box: tuple[Floats, Floats], touching: float) -> Iterator[_Candidate]:
-        """Yield the triangles that may be within ``touching`` [m] of a solid: FCL finds those near its bounding box."""
+        """Yield triangles of a mesh that may be within ``touching`` [m] of a solid with the bounding box ``box``."""
         if touching > _SLACK / 2:
             yield from self._triangles_of(mesh).near(*box, touching)
             return

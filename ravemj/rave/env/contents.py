@@ -83,7 +83,6 @@ class Contents(EnvironmentPart):
             return wrapped
 
     def _remove_all(self) -> None:
-        """Remove all bodies and sensors from the environment."""
         for body in self._kept_objects.values():
             if isinstance(body, Robot):
                 body.devices.forget()
@@ -133,7 +132,7 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Accept a viewer of this environment, which is already attached; raise an error for any other object."""
+        """Accept a viewer that is already attached to this environment; raise an error for any other object."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
@@ -259,7 +258,7 @@ class Contents(EnvironmentPart):
         return body is not None and self.Remove(body)
 
     def _remove_other(self, interface: object) -> bool:
-        """Remove a module, a sensor or a viewer, and return whether it was in the environment."""
+        """Remove a module, a sensor or a viewer; return whether the environment contained it."""
         if not isinstance(interface, Interface) and not hasattr(interface, "GetCameraTransform"):  # a viewer
             kind = "None" if interface is None else f"something of type {type(interface).__name__}"
             code = ErrorCode.Failed if interface is None else ErrorCode.InvalidArguments
@@ -547,7 +546,7 @@ class Contents(EnvironmentPart):
 
 
 def _renames(mode: Any) -> bool:  # noqa: ANN401 - a number or an enumeration
-    """Return whether ``addMode`` allows renaming: True, or a mode without strict checking of names."""
+    """Return whether the argument ``addMode`` of ``Add`` allows renaming a body with a taken name."""
     if mode is None or isinstance(mode, bool):
         return bool(mode)
     if mode not in tuple(InterfaceAddMode):

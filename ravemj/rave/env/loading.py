@@ -179,7 +179,7 @@ class Loading(Description):
         return f"{missing[0]}{others}" if missing else ""
 
     def _try_elsewhere(self, path: str) -> None:
-        """Load a JSON file into a temporary environment, so that errors in it leave this one unchanged."""
+        """Load a JSON file into a temporary environment first, so that an error in it leaves this one unchanged."""
         trial = type(self)()
         try:
             trial._load_json(path)
@@ -274,7 +274,7 @@ class Loading(Description):
     def _hold(
         self, holder: BodyState, grabs: Sequence[Grab], added: Mapping[str, BodyState], diagnostics: Diagnostics
     ) -> None:
-        """Grab the bodies that the file declares as grabbed."""
+        """Make a body grab the bodies that its file declares as grabbed; warn of unknown ones."""
         for grab in grabs:
             held = added.get(grab.body)
             if held is None or held is holder:
@@ -345,7 +345,7 @@ class Loading(Description):
             return None
 
     def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file without adding it; ``into`` is a body to rebuild, or None."""
+        """Return the first body of a JSON file without adding it; ``into`` is a body to rebuild, or None."""
         content = self._json_content(path)
         info = EnvironmentBaseInfo()
         with placed_errors(path):
@@ -360,7 +360,7 @@ class Loading(Description):
         return body
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
-        """Return the first body of a parsed file, without adding it."""
+        """Return the first body of a parsed file without adding it; log an error and return None if there is none."""
         self._note(reading)
         send_warnings(reading.diagnostics)
         failure = reading.failure

@@ -185,7 +185,7 @@ def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None =
 
 
 class _Called:
-    """List of infos with look-up by id and name."""
+    """Ordered list of infos with look-up by id and name."""
 
     def __init__(self, infos: Sequence[Described]) -> None:
         self._place_of: dict[int, int] = {}  # includes removed infos that may be added again, by identity
@@ -202,24 +202,23 @@ class _Called:
             self._called.setdefault(key, set()).add(place)
 
     def remove(self, info: Described) -> None:
-        """Remove an info, whose id and name have not changed since it was added."""
+        """Remove an info; its id and name must be the same as when it was added."""
         place = self._place_of[id(info)]
         del self._at[place]
         for key in _calls("_", vars(info)):
             self._called[key].discard(place)
 
     def first(self, item: Json) -> Described | None:
-        """Return the first info with the id or the name of an item."""
+        """Return the first info with the id or name of a JSON object; None if there is none."""
         places = [place for key in _calls("", item) for place in self._called.get(key, ())]
         return self._at[min(places)] if places else None
 
     def listed(self) -> list[Described]:
-        """Return the infos in their order."""
         return [info for _, info in sorted(self._at.items(), key=lambda item: item[0])]
 
 
 def _calls(prefix: str, fields: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-    """Yield the fields ``id`` and ``name``, whose keys have a prefix, unless they are empty."""
+    """Yield the pairs of key and value of ``id`` and ``name``, with ``prefix`` before the keys, unless empty."""
     for name in ("id", "name"):
         value = fields.get(prefix + name)
         if value and isinstance(value, str):
@@ -301,7 +300,7 @@ def info_class(cls: type[T]) -> type[T]:
 
 
 def _camel(name: str) -> str:
-    """Return the JSON key of a field: ``gearRatio`` for ``gear_ratio``, empty for ``_name``."""
+    """Return the JSON key of a Python field: ``gearRatio`` for ``gear_ratio``, empty for ``_name``."""
     first, *rest = name.split("_")
     return first and first + "".join(word.capitalize() for word in rest)
 
@@ -311,9 +310,9 @@ class Info(ApiObject):
     """Base class of infos. Infos are equal if their fields are; ``repr`` is an expression that creates the info."""
 
     _called: ClassVar[str]
-    """Name of the class for ``repr`` and error messages; by default ``__name__``."""
+    """Class name in ``repr`` and error messages; by default ``__name__``."""
     _entries: ClassVar[tuple[Entry, ...]]
-    """JSON keys, made from the fields."""
+    """Conversions of all fields to JSON keys."""
     _internal: ClassVar[tuple[str, ...]] = (
         *("of", "geometry", "draw", "link", "adjacent", "joint", "motor", "manipulator", "sensor", "camera"),
         *("named_values", "transform", "values_by_axis", "same_structure", "parameters", "with_parameters"),
@@ -372,7 +371,7 @@ class Info(ApiObject):
                 raise ArgumentError(f"{self._called}.DeserializeJSON: {key}: {error}") from None
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        """Return the table of the JSON keys; ``obj`` is the JSON to be read, or None for writing."""
+        """Return the conversions of fields to JSON keys; ``obj`` is the JSON to be read, or None for writing."""
         del obj
         return self._entries
 
@@ -443,11 +442,11 @@ def _default(field_: Field[Any]) -> object:
 
 
 _ROUNDING = 1e-14
-"""Tolerance of equal matrices after a conversion of their rotations to quaternions, as in JSON."""
+"""Tolerance of equal matrices, as JSON converts rotations to quaternions."""
 
 
 def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put into fields
-    """Return whether two values are equal; arrays and lists are compared element by element."""
+    """Return whether two values are equal, with a tolerance for arrays; lists are compared by element."""
     if isinstance(first, TriMesh) and isinstance(second, TriMesh):
         return _same(first.toDict(), second.toDict())
     if isinstance(first, Mapping) and isinstance(second, Mapping):
@@ -463,7 +462,7 @@ def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put
 
 
 def _written(value: object) -> str:
-    """Return a Python expression for a value that needs no imports; arrays are written as lists."""
+    """Return a value as a Python expression that needs no imports; arrays become lists."""
     if isinstance(value, Enum):
         return f"{type(value).__name__}.{value.name}"
     if isinstance(value, np.ndarray | np.generic):

@@ -176,11 +176,11 @@ _MIMICS = Form(
     lambda items, scale, present: [[*item["equations"], "", ""][:3] for item in items],
 )
 _VALUES = Form(PLAIN.write, PLAIN.read)
-"""Conversion of joint values and their derivatives: plain numbers, or lengths if the joint is prismatic."""
+"""JSON conversion of joint values and their derivatives; those of prismatic joints are lengths."""
 
 
 def _of_axes(key: str, of: str, default: float, form: Form = PLAIN) -> ArrayLike:
-    """Declare a field with one number for each axis; ``of`` is its name in ``scene.Axis``."""
+    """Declare an info field with one number per axis; ``of`` is the attribute of ``scene.Axis``."""
     return json_field(key, form, default=np.full(3, default), of=of)
 
 
@@ -385,7 +385,7 @@ class JointInfo(ParameterFields):
         return tuple(axes)
 
     def _per_axis(self, field: str, count: int) -> list[float]:
-        """Return one number for each axis; missing ones have the default of new infos.
+        """Return a field's numbers for ``count`` axes; missing ones have the default of new infos.
 
         Raises:
             ArgumentError: a number is NaN.
@@ -404,15 +404,15 @@ class JointInfo(ParameterFields):
 _DEFAULTS = {
     entry.field: float(next(iter(getattr(JointInfo(), entry.field)), 0.0)) for entry in JointInfo._entries if entry.of
 }
-"""Default values of new infos for each axis."""
+"""Default values of axis fields in new infos."""
 
 
 _REPORTED = {"max_torque": "own_torque"}
-"""Axis fields that infos read under another name: torque limits without the motor, which has its own info."""
+"""Axis properties that infos read from another attribute: torque limits exclude the motor, which has its own info."""
 
 
 def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:
-    """Return the motor of an axis as an equivalent motor with gear ratio 1; None if the axis has no motor."""
+    """Return an axis's motor as an equivalent one with gear ratio 1; None if the axis has no motor."""
     if not (axis.armature or axis.speed_torques or axis.joint_torque is not None):
         return None
     turn = 1.0 if is_slider else 2 * math.pi
@@ -440,7 +440,7 @@ def _unit(direction: Vec3) -> Vec3:
 
 
 def _directions(body: scene.KinBody, joint: scene.Joint, values: Sequence[float]) -> list[Vec3]:
-    """Return the directions of the axes at joint values, in the frame of the first link."""
+    """Return the directions of a joint's axes at joint values, in the frame of its first link."""
     if joint.static and body.joints:  # the builder turns the axes of a weld into the frame of its second link
         return [rotate(conjugate(joint.T_parent_child.wxyz), axis.direction) for axis in joint.axes]
     return directions_at(joint, values)

@@ -385,7 +385,6 @@ class KinBody(BodyConfiguration, Interface):
         return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}({self.GetName()!r})"
 
     def _repr_html_(self) -> str:
-        """Return the tables that notebooks show for a body."""
         from ravemj.rave.tables import body_table  # noqa: PLC0415 - html is slow to import
 
         return body_table(self)
@@ -689,7 +688,7 @@ class KinBody(BodyConfiguration, Interface):
 
 
 class _SavedBody(Block["KinBody"]):
-    """Context manager behind ``with body:``."""
+    """Context manager for ``with body:``, which restores the body's state."""
 
     def __init__(self, body: KinBody) -> None:
         super().__init__(self._run(body))

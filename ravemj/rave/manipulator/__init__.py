@@ -36,7 +36,7 @@ Target = ArrayLike | IkParameterization | CollisionReport | None
 
 
 def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floats | None, CollisionReport | None]:
-    """Return the tool pose and the report; the pose is None if the report was passed in its place."""
+    """Return tool pose and report. The pose is None if none was given, or a report in its place."""
     if isinstance(transform, IkParameterization):
         return transform.GetTransform6D(), report
     if transform is None or isinstance(transform, CollisionReport):
@@ -45,7 +45,7 @@ def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floa
 
 
 _SAME = 1e-12
-"""The tolerance within which two tool poses or directions are equal."""
+"""Largest difference of equal tool poses or directions."""
 
 
 class Manipulator(ArmIk):
@@ -365,7 +365,7 @@ class Manipulator(ArmIk):
         report: CollisionReport | None,
         T_world_tool: Floats | None,
     ) -> bool:
-        """Test the geom pairs that ``find`` selects, with the tool at a goal or at its present pose."""
+        """Test the geom pairs from ``find`` for collisions, with the tool at a goal, or at its present pose if None."""
         checker = self._robot.GetEnv().GetCollisionChecker()
         with self._state.simulation.lock:
             world = checker.world()

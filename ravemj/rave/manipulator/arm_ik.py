@@ -43,7 +43,7 @@ WITH_DIRECTION = {
 """Goal types that depend on the direction of the tool."""
 
 _GONE = 1 << 30
-"""Index of a removed manipulator, larger than any valid one."""
+"""Index that marks a removed manipulator, larger than any valid one."""
 
 
 class IkBatch(NamedTuple):
@@ -127,7 +127,7 @@ class ArmIk(ApiObject):
     GetEndEffectorTransform = GetGraspTransform = GetTransform
 
     def _tool(self) -> Tool:
-        """Return the tool and the joints as arrays, cached until the description changes."""
+        """Return tool and arm joints as arrays, cached until the manipulator's description changes."""
         arm = self._scene
         if self._known is None or self._known.arm is not arm:
             self._known = Tool.for_arm(arm)
@@ -328,7 +328,7 @@ class ArmIk(ApiObject):
             return self._solver("search").search(self._in_base(param), None, options)
 
     def _in_base(self, param: ArrayLike | IkParameterization) -> IkParameterization | Floats:
-        """Return a goal in the frame of the arm's base; an array is a pose (4, 4)."""
+        """Transform a goal, given in the world, to the frame of the arm's base; an array is a pose (4, 4)."""
         T_base_world = inverse(self._T_world_base())
         if isinstance(param, IkParameterization):
             return param.Transform(T_base_world)
@@ -553,7 +553,7 @@ class ArmIk(ApiObject):
         return self._robot.GetDOFValues(self._scene.arm_dofs)
 
     def _goal_now(self, iktype: IkParameterizationType) -> Floats:
-        """Return the present tool pose in the arm's base frame, as input of a solver."""
+        """Return the present tool pose as a solver's input: goal values in the arm's base frame."""
         if iktype == _Type.Transform6D:
             return inverse(self._T_world_base()) @ self.GetTransform()
         return np.asarray(self.GetIkParameterization(iktype, inworld=False).GetValues())

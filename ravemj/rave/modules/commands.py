@@ -422,7 +422,7 @@ def _pose(tokens: Tokens) -> Floats:
 
 
 def _several(reader: Reader) -> Reader:
-    """Return a reader of a list, preceded by its count."""
+    """Return a reader of a list of values, preceded by their count."""
     return lambda tokens: [reader(tokens) for _ in range(tokens.count())]
 
 
@@ -449,17 +449,17 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
     "rotation": lambda tokens: IkParameterization(tokens.numbers(4), _KIND.Rotation3D),
     "ikparam": lambda tokens: IkParameterization.take(tokens.words),
 }
-"""Readers of options with one tool goal."""
+"""Readers of the options that give one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
-"""For each option with several tool goals: the option with a single goal, whose reader is repeated."""
+"""Options that give several tool goals, and the option for one goal whose reader they repeat."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),
     **dict.fromkeys(("constraintpose", "constrainttaskpose"), _pose),
     **{"constraintfreedoms": lambda tokens: tokens.numbers(6), "constrainterrorthresh": Tokens.number},
 }
-"""Arguments of a tool constraint."""
+"""Readers of the options of a tool constraint."""
 
 GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),

@@ -31,7 +31,7 @@ _PARAMETERS: Mapping[str, Reader] = {
 
 
 def _optional_flag(tokens: Tokens) -> bool:
-    """Return whether an option is on: its value is 1, or it has no value (0 or 1)."""
+    """Return whether an option is on: followed by 1, or by no flag at all."""
     return flag(tokens) if tokens and tokens.words[0] in {"0", "1"} else True
 
 
@@ -207,7 +207,7 @@ def _parameters(grasper: GraspSimulation, options: Options, avoided: list[str]) 
 
 
 def _rows(contacts: Floats, links: Ints | None) -> str:
-    """Return a line for each contact, with the index of its link if given."""
+    """Return a text line per contact, with the index of its link if ``links`` is given."""
     ends = ["" for _ in contacts] if links is None else [str(link) for link in links.tolist()]
     return "".join(f"{_text(row)}{end}\n" for row, end in zip(contacts, ends, strict=True))
 

@@ -178,9 +178,9 @@ class Planner(Interface):
     _interface_type = InterfaceType.planner
     _internal = ("run",)
     _takes_text: ClassVar[bool] = False
-    """Whether the planner accepts parameters as text. Texts do not name bodies, so only retimers and smoothers do."""
+    """Whether parameters may be text. Texts do not name bodies, so only retimers and smoothers accept them."""
     _defaults: ClassVar[Mapping[str, str]] = {}
-    """Default texts of the planner-specific parameters, by tag."""
+    """Default values of planner-specific parameters, as texts by XML tag."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         super().__init__(env, xmlid)
@@ -263,12 +263,12 @@ class Planner(Interface):
         raise NotImplementedError
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
-        """Return the status if a problem cannot be solved, else None."""
+        """Return a failure status if the parameters are unsuitable, else None."""
         del values
         return None
 
     def _proceed(self, iteration: int) -> bool:
-        """Call the callbacks, and return whether to continue."""
+        """Call the user's callbacks; return False if one of them interrupts."""
         for callback in tuple(self._callbacks):
             self._action = int(callback(PlannerProgress(iteration)) or 0)
             if self._action == PlannerAction.Interrupt:

@@ -54,7 +54,7 @@ CERTIFIED_CHAIN = "parabolicsmoother", _SECOND
 """Default post-processing of certified motions: without ``linearsmoother``, since its shortcuts are not undone."""
 
 _SAME = 1e-9
-"""Tolerance of equal configuration values [rad or m]."""
+"""Largest difference of equal configuration values [rad or m]."""
 
 _ROOT = "plannerparameters"
 _POSTPROCESSING = "_postprocessing"
@@ -141,7 +141,7 @@ def _elements(text: str) -> "Sequence[Element]":
 
 
 def _inner(element: "Element") -> str:
-    """Return the content of an element as XML text."""
+    """Return the content of an XML element as text."""
     from xml.sax.saxutils import escape, quoteattr  # noqa: PLC0415 - imports urllib, which is slow
 
     parts = [escape((element.text or "").strip())]
@@ -310,7 +310,7 @@ class Values:
 
 
 def _setting(env: "Environment", bodies: Bodies, name: str) -> Floats:
-    """Return a setting of each configuration value, shape (n,), from the joints or the affine DOFs."""
+    """Return a property of each configuration value, shape (n,), such as a limit, from joints and affine DOFs."""
     numbers = bodies.numbers(name)
     for part in bodies.parts:
         if not part.dofs:
