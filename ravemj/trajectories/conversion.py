@@ -81,7 +81,7 @@ def convert_group(
 
 
 def _labels(group: Group) -> Sequence[int | str]:
-    """Return labels that identify the values of a group, such as DOF indices."""
+    """Return a label for each value of a group, such as its DOF index."""
     if group.kind in JOINTS or group.kind in {"joint_torques", "grab"}:
         return joint_indices(group)
     if group.kind == "outputSignals":
@@ -113,7 +113,7 @@ def _positions(group: Group) -> list[DOFAffine]:
 
 
 def _present(group: Group, find_body: FindBody) -> Floats:
-    """Return the present values of a group; unknown ones are zeros and the identity pose."""
+    """Return a group's values in the present scene; unknown numbers are 0, unknown poses the identity."""
     body = None if group.body is None else find_body(group.body)
     if group.kind == AFFINE[0]:
         parts, axis = affine_parts(group)

@@ -21,7 +21,7 @@ _FORCE, _LONGEST_FORCE = 0.15, 1.0
 """Length of the arrow for a force equal to the mean weight of a link, and maximum length [radii of the scene]."""
 
 _SMALLEST_MASS = 1e-9
-"""Minimum mass of links with an inertia ellipsoid [kg]."""
+"""Mass above which a link's inertia ellipsoid is drawn [kg]."""
 
 _RGB = np.array([[0.85, 0.15, 0.15, 1.0], [0.1, 0.6, 0.15, 1.0], [0.15, 0.3, 0.9, 1.0]])
 _JOINT = np.array([0.95, 0.55, 0.0, 1.0])
@@ -35,16 +35,16 @@ _WIDTH = 2.5
 _ARC_STEP = np.radians(6)
 
 _FLOOR_REACH = 2.0
-"""Half the side of the grid [radii of the scene]."""
+"""Half the side of the floor grid, as a multiple of the scene's radius."""
 
 _STEPS = (0.1, 1.0, 10.0, 100.0, 1000.0)
-"""Allowed distances between grid lines [m]."""
+"""Possible distances between lines of the floor grid [m]."""
 
 _MOST_LINES = 24
-"""Maximum number of lines from the middle of the grid to a side."""
+"""Maximum number of lines from the middle of the floor grid to a side."""
 
 _BELOW = 1e-3
-"""Depth of the lines below z = 0 [radii of the scene], so that a floor of the model hides them without flicker."""
+"""Depth of the grid below z = 0, as a multiple of the scene's radius, so that floors hide it without flicker."""
 
 _LINES, _MARKS = (0.62, 0.62, 0.65, 0.5), (0.45, 0.45, 0.5, 0.9)
 _AXIS_WIDTH = 3.0
@@ -75,7 +75,7 @@ def _frames(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _axes(length: float, width: float) -> Primitives:
-    """Return the x, y and z axes of a frame, in red, green and blue."""
+    """Return the axes x, y and z of a frame, drawn in red, green and blue."""
     ends = np.concatenate([[np.zeros(3), axis] for axis in length * np.eye(3)])
     return drawing.line_list(ends, width, np.repeat(_RGB, 2, axis=0))
 
@@ -90,7 +90,7 @@ def _joints(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _joint(body: BodyState, dof: int, length: float) -> Primitives:
-    """Return the axis of a joint, and for hinges the sector between its limits and a line at its value."""
+    """Return a drawing of a joint axis; for revolute joints, also the sector of the limits and the present value."""
     joint, T_world_axis = joint_frame(body, dof)
     axis, value = body.scene.dof_axes[dof], float(body.kinematics.values()[dof])
     ends = np.array([[0.0, 0.0, -length], [0.0, 0.0, length]])
@@ -125,7 +125,7 @@ def _masses(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _ellipsoid(inertial: Inertial) -> Primitives:
-    """Return the homogeneous ellipsoid of a link's mass and moments of inertia, in the link frame."""
+    """Return a drawing of the homogeneous ellipsoid with a link's mass and inertia, in the link frame."""
     moments = principal_moments(inertial)
     squares = 2.5 / inertial.mass * (moments.sum() - 2 * moments)
     half = np.sqrt(np.maximum(squares, 0.0))
@@ -150,7 +150,7 @@ _SPHERE, _FACETS = _sphere()
 
 
 def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
-    """Return a sphere at the deepest point of each contact between bodies; with physics, the contact forces as well."""
+    """Return drawings of the contacts between bodies: spheres at the deepest points, and forces if there is physics."""
     physics = simulation.physics
     if physics is not None:
         return _forces(*physics.contacts(), physics.mean_weight(), radius)
@@ -172,7 +172,7 @@ def _points(points: Floats, radius: float) -> list[Primitives]:
 
 
 def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> list[Primitives]:
-    """Return the contacts of the physics engine, each with an arrow proportional to its force."""
+    """Return drawings of the physics engine's contacts, each with an arrow proportional to its force."""
     sizes = np.linalg.norm(forces, axis=1)
     unit = weight or float(sizes.max(initial=0.0))
     arrows: list[Primitives] = []
@@ -184,7 +184,7 @@ def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> lis
 
 
 def _centers(body: BodyState) -> Floats:
-    """Return the centres of mass of all links in the world [m], shape (links, 3)."""
+    """Return the centres of mass of a body's links in the world [m], shape (links, 3)."""
     T_world_links = body.link_transforms()
     return np.einsum("nij,nj->ni", T_world_links[:, :3, :3], body.inertias.coms) + T_world_links[:, :3, 3]
 
@@ -222,7 +222,7 @@ def floor_labels(center: Floats, radius: float) -> tuple[Label, ...]:
 
 
 def _step_and_reach(center: Floats, radius: float) -> tuple[float, float]:
-    """Return the distance between lines and half the side of the grid, in whole steps [m]."""
+    """Return the distance between lines and half the side of the floor grid, a whole number of steps [m]."""
     wanted = _FLOOR_REACH * radius + float(np.abs(center[:2]).max())
     step = next((step for step in _STEPS if wanted / step <= _MOST_LINES), _STEPS[-1])
     return step, step * min(max(math.ceil(wanted / step), 1), _MOST_LINES)

@@ -114,7 +114,7 @@ class Selector:
         self._select_joint(*self._aimed(view, body, joint.child), dof)
 
     def _aimed(self, view: Viewpoint, body: BodyState, link: int) -> tuple[Hit, ViewRay]:
-        """Return a visible point of a link, else its centre, and the ray to it."""
+        """Return a visible point of a link, or its centre if hidden, and the viewing ray to its centre."""
         box = visible_box(body, [link], np.eye(4))
         center = body.link_transform(link)[:3, 3] if box is None else box.center
         way = center - view.camera.position
@@ -135,7 +135,7 @@ class Selector:
             self.selection = replace(self._selection(hit), dof=self._next_axis(hit.body, dof))
 
     def _next_axis(self, body: BodyState, first: int) -> int:
-        """Return the next DOF of a joint if it is already selected, else its first one."""
+        """Return the first DOF of a joint; if one of its DOFs is already selected, the next one."""
         old = self.selection
         joint, _ = joint_and_axis(body, first)
         number = -1
@@ -212,7 +212,7 @@ class Selector:
         return JointHandle.at(selection.body, selection.dof, SIZES[selection.size])
 
     def _cube_at(self, view: Viewpoint, at: tuple[float, float], hit: Hit | None) -> tuple[Cube, Grip] | None:
-        """Return the box handle and the grip under the pointer; None beside it, or if another body hides it."""
+        """Return the box handle and the grip under the pointer; None if there is none or a body hides it."""
         cube = self._cube()
         grip = None if cube is None else cube.grip(view, *at)
         if cube is None or grip is None or self._is_hidden(grip.point, view.ray(*at), hit):
@@ -220,7 +220,7 @@ class Selector:
         return cube, grip
 
     def _handle_at(self, ray: ViewRay, hit: Hit | None) -> tuple[JointHandle, Floats] | None:
-        """Return the handle of the selected joint and its point under the pointer; None if it is not visible there."""
+        """Return the selected joint's handle and its point under the pointer; None if there is none or it is hidden."""
         handle = self._handle()
         point = None if handle is None else handle.hit(ray)
         return None if handle is None or point is None or self._is_hidden(point, ray, hit) else (handle, point)
@@ -286,7 +286,7 @@ def point_line(body: BodyState, link: int, position: Floats, normal: Floats) -> 
 
 
 def _joint_line(body: BodyState, dof: int) -> str:
-    """Return as text the name of a joint, and the index and the value of one of its DOFs, in rad and degrees or m."""
+    """Describe a DOF: joint name, DOF index and value, in rad and degrees or in m."""
     joint, axis = joint_and_axis(body, dof)
     value = float(body.kinematics.values()[dof])
     shown = f"{value:z.3f} m" if joint.slides(axis) else f"{value:z.3f} rad, {math.degrees(value):z.1f} deg"

@@ -11,7 +11,7 @@ from ravemj.gui.interaction.playback import SPEEDS, Playback
 _LOG = logging.getLogger("ravemj")
 
 _OF_TIME = {"play": "run", "forward": "step"}
-"""Controls of simulation time that the playback keys operate if there is no motion."""
+"""Controls of simulation time that playback keys operate if there is no motion to play."""
 
 _MEASURED = 0.5
 """Averaging time of the measured simulation speed [s]."""
@@ -135,7 +135,7 @@ class TimeControls:
                 self._notices.say(f"The step failed: {error}")
 
     def _change_speed(self, *, has_motion: bool, is_faster: bool) -> None:
-        """Change the speed of the motion, or of simulation time if there is no motion."""
+        """Select the next faster or slower speed, of the motion's playback or else of simulation time."""
         clock = self._simulation.clock
         speed = self.playback.speed if has_motion or clock is None else clock.pace
         others = [other for other in SPEEDS if (other > speed if is_faster else other < speed)]
@@ -149,5 +149,5 @@ class TimeControls:
 
 
 def _after(speed: float) -> float:
-    """Return the next speed of the button; the slowest follows the fastest."""
+    """Return the next speed on the button, after the fastest the slowest."""
     return next((other for other in SPEEDS if other > speed), SPEEDS[0])

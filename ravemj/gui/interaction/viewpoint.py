@@ -18,10 +18,10 @@ _STRONGEST = 10.0
 """Maximum absolute natural logarithm of a zoom factor."""
 
 _STRAIGHT = 1e-6
-"""Sine of the angle between viewing direction and world z below which the upright direction is undefined."""
+"""Sine of the angle between viewing direction and world z below which the camera has no defined upright roll."""
 
 _ZOOM = 4.0
-"""Natural logarithm of the zoom factor for a drag over the height of the view."""
+"""Natural logarithm of the zoom factor of a drag over the height of the view."""
 
 
 class ViewRay(NamedTuple):
@@ -67,7 +67,7 @@ class Viewpoint:
         return self._placed(rotation, self.focus, self.distance)
 
     def _turned_upright(self, azimuth: float, elevation: float) -> "Viewpoint":
-        """Orbit about the world's z axis, and in elevation up to the poles [rad]."""
+        """Orbit about the world's z axis by ``azimuth``, and up by ``elevation``, at most to the poles [rad]."""
         rotation = _level(self.camera.rotation)
         height = math.asin(min(max(-float(rotation[2, 2]), -1.0), 1.0))  # elevation of the eye above the focus
         tilt = min(max(height + elevation, -math.pi / 2), math.pi / 2) - height
@@ -157,7 +157,7 @@ def camera_line(camera: Camera) -> str:
 
 
 def _level(rotation: Floats) -> Floats:
-    """Return a camera rotation rolled about the viewing direction, so that image right is level and z is up."""
+    """Return a camera rotation rolled about the viewing direction so that the image's right side is horizontal."""
     z = rotation[:, 2]
     right = np.array([z[1], -z[0], 0.0])  # the cross product with the world's z axis
     length = float(np.linalg.norm(right))

@@ -21,7 +21,7 @@ _MODELS = {".xml", ".dae", ".zae", ".json", ".urdf", ".xacro"}
 _MANIFEST = "package.xml"  # of a package of ROS: no model
 _NAMED = 5
 _SHOWN = 20.0
-"""Duration of messages about files that cannot be added [s]."""
+"""Display time of messages about files that cannot be added [s]."""
 
 
 def add_files(
@@ -69,10 +69,10 @@ def _add(env: Host, paths: Sequence[str], notices: Notices) -> None:
 
 
 def _unpacked(path: str, folder: str) -> str:
-    """Unpack a zip archive and return the new folder; return the path of any other file or folder unchanged.
+    """Unpack a zip archive and return ``folder``; return any other path unchanged.
 
     Raises:
-        SourceError: the archive is damaged or too large, or has names outside of the folder.
+        SourceError: the archive is damaged or too large, or contains names outside of the folder.
     """
     if not path.lower().endswith(".zip"):
         return path
@@ -83,10 +83,10 @@ def _unpacked(path: str, folder: str) -> str:
 
 
 def _models(path: str) -> list[str]:
-    """Return the models in a path: the file itself, the only URDF of a folder, or the models directly in the folder.
+    """Return the model files at a path: the file itself, the only URDF in a folder, or the folder's own model files.
 
     Raises:
-        SourceError: a folder has several URDFs.
+        SourceError: the folder contains several URDFs.
     """
     if not os.path.isdir(path):
         return [path] if Path(path).suffix.lower() in _MODELS else []

@@ -28,14 +28,14 @@ _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
 _SLOW = 1.5 * _PERIOD
-"""Drawing time of a frame [s] above which the processor, not the screen, is the limit, and the script gets time."""
+"""Drawing time [s] above which the processor, not the screen, limits the frame rate, so that the script gets time."""
 
 _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
-"""Largest coordinate on an X screen."""
+"""Largest possible coordinate on an X screen."""
 
 _running: dict[threading.Thread, tuple[Flag, Flag]] = {}
-"""Two flags for each window thread: request to close, and end of the thread (Ctrl-C can break ``join``)."""
+"""For each window thread, the flags that request closing and signal its end (Ctrl-C can break ``join``)."""
 
 
 class WindowViewer(Viewer):
@@ -143,7 +143,7 @@ class WindowViewer(Viewer):
         return period(time.monotonic() - self._changed_at)
 
     def _handle_view_events(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
-        """Handle view events while other threads hold the lock; return whether to draw."""
+        """Handle only view events, while others hold the simulation's lock; return whether to draw."""
         size = [Resize(*window.points)] if self.interaction.view.size != window.points else []
         window.events = self.interaction.handle_view_events([*size, *window.events])
         self.interaction.advance_view(now)
@@ -154,7 +154,7 @@ class WindowViewer(Viewer):
         return painter.update_view(self.interaction, surface, line, self._simulation.published) or window.is_lost
 
     def _surface(self, window: GlfwWindow) -> DrawTarget | None:
-        """Return the drawing target; None while the window is minimised."""
+        """Return the target for drawing in a window; None while the window is minimized."""
         width, height = window.pixels
         return (
             DrawTarget(self.look, self._choices.shadows, (width, height), window.pixel_ratio)
@@ -163,7 +163,7 @@ class WindowViewer(Viewer):
         )
 
     def _handle_events(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
-        """Handle the events; return whether to draw."""
+        """Handle all events under the simulation's lock; return whether to draw."""
         try:
             if self.interaction.view.size != window.points:
                 self.interaction.handle(Resize(*window.points))
@@ -195,7 +195,7 @@ class WindowViewer(Viewer):
         window.swap()
 
     def _serve(self, window: GlfwWindow) -> None:
-        """Perform requested actions, and add dropped files."""
+        """Perform requested actions, and add dropped files to the environment."""
         for request in self.interaction.controls.pop_requests():
             self._grant(request, window)
         if window.dropped:
@@ -203,7 +203,7 @@ class WindowViewer(Viewer):
             window.dropped = []
 
     def _grant(self, request: Request | str, window: GlfwWindow) -> None:
-        """Perform a requested action that needs the window."""
+        """Perform an action that needs the window, such as a picture, a video or copying text."""
         source = FrameSource(self.interaction, self._renderer, self.look, window.pixel_ratio)
         if request is Request.PICTURE:
             self._recorder.save_picture(source)
@@ -217,7 +217,7 @@ class WindowViewer(Viewer):
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:
-    """Run a viewer's window, and set the flag of its end."""
+    """Run a viewer's window, and signal its end."""
     try:
         _show(reference)
     finally:
@@ -226,7 +226,7 @@ def _run(reference: "weakref.ref[WindowViewer]") -> None:
 
 
 def _show(reference: "weakref.ref[WindowViewer]") -> None:
-    """Run a viewer's window until it is closed or the viewer is collected; waiting keeps no reference to the viewer."""
+    """Run a viewer's window until it is closed or the viewer is collected; waiting holds no strong reference."""
     viewer = reference()
     window = None if viewer is None else viewer.open_window()
     if window is None:
@@ -250,7 +250,7 @@ def _show(reference: "weakref.ref[WindowViewer]") -> None:
 
 
 def _end(thread: threading.Thread) -> None:
-    """Close a window and wait for its thread."""
+    """Close the window of a thread, and wait for the thread."""
     closing, ended = _running.get(thread, (None, None))
     if closing is not None and ended is not None and thread.ident is not None:
         closing.set()
@@ -260,7 +260,7 @@ def _end(thread: threading.Thread) -> None:
 
 @before_end
 def _end_all() -> None:
-    """Wait for the threads of windows: Python must not exit while OpenGL draws."""
+    """Close all windows and wait for their threads: Python must not exit while OpenGL draws."""
     for thread in list(_running):
         _end(thread)
 

@@ -13,7 +13,7 @@ _NORTH_WEST = 1
 
 
 class _WindowAttributes(ctypes.Structure):
-    """The first fields of Xlib's ``XSetWindowAttributes``; the mask of changes excludes the others."""
+    """First fields of Xlib's ``XSetWindowAttributes``; changes of others are masked out."""
 
     _fields_ = (
         ("background_pixmap", ctypes.c_ulong),
@@ -70,5 +70,5 @@ class XConnection:
 
 
 def _ignore(_display: object) -> int:
-    """Suppress Xlib's error message."""
+    """Handle Xlib errors by doing nothing, instead of ending the process."""
     return 0

@@ -676,7 +676,7 @@ class KinBody(BodyConfiguration, Interface):
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4), enabledOnlyLinks)
 
     def _poses(self, T_world_body: Floats | None = None) -> Floats:
-        """Return the link poses for the current or a given pose of the first link, shape (links, 4, 4)."""
+        """Return the link poses, shape (links, 4, 4); ``T_world_body`` replaces the present pose of the first link."""
         with self._simulation.lock:
             poses = self._state.link_transforms()
         return poses if T_world_body is None or not len(poses) else T_world_body @ inverse(poses[0]) @ poses

@@ -36,13 +36,13 @@ FRAME, DRAWINGS, FIGURES = range(3)
 
 _UNIT = 32767
 _DIGITS = 6
-"""Decimals of positions [m]; smaller movements are not sent."""
+"""Decimals of sent positions [m]; smaller movements are not sent."""
 
 _VALUE_DIGITS = 4
-"""Decimals of slider values [rad, m or s], finer than a pixel."""
+"""Decimals of sent slider values [rad, m or s], finer than a pixel."""
 
 _LEVEL = 1
-"""Compression level of drawings: low, since they may change with every frame."""
+"""Compression level of drawings; low, since they may change every frame."""
 
 
 class Stage(NamedTuple):
@@ -136,7 +136,7 @@ class Feed:
         return messages
 
     def _news(self, stage: Stage) -> tuple[NDArray[np.intp], NDArray[np.intp]] | None:
-        """Return the indices of moved bodies and recoloured shapes; None if there are none."""
+        """Return the indices of bodies that moved and shapes that changed colour; None if there are none."""
         before = self._stage
         if before is None or before.scene.name != stage.scene.name:
             return np.arange(len(stage.positions)), np.arange(len(stage.colours))
@@ -146,7 +146,7 @@ class Feed:
 
 
 def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
-    """Return the changed fields; if only values of controls changed, ``changed`` contains those controls."""
+    """Return the changed fields; if only values of controls changed, the field ``changed`` lists those controls."""
     said = {name: value for name, value in after.items() if name not in before or before[name] != value}
     old, new = before.get("controls", ()), said.get("controls", ())
     if new and [control.name for control in old] == [control.name for control in new]:
@@ -156,7 +156,7 @@ def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
 
 
 def _difference(control: Control, before: Control) -> dict[str, object]:
-    """Return the changed fields of a control, and its name."""
+    """Return the name and the changed fields of a control."""
     old, new = asdict(before), asdict(control)
     new["value"] = round(control.value, _VALUE_DIGITS)
     return {name: value for name, value in new.items() if name == "name" or value != old[name]}
@@ -193,7 +193,6 @@ def _drawn(kind: int, primitives: Primitives) -> bytes:
 
 
 def _is_same(drawn: Primitives, other: Primitives) -> bool:
-    """Return whether two drawings are equal."""
     return drawn is other or all(
         np.array_equal(array, others)
         for batch, other_batch in zip(drawn.batches, other.batches, strict=True)

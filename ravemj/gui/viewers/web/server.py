@@ -32,18 +32,18 @@ _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
 _EVERYWHERE = {"", "0.0.0.0", "::"}
 _SOCKET = "socket"
 _FOREVER = "private, max-age=31536000, immutable"
-"""Cache-Control of content whose name is its hash."""
+"""Cache-Control header of content that is named by its hash, so that it never changes."""
 
 _TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")
 _MAY_REPEAT = {"forwarded", "via", "x-forwarded-for", "x-forwarded-port", "x-forwarded-proto"}
-"""Headers that may be repeated, since each proxy may add one."""
+"""Names of headers that may occur more than once, since each proxy may add one."""
 
 _METHOD = re.compile(rb"([A-Za-z]{1,16})(?: |$)")
 _HANDSHAKE = 5.0
-"""Time limit for a request of an unauthenticated connection [s]."""
+"""Time limit for a request on an unauthenticated connection [s]."""
 
 _FAREWELL = 1.0
-"""Time limit for pages to disconnect when the viewer is closed [s]."""
+"""Time limit for pages to disconnect when the viewer closes [s]."""
 
 _servers: "weakref.WeakSet[PageServer]" = weakref.WeakSet()
 
@@ -152,7 +152,7 @@ class PageServer:
                 os.close(each.detach())
 
     def _accept(self) -> None:
-        """Accept connections, a thread for each: ``Server.serve_forever`` would wait for its threads without limit."""
+        """Accept connections, each in its own thread; ``Server.serve_forever`` would wait for them without limit."""
         while not self.closed.is_set():
             try:
                 connection, address = self._listening.accept()
@@ -216,7 +216,7 @@ class PageServer:
         return _page(page, policy, may_compress="gzip" in headers.get("Accept-Encoding", ""))
 
     def _open(self, headers: Headers) -> Response | None:
-        """Return a refusal of a WebSocket connection, or None to accept it."""
+        """Return a response that refuses a WebSocket connection, or None to accept it."""
         origin, thread = headers.get("Origin", ""), threading.current_thread()
         if not self._is_our_page(origin, headers):
             self.complain("a page of another site is refused", origin)
@@ -243,7 +243,7 @@ class PageServer:
         return self._any_name or host in {f"{_bracketed(name)}:{self.port}" for name in _LOCAL_NAMES}
 
     def _is_our_page(self, origin: str, headers: Headers) -> bool:
-        """Return whether the Origin header is this server's; other sites cannot forge it in a browser."""
+        """Return whether the Origin header is that of this server, which other sites cannot forge in a browser."""
         names, schemes = [headers.get("Host", "")], ["http"]
         if self._any_name:
             names.append(headers.get("X-Forwarded-Host", "").partition(",")[0].strip())
@@ -254,14 +254,14 @@ class PageServer:
 
 @before_end
 def _close_all() -> None:
-    """Wait for the threads of pages: Python must not exit while OpenGL draws."""
+    """Close the servers and wait for their pages' threads: Python must not exit while OpenGL draws."""
     for server in _servers.copy():
         server.close()
 
 
 @in_child
 def _forget_all() -> None:
-    """Close the sockets in a forked child, so that the ports are free when the parent closes them."""
+    """Close the servers' sockets in a forked child, so that the parent can free the ports."""
     for server in _servers.copy():
         server.forget()
     _servers.clear()
@@ -298,7 +298,7 @@ def _bracketed(name: str) -> str:
 
 
 def _is_refused(connection: socket.socket) -> bool:
-    """Wait for the method of a request; if it is not GET, answer with a refusal, close, and return True.
+    """Wait for a request's method; unless it is GET, answer with a refusal, close, and return True.
 
     ``websockets`` would close the connection without an answer if the request has a body.
     """
@@ -323,7 +323,7 @@ def _is_refused(connection: socket.socket) -> bool:
 
 
 def _repeated(headers: Headers) -> Response | None:
-    """Return a refusal if a header is repeated, since proxies may interpret that differently."""
+    """Return a refusal if a header occurs more than once, which proxies may interpret differently; else None."""
     names = [name.lower() for name, _ in headers.raw_items()]
     again = next((name for name in names if names.count(name) > 1 and name not in _MAY_REPEAT), None)
     if again is None:
