@@ -26,7 +26,7 @@ def marked(text: str, model: AnyPath) -> str:
 
 
 def _former_mark(model: AnyPath) -> str:
-    """Return the first line of a model file if ravemj wrote it, else an empty string."""
+    """Return the first line of a model that was written by ravemj; empty for other models."""
     try:
         with open(model, encoding="utf-8", errors="replace") as file:
             line = file.readline().rstrip("\n")
@@ -123,7 +123,7 @@ def _is_ours(file: Path) -> bool:
 
 
 def _check_untouched(path: AnyPath, lost: Collection[AnyPath]) -> None:
-    """Raise an OutputError if writing to ``path`` would overwrite files, ``lost``, that the model was read from."""
+    """Raise an OutputError if writing to ``path`` would overwrite the files ``lost``, from which the model was read."""
     if lost:
         names = ", ".join(str(Path(file)) for file in lost)
         raise OutputError(f"cannot write {os.fspath(path)}: the model was read from {names}")

@@ -52,7 +52,7 @@ def scene_text(translation: Translation, file: str) -> str:
 
 
 def _is_static(translation: Translation, body: int) -> bool:
-    """Return whether a body belongs to the static environment, and not to a robot."""
+    """Return whether a body is a static part of the environment, not of a robot."""
     name = translation.model.body(body).name
     for described, names in zip(translation.bodies, translation.mjcf.names, strict=True):
         if name in names.links:
@@ -61,7 +61,7 @@ def _is_static(translation: Translation, body: int) -> bool:
 
 
 def _sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:
-    """Return centre and radius [m] of a bounding sphere of all geoms except infinite planes."""
+    """Return centre and radius of a bounding sphere of all finite geoms."""
     some = model.geom_rbound > 0
     if not some.any():
         return np.zeros(3), 1.0

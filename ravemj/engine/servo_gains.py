@@ -36,7 +36,7 @@ _FARTHEST = 2.0
 """Maximum distance of sampled slider positions from the start pose [m], since some limits are kilometres."""
 
 _FOOT = 0.02
-"""Height above a standing robot's lowest point [m] below which a link counts as a foot."""
+"""Height above the lowest point of a standing robot [m] below which a link is a foot."""
 
 
 class ServoLoads(NamedTuple):
@@ -137,12 +137,12 @@ def loads_of(body: KinBody, start: Floats, gravity: Sequence[float], *, stands: 
 
 
 def _slides(body: KinBody) -> NDArray[np.bool_]:
-    """Return a mask of the prismatic DOFs."""
+    """Return for each DOF whether it is prismatic."""
     return np.array([letter == "P" for joint in body.joints for letter in AXES[joint.kind]], dtype=bool)
 
 
 def _poses(body: KinBody, start: Floats) -> Iterator[Floats]:
-    """Yield the start pose, then random poses within the limits and near it, the same ones at each call."""
+    """Yield the start pose, then random poses within the limits and near the start; the same at each call."""
     yield start
     reach = [(-np.pi, np.pi) if axis.circular else (axis.lower, axis.upper) for axis in body.dof_axes]
     lower, upper = np.array(reach).reshape(-1, 2).T
@@ -152,7 +152,7 @@ def _poses(body: KinBody, start: Floats) -> Iterator[Floats]:
 
 
 def _measured(kinematics: BodyKinematics, coupling: Coupling) -> tuple[Floats, Floats]:
-    """Return the effective inertia of each DOF, and the magnitude of its gravity torque, in the present pose."""
+    """Return the effective inertia of each DOF, and the magnitude of its gravity torque."""
     model, data = kinematics.model, kinematics.data
     kinematics.place_coms()
     full, bias = np.zeros((model.nv, model.nv)), np.zeros(model.nv)

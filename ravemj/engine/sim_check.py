@@ -93,7 +93,7 @@ def _names(translation: Translation) -> Point:
 
 
 def _numbers(translation: Translation) -> Point:
-    """Compare the total mass with the input file; report changed inertias, unlimited joints and missing equalities."""
+    """Compare the total mass with the file's; report changed inertias, unlimited joints and missing equalities."""
     model, point = translation.model, Point("masses, limits, mimic", "")
     given = sum(link.inertial.mass for body in translation.bodies for link in body.links)
     total = float(model.body_mass.sum())
@@ -115,7 +115,7 @@ def _numbers(translation: Translation) -> Point:
 
 
 def _shapes(translation: Translation) -> Point:
-    """Compare the bounding boxes of each link's shapes and of its geoms in the MuJoCo model."""
+    """Compare the bounding boxes of each link's shapes and of its geoms in the model."""
     model, point = translation.model, Point("shapes", f"{translation.model.ngeom} geoms")
     if translation.choices.merge_fixed:
         point.notes.append("fixed links are merged: their shapes are not compared")
@@ -131,7 +131,7 @@ def _shapes(translation: Translation) -> Point:
 
 
 def _shapes_off(model: mujoco.MjModel, link: Link, name: str) -> float | None:
-    """Return the error of a link's bounding box, relative to its diagonal; None if its shapes do not collide."""
+    """Return the error of a link's bounding box relative to its diagonal; None without collision shapes."""
     wanted = [geometry_bounds(geometry, np.eye(4)) for geometry in link.geometries]
     wanted = [bounds for bounds in wanted if (bounds.high > bounds.low).any()]
     if not wanted:
@@ -290,7 +290,7 @@ def _response(model: mujoco.MjModel, data: mujoco.MjData, actuator: int, size: f
 
 
 def _standing(translation: Translation) -> Point:
-    """Simulate a robot with a free base that stands on a floor at its lowest point."""
+    """Simulate a robot with a free base standing on a floor at its lowest point."""
     height, _ = lowest(translation.model, translation.home)
     model = translation.on_floor(height)
     data = mujoco.MjData(model)

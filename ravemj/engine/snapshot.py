@@ -47,7 +47,7 @@ def snapshot(body: BodyState) -> KinBody:
 
 
 def _settled(joint: Joint, values: Sequence[float], poses: Sequence[Pose]) -> Joint:
-    """Return a joint with its present values and, if its child link is displaced, the child's present pose."""
+    """Return a joint with its present values; if its child is displaced, also with the child's pose."""
     axes = tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
     expected = relative_pose(joint, values)
     T_parent_child = poses[joint.parent].inverse() @ poses[joint.child]

@@ -36,10 +36,10 @@ HOME = "home"
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 _LIGHT = 1e-8
-"""Inertia at a joint below which a warning is given [kg m² or kg]."""
+"""Inertia [kg m^2 or kg] of a joint below which a warning is given."""
 
 _LIGHT_DISTANCE = 2.0
-"""Distance of lights from the centre of a model, as a multiple of the model's extent."""
+"""Distance of lights from the centre of a model, in multiples of its extent."""
 
 
 class TranslationChoices(NamedTuple):
@@ -229,7 +229,7 @@ def _check_state(scene: Scene, choices: TranslationChoices) -> None:
 def _gains(
     scene: Scene, starts: Sequence[Floats], choices: TranslationChoices, diagnostics: Diagnostics
 ) -> tuple[Gains | None, ...]:
-    """Return the servo gains of each body: from the gains file if one is given, else computed; None without DOFs."""
+    """Return the servo gains of each body: from the gains file if given, else computed."""
     given = [] if choices.gains is None else read_gains(choices.gains)
     check_used(given, [name for body in scene.bodies for name in body.dof_names])
     timestep = choices.timestep or TIMESTEP
@@ -254,7 +254,7 @@ def _with_given(body: KinBody, loads: ServoLoads, timestep: float, given: Sequen
 
 
 def _warn_of_motors(body: KinBody, loads: ServoLoads, diagnostics: Diagnostics) -> None:
-    """Warn of motors too weak for their load at the start pose, and of suspicious inertias."""
+    """Warn of motors that are too weak for their load at the start pose, and of suspicious inertias."""
     unlimited: list[Joint] = []
     dof = 0
     for joint in body.joints:
@@ -289,7 +289,7 @@ class _Poses:
         self._names = names
 
     def qpos(self, values: Sequence[Floats]) -> Floats:
-        """Return ``qpos`` for the joint values of each body, shape (dof,) each."""
+        """Return ``qpos`` for joint values of each body, each of shape (dof,)."""
         qpos = self.model.qpos0.copy()
         for kinematics, names, chosen in zip(self._kinematics, self._names, values, strict=True):
             if kinematics is not None:
@@ -302,7 +302,7 @@ class _Poses:
         return qpos
 
     def targets(self, qpos: Floats) -> Floats:
-        """Return the servo targets that hold a pose, shape (nu,). A servo has the name of its joint."""
+        """Return the targets of servos that hold a pose, shape (nu,); servos have the names of their joints."""
         model, joints = self.model, {name for body in self._names for names in body.joints for name in names}
         names = [model.actuator(number).name for number in range(model.nu)]
         return np.array([qpos[model.joint(name).qposadr[0]] if name in joints else 0.0 for name in names])
@@ -341,7 +341,7 @@ def _add_excludes(document: MjcfSections, pairs: Sequence[tuple[str, str]]) -> N
 def _keyframes(
     poses: _Poses, bodies: Sequence[KinBody], starts: Sequence[Floats], choices: TranslationChoices
 ) -> XmlLines:
-    """Return keyframes of the start pose and of each other named configuration."""
+    """Return the keyframe of the start pose, and one for each other named configuration."""
     content = XmlLines(2)
     for name, values in _named_poses(bodies, starts, choices):
         qpos = poses.qpos(values)
@@ -367,7 +367,7 @@ def _named_poses(
 
 
 def _place_lights(document: MjcfSections, model: mujoco.MjModel) -> None:
-    """Move the directional lights so that the shadow maps of MuJoCo's viewers cover all bodies."""
+    """Place the directional lights so that the shadow maps of MuJoCo's viewers contain all bodies."""
     for number in range(model.nlight):
         light = model.light(number)
         if light.name.startswith(STUDIO_PREFIX):

@@ -129,10 +129,10 @@ def _aside(body: KinBody, joint: int, number: int) -> _MovingAxis:
 
 
 class _Followers:
-    """Function from the DOFs of an arm to the values of all its joints, by mimic equations.
+    """Computes the values of all joints of an arm from its DOFs by mimic equations.
 
     Args:
-        joints: All joints of the body; those outside the arm keep the values of the body's file.
+        joints: All joints of the body; those that do not belong to the arm keep their loaded values.
         own: For each DOF, its joint and the index of its axis in the joint.
         columns: For each joint axis of the arm, the index of its DOF; -1 for mimic joints.
         indices: For each joint axis of the arm, the index of its joint.

@@ -147,10 +147,7 @@ class Chain:
         return [np.array(step.T, dtype=float, order="C") for step in steps]
 
     def _frames(self, turns: Turns) -> list[Floats]:
-        """Return the frame of each joint before the joint's own motion, then the tool frame.
-
-        A frame consists of x, y, z and origin, shape (4, 3, M), for M configurations.
-        """
+        """Return each joint frame before the joint's own motion, then the tool frame: x, y, z, origin (4, 3, M)."""
         count = turns[0].shape[-1] if len(turns) else 1
         frame = np.repeat(self._steps[0][:, :3, None], count, axis=2)
         frames = [frame]

@@ -195,7 +195,7 @@ class ClosedForm:
         return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
 
     def _turns_of_one(self, pose: Floats, solver: OnePose) -> Floats:
-        """Return the family's solution of a single pose, computed without numpy; shape (6, 2, B, 1)."""
+        """Return the family's solution of a single pose, computed in Python floats, shape (6, 2, B, 1)."""
         motion = pose @ self._tool
         motion[:3, 3] /= self.chain.reach
         x, y, z, _ = motion.tolist()
@@ -205,7 +205,7 @@ class ClosedForm:
         return turns[:, self._order].transpose(1, 2, 0)[..., None]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
-        """Return the required product of joint motions, or the required tool position; reach = 1."""
+        """Return the required motion of the joints, or the required tool position; lengths are divided by the reach."""
         whole = self.task in (Task.TRANSFORM, Task.PLANAR)
         motion = poses @ self._tool if whole else poses
         rotation = np.ascontiguousarray(motion[:, :3, :3].transpose(1, 2, 0))[:, :, None]
@@ -276,7 +276,7 @@ class ClosedForm:
 
 
 def _flat(turns: Turns) -> Turns:
-    """Join the axes of branches and poses, the last two of each joint's values, into one."""
+    """Flatten branches and poses of joint values (cosine and sine, or distances) into one axis."""
     if isinstance(turns, np.ndarray):
         return turns.reshape(*turns.shape[:2], -1)
     return [turn.reshape(len(turn), -1) for turn in turns]

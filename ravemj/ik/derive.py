@@ -102,7 +102,7 @@ def derive(
 
 
 def _prove(solver: ClosedForm) -> Validation | None:
-    """Return the validation of a solver if it succeeds, else None. A short validation comes first."""
+    """Validate a solver, first with few configurations; return the validation if it succeeds, else None."""
     try:
         if certify(solver, count=_FEW).holds:
             certificate = certify(solver)

@@ -10,7 +10,7 @@ from ravemj.ik.chain import Chain
 from ravemj.ik.vectors import Floats
 
 _STEP = 1e-6
-"""Step of the numeric derivatives of mimic equations [rad or m]; derivatives of affine equations are exact."""
+"""Step of the numeric derivatives of mimic joints [rad or m]; exact for affine equations."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

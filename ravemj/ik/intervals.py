@@ -144,7 +144,7 @@ def _descents(
 
 
 def _distinct(missed: Floats, places: Ints, most: int) -> Ints:
-    """Return at most ``most`` samples and branches of least excess, (K, 2); equal ones of a sample count once."""
+    """Return the samples and branches with the least excess, shape (K, 2); equal excesses of a sample count once."""
     sizes = missed[places[:, 0], places[:, 1]]
     kept: dict[tuple[int, float], int] = {}
     for index in np.argsort(sizes, kind="stable").tolist():

@@ -98,7 +98,7 @@ class NumericSolver:
         return distance, turn
 
     def _residual(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
-        """Return the error of the tool relative to ``pose``, and the task's Jacobian; rows of both times ``scale``."""
+        """Return the error of the tool relative to a pose, and the task's Jacobian, both times ``scale``."""
         rotation, place, jacobian = self._kinematics(values)
         if self.task is not Task.TRANSFORM:
             return residual_and_jacobian(self.chain, self.task, pose, ToolState(rotation, place, jacobian), scale)

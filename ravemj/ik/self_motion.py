@@ -114,7 +114,7 @@ def sweep(solver: ArmSolutions, goal: ArrayLike, seed: Floats, *, step: float = 
 
 
 def _followed(solver: ArmSolutions, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
-    """Return a solution for each value of the free joint, near the previous one; stop if there is none."""
+    """Return a solution for each value of the free joint, nearest to the previous one; stop if there is none."""
     assert solver.closed is not None
     solutions = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])
     rows, last = list[Floats](), start

@@ -297,7 +297,7 @@ class ArmSolutions:
 
 
 def _solve_alike(closed: ClosedForm | ReducedForm, poses: Floats, values: Floats | None, *, limits: bool) -> Solutions:
-    """Solve poses with the same rounding, however many: a single one is passed twice, as BLAS rounds it differently."""
+    """Solve poses; a single pose is passed twice, since BLAS rounds a batch of one differently from larger ones."""
     if len(poses) != 1:
         return closed.solve(poses, values, limits=limits)
     both = closed.solve(

@@ -198,7 +198,7 @@ def _pointing(chain: Chain, directions: Floats) -> Floats:
 
 
 def _frames(directions: Floats) -> Floats:
-    """Return rotations (..., 3, 3) whose first columns are the given unit vectors (..., 3)."""
+    """Return rotations (..., 3, 3) whose first columns are given unit vectors (..., 3)."""
     sides = np.asarray(np.cross(directions, np.eye(3)[np.abs(directions).argmin(axis=-1)]), dtype=float)
     sides /= np.sqrt((sides * sides).sum(axis=-1, keepdims=True))
     others = np.asarray(np.cross(directions, sides), dtype=float)

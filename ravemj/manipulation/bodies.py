@@ -37,7 +37,7 @@ ALL = 0xFFFF
 """All tests that a configuration of a path has to pass."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
-"""Axis properties of values without limits: IK goals, and poses without a body."""
+"""Axis fields of values without limits: IK goals, and poses without a body."""
 
 _NO_BODY = "__dummy__"
 """Body name that ``RaveGetAffineConfigurationSpecification`` uses without a body."""
@@ -48,7 +48,7 @@ _RESOLUTION = 0.02
 _ROUND = np.pi  # samples of a circular joint are drawn from [-pi, pi], since the joint has no limits of its own
 
 _FULL_TURN = 2 * np.pi
-"""Sampling limits of rotation vectors [rad]: with OpenRAVE's limit 10000, hardly any sample is near the start."""
+"""Sampling limits of rotation vectors [rad]: with OpenRAVE's 10000, hardly a sample is near the start."""
 
 
 @dataclass(frozen=True)

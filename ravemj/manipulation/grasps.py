@@ -230,7 +230,7 @@ class GraspSearch:
         return values[dofs]
 
     def _direction(self, number: int, T_world_tool: Floats) -> Floats:
-        """Return the approach direction of the hand in the world frame."""
+        """Return the approach direction of the hand, a unit vector in the world."""
         in_target = self._table.numbers(number, "igraspdir", 3)
         if in_target is not None:
             direction = self._target.link_transform(0)[:3, :3] @ in_target
@@ -264,7 +264,7 @@ class GraspSearch:
             return len(follow_goals(self._hand.space, row, count, search)) == count + 1
 
     def _goals(self, T_target_tool: Floats) -> list[Floats]:
-        """Return the tool poses at the destinations where the target can be put down with this grasp."""
+        """Return the tool poses at the destinations where the target can be put down with a grasp."""
         options, goals = self._options, list[Floats]()
         count = len(self._places)
         for place in self._random.permutation(count).tolist() if options.randomdests else range(count):
@@ -277,7 +277,7 @@ class GraspSearch:
         return goals
 
     def _is_free(self, T_world_target: Floats) -> bool:
-        """Return whether the target, moved to a pose, collides with nothing except the robot."""
+        """Return whether the target at a pose collides with nothing but the robot."""
         with self._kept(), _disabled(self._hand.body):
             self._target.set_transform(T_world_target)
             checker = self._hand.checker()
@@ -290,7 +290,7 @@ class GraspSearch:
 
     @block
     def _kept(self) -> Generator[None]:
-        """Context manager that holds the lock, and restores the robot and the target afterwards."""
+        """Context manager that acquires the lock, and restores the robot and the target."""
         bodies = self._hand.body, self._target
         with self._hand.body.simulation.lock:
             saved = [(body, body.configuration()) for body in bodies]
@@ -309,7 +309,7 @@ def _restore(saved: Sequence[tuple[BodyState, SavedConfiguration]]) -> None:
 
 @block
 def _disabled(body: BodyState) -> Generator[None]:
-    """Context manager that excludes a body from collision checks, and restores its enabled links afterwards."""
+    """Context manager that excludes a body from collision checks, and then restores its enabled links."""
     enabled = body.link_enabled
 
     def restore() -> None:

@@ -40,7 +40,7 @@ _DEVIATION = 0.01
 """Maximum deviation of a retimed motion from the straight lines between its waypoints [rad or m]."""
 
 _WITH_ACCELERATIONS = ("quartic", "quintic", "sextic")
-"""Interpolations that use accelerations at the waypoints."""
+"""Interpolations that also depend on accelerations at the waypoints."""
 
 _RATES = ("velocity", "acceleration", "jerk")
 

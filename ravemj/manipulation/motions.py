@@ -18,10 +18,10 @@ from ravemj.planning.space import Space
 from ravemj.planning.tracking import LARGEST_JUMP, track
 
 _SHORTCUTS = 100
-"""Number of attempted shortcuts of a path that keeps a constraint."""
+"""Number of attempted shortcuts of a path on a constraint."""
 
 _JITTER_TRIES = 1000
-"""Maximum number of random configurations tested near a start or goal in collision."""
+"""Number of random configurations tested near a start or goal in collision."""
 
 _CLOSE = 1e-6
 """Distance from a contact at which closing joints stop [rad or m]."""
@@ -76,10 +76,7 @@ def _jittered_on(
     jitter: float,
     random: np.random.Generator,
 ) -> Floats | None:
-    """Return an allowed configuration near ``configuration`` that keeps the constraint.
-
-    None means that ``configuration`` violates the constraint or no such neighbour is found.
-    """
+    """Return an allowed configuration near ``configuration``; None if it violates the constraint or none is found."""
     if not manifold.has(configuration):
         return None
 

@@ -141,7 +141,7 @@ class Processor:
     # Retimers
 
     def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> tuple[Waypoints, None]:
-        """Time waypoints within velocity and acceleration limits, regardless of collisions."""
+        """Time waypoints within the velocity and acceleration limits. Collisions are ignored."""
         profile, options, coordinates = profile_of(self.name, self.options), self.options, self.limits.coordinates
         is_base = bool(coordinates.translation or coordinates.rotation) and not self._is_of_goals()
         if is_base and profile.interpolation != "linear":
@@ -233,7 +233,7 @@ class Processor:
             motion.shorten(edges, self.limits, tries, self.random, self.proceed)
 
     def _written(self, profile: Interpolated, timed: Timed, *, marks: bool = False) -> Waypoints:
-        """Convert a timed path to waypoints in the trajectory's layout; ``marks`` adds a group ``iswaypoint``."""
+        """Convert a timed path to waypoints; ``marks`` adds a group ``iswaypoint``."""
         groups = copied(self.groups)
         for group in groups:
             group.interpolation = profile.interpolation
@@ -258,7 +258,7 @@ class Processor:
 
 
 def _timed(motion: list[MotionSegment], points: Floats) -> Timed:
-    """Return a motion as a timed path that starts and ends exactly at the first and last of ``points``."""
+    """Return a motion as a timed path, which starts and ends exactly at the first and last of the given points."""
     rest = np.zeros_like(points[0])
     values = np.array([*(piece.values for piece in motion), points[-1]])
     values[0] = points[0]

@@ -16,7 +16,7 @@ _REMEMBERED = 200
 """Number of last rejected configurations that are explained after a search."""
 
 _MOST_REGIONS = 6
-"""Maximum number of goal regions that an error message describes one by one."""
+"""Maximum number of regions that a message describes one by one."""
 
 
 class Cause(Enum):

@@ -20,7 +20,7 @@ from ravemj.model.scene import Axis
 _ROTATION = int(DOFAffine.RotationMask)
 _BASE = 6
 _APPROACH = 0.5
-"""Maximum share of the remaining clearance used in one step, since surfaces are curved."""
+"""Fraction of the remaining clearance that a step may use, since surfaces are curved."""
 
 
 class Keeper(NamedTuple):
@@ -81,7 +81,7 @@ class Moving:
         return len(self._frames) - 1
 
     def _new_rows(self) -> WholeBodyRows | None:
-        """Return the buffer for all Jacobians at once; None if only parts of the base move or joints are coupled."""
+        """Return the buffer for all Jacobians at once; None if only parts of the base move, or joints are coupled."""
         has_base = self._base.shape[1] > 0
         if has_base and not self._is_free:
             return None
@@ -241,7 +241,7 @@ class Moving:
         return near
 
     def _distances(self, keeper: Keeper) -> Inequality | None:
-        """Return inequalities that keep the minimum distance of near pairs; None if no pair is near."""
+        """Return constraints that keep near pairs apart by the minimum distance; None if no pair is near."""
         near = self._near(keeper)
         if not near:
             return None
@@ -266,7 +266,7 @@ def _carrier(robot: BodyState, body: BodyState, link: int) -> int | None:
 
 
 def _weight(body: BodyState) -> tuple[float, Floats]:
-    """Return mass [kg] and centre of mass [m] of a body together with its grabbed bodies."""
+    """Return the mass [kg] and the centre of mass [m] of a body with its grabbed bodies."""
     mass = float(body.inertias.masses.sum())
     moment = mass * np.nan_to_num(body.inertias.center_of_mass(body.link_transforms()))
     for grab in body.grabs:
@@ -283,7 +283,7 @@ def _angular(affine: int, axis: Vec3) -> Floats:
 
 
 def _moved(pose: Pose, twist: Sequence[float]) -> Pose:
-    """Return a pose after a displacement of its origin and a rotation, both in the world frame."""
+    """Return a pose after a displacement of its origin and a rotation by a vector, in world axes."""
     (x, y, z), (dx, dy, dz, a, b, c) = pose.position, twist
     angle = math.sqrt(a * a + b * b + c * c)
     half = math.sin(angle / 2) / angle if angle > 1e-12 else 0.5

@@ -69,5 +69,5 @@ class Certificate:
 
 
 def _rounded(number: float) -> str:
-    """Return a number with two significant digits and without exponent."""
+    """Return a number as text with two significant digits and without exponent."""
     return np.format_float_positional(number, precision=2, fractional=False, trim="-")

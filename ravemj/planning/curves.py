@@ -120,7 +120,7 @@ def _from_powers(number: int) -> Floats:
 
 
 def _weights(number: int, start: float, end: float) -> Floats:
-    """Return the matrix from a curve's control points to those of its part from ``start`` to ``end`` (blossom)."""
+    """Return the matrix from the control points of a curve to those of its part from ``start`` to ``end`` (blossom)."""
     matrix = np.zeros((number, number))
     for row in range(number):
         polynomial = np.ones(1)

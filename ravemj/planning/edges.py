@@ -105,7 +105,7 @@ class Edges:
         return Growth(points, free < count, arrives and free == count)
 
     def _shortened(self, start: Floats, target: Floats, longest: float) -> tuple[Floats, bool]:
-        """Return the displacement towards a target, at most ``longest``, and whether it reaches the target."""
+        """Return the step towards the target, at most ``longest``, and whether it reaches the target."""
         way = self.space.difference(target, start)
         far = self._length(way)
         return (way * (longest / far), False) if far > longest * (1 + ROUNDING) else (way, True)

@@ -21,7 +21,7 @@ _PATIENCE = 0.02
 """Interval [s] between checks of the budget, for planners that do not call the termination condition themselves."""
 
 _NO_SETTINGS = ("up", "name")
-"""OMPL methods ``setup`` and ``setName``, which do not set parameters."""
+"""OMPL methods ``setup`` and ``setName`` that do not set parameters."""
 
 
 class OmplError(Exception):
@@ -129,10 +129,7 @@ def _nearest(space: Space, configurations: Sequence[Floats], configuration: Floa
 
 
 def _apply(solver: Ompl, settings: Mapping[str, str]) -> None:
-    """Set OMPL parameters by their setters, such as ``goal_bias`` by ``setGoalBias``; others are ignored.
-
-    A value is parsed as an integer, else as a float, else as a boolean.
-    """
+    """Set parameters by OMPL's setters, ``goal_bias`` by ``setGoalBias``, to integers, floats or booleans."""
     for name, text in settings.items():
         setter = getattr(solver, "set" + "".join(map(str.capitalize, name.split("_"))), None)
         if name in _NO_SETTINGS or setter is None:
@@ -159,7 +156,7 @@ class _Questions:
         self.count = 0
 
     def safely(self, test: Callable[[], bool]) -> bool:
-        """Return the result of a test; False after an exception, which is stored."""
+        """Return the result of a test; False after an exception."""
         try:
             return not self._errors and bool(test())  # numpy has its own booleans
         except BaseException as error:  # raised again after the return from C++
@@ -167,7 +164,7 @@ class _Questions:
             return False
 
     def check(self) -> None:
-        """Raise the stored exception, if any, and drop it, since its traceback refers to OMPL's objects."""
+        """Raise a stored exception, and drop the reference to it, since its traceback refers to OMPL's objects."""
         if self._errors:
             raise self._errors.pop()
 
@@ -191,7 +188,7 @@ class _Questions:
 
 
 class _OmplSpace:
-    """Configuration space for OMPL: a box of weighted joint values, and a circle for each circular joint value."""
+    """Configuration space for OMPL: a box of weighted values, and a circle for each circular value."""
 
     def __init__(self, base: Ompl, space: Space) -> None:
         circular = space.coordinates.circular

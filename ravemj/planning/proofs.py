@@ -114,10 +114,7 @@ class Cases(NamedTuple):
 
 
 class _Examined(NamedTuple):
-    """Test results of intervals of a motion.
-
-    ``bounds`` are lower bounds of the distances of collision pairs [m]; ``undecided`` spans could not be proved.
-    """
+    """Test results of intervals: proven lower bounds of pair distances [m], and undecided spans."""
 
     intervals: Intervals
     cases: Cases
@@ -288,10 +285,7 @@ def _note_nearest(proof: Proof, spaces: Spaces, intervals: Intervals, cases: Cas
 
 
 def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof) -> None:
-    """Set ``proof.smallest_gap``, a lower bound of all distances [m], close to the smallest measured distance.
-
-    The intervals with the smallest bounds are subdivided, at most ``_REFINEMENTS`` times.
-    """
+    """Set ``proof.smallest_gap`` near the smallest measured distance, by subdividing the critical intervals."""
     proved, rest = _smallest(every)
     for _ in range(_REFINEMENTS):
         wanted = proof.nearest[0] - max(_TOLERANCE, _PART * proof.nearest[0])

@@ -78,10 +78,7 @@ def shortest_ramps(steps: Floats, start: Floats, end: Floats, speed: Floats, acc
 
 
 def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, acceleration: Floats) -> Floats:
-    """Return the times of motions that speed up to a peak velocity in positive direction, then slow down.
-
-    A time is infinite if there is no such motion.
-    """
+    """Return the times of motions that accelerate to a positive peak velocity and decelerate, else infinity."""
     with np.errstate(divide="ignore", invalid="ignore"):
         square = acceleration * steps + (start**2 + end**2) / 2
         peak = np.sqrt(np.maximum(square, 0.0))

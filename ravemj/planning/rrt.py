@@ -92,10 +92,10 @@ _LONGEST = 4.0
 """Maximum length of an edge added as a whole, a weighted distance: OpenRAVE's 100 steps of 0.04."""
 
 _TURN = 1e-6
-"""Distance between the unit directions of two edges up to which they count as collinear."""
+"""Maximum difference of the unit directions of two collinear edges."""
 
 _SAME = 1e-9
-"""Distance of path nodes that count as equal [rad or m]."""
+"""Tolerance of equal nodes of a path [rad or m]."""
 
 _MOST_LINES = 16
 """Maximum number of direct edges from starts to goals that are tested before any tree grows."""
@@ -337,7 +337,7 @@ def _reach(edges: Edges, tree: SearchTree, target: Floats, *, whole: bool = Fals
 
 
 def _path(edges: Edges, nodes: Sequence[Floats]) -> Floats:
-    """Return the path through tree nodes without repeated nodes and nodes on straight lines.
+    """Return a path through tree nodes without repeated or collinear ones.
 
     A collinear node is removed only if the longer edge is still allowed, since it is tested at other configurations.
     """

@@ -20,7 +20,7 @@ _WORTH = 3e-3
 """Minimum saving of a shortcut, as a fraction of the path length, because collision checks dominate the time."""
 
 _MOST_ENDS = 32
-"""Maximum number of waypoints to which straight lines from one waypoint are tested."""
+"""Maximum number of waypoints to which a straight line from one waypoint is tried."""
 
 
 def shorten(
@@ -90,7 +90,7 @@ def _without_detours(edges: Edges, path: Floats) -> Floats:
 
 
 _STRAIGHT = 1e-12
-"""Collinearity of two lines: 1 minus the cosine of the largest angle between them."""
+"""1 minus the cosine of the largest angle between two lines that count as collinear."""
 
 _WORTH_TIME = 1e-3
 """Minimum time saved by a shortcut, as a fraction of the duration of the part that it replaces."""
@@ -360,7 +360,7 @@ def motion_curves(pieces: list[MotionSegment]) -> list[Curve]:
 
 
 def _is_allowed(edges: Edges, piece: MotionSegment) -> bool:
-    """Return whether a segment is allowed after its start, tested in steps of the joint resolutions."""
+    """Return whether a segment is allowed everywhere after its start, tested in steps of the joint resolutions."""
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
     steps = edges.space.steps(farthest)

@@ -51,7 +51,7 @@ class Coordinates:
 
 
 _MOST_STEPS = 1_000_000
-"""Maximum number of tests per edge; each takes about 10 µs."""
+"""Maximum number of tests of a line; each takes about 10 µs."""
 
 
 @dataclass(frozen=True, slots=True)

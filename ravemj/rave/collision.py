@@ -44,7 +44,7 @@ _NO_LINKS: frozenset[LinkOf] = frozenset()
 _LOG = logging.getLogger("ravemj")
 
 _ARGUMENTS = ("ray", "link1", "link2", "link", "body1", "body2", "body", "bodyexcluded", "linkexcluded")
-"""Argument names of ``CheckCollision``, in positional order."""
+"""Names of the arguments of ``CheckCollision``, in positional order."""
 
 
 class CollisionChecker(Interface):

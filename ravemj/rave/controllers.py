@@ -175,7 +175,7 @@ class Controller(Interface):
         return np.zeros(len(self._robot_dofs()))
 
     def _robot_dofs(self) -> Ints:
-        """Return the DOF indices that the controller moves. The controller must have a robot."""
+        """Return the DOF indices that the controller moves; raise an error if it has no robot."""
         assert self._robot is not None
         return self.GetControlDOFIndices()
 
@@ -194,14 +194,14 @@ _SLACK = 1e-6
 
 
 class _Path(NamedTuple):
-    """Trajectory that a controller follows, and its columns that move the robot.
+    """A trajectory, and its columns that move the robot.
 
     Attributes:
         trajectory: A copy of the user's trajectory.
         columns: The columns of its waypoints that hold joint values.
         dofs: The DOF indices of these values.
         moves_base: Whether its waypoints have a pose of the robot's base.
-        grabs: The remaining grabs and releases, in the order of time.
+        grabs: The remaining changes of grabs, in the order of time.
     """
 
     trajectory: Trajectory

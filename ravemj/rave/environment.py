@@ -89,7 +89,7 @@ class _RobotRecord(NamedTuple):
 
 
 class _Record(NamedTuple):
-    """Copy of the state of an environment, for ``Environment.CloneSelf``."""
+    """State of an environment that ``Environment.CloneSelf`` copies."""
 
     name: str
     description: str
@@ -405,7 +405,7 @@ class Environment(Loading, Saving, Viewing):
         return f"RaveGetEnvironment({self._number})"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
-        """Print a table of the bodies in IPython, where ``repr`` would only name the environment."""
+        """Print a table of the bodies in IPython; ``repr`` names only the environment."""
         from ravemj.rave.tables import environment_text, print_pretty  # noqa: PLC0415 - html is slow to import
 
         del cycle
@@ -417,10 +417,10 @@ class Environment(Loading, Saving, Viewing):
 
 
 def _unpacked(kind: type[Environment], version: str, content: bytes) -> Environment:
-    """Restore a pickled environment, with simulation time stopped.
+    """Return a pickled environment with simulation time stopped.
 
     Raises:
-        RavemjError: the environment was pickled by another version of ravemj.
+        RavemjError: another version of ravemj pickled it.
     """
     if version != __version__:
         message = f"an environment that ravemj {version} pickled cannot be read by ravemj {__version__}"

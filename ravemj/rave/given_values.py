@@ -17,7 +17,7 @@ _VALUE_ROUNDING = 2e-10
 """Amount by which values may exceed joint limits without a warning when clamped [rad or m]; OpenRAVE's."""
 
 _VELOCITY_ROUNDING = 1e-10
-"""Amount by which velocities may exceed their limits [rad/s or m/s]."""
+"""Tolerance of velocity limits [rad/s or m/s]."""
 
 
 def full_values(
@@ -124,7 +124,7 @@ def limited_velocities(body: KinBody, limits: Floats, velocities: Floats, checkl
 
 
 def _report(body: KinBody, dof: int, message: str, effect: str, checklimits: int) -> None:
-    """React to a value outside its limits as ``checklimits`` says: log a warning, raise an error, or do nothing."""
+    """Log a warning about a value outside its limits, raise an error, or do nothing, as ``checklimits`` says."""
     if checklimits == CheckLimitsAction.CheckLimitsSilent:
         return
     joint = body.joint_of_dof(dof)

@@ -39,7 +39,7 @@ _BLOCK = 64
 """Number of candidate grasps per task of a worker process."""
 
 _ARROW = 0.035
-"""Length of the arrow drawn for a contact [m]."""
+"""Length of the arrow of a contact [m]."""
 
 _THIN = 0.0012  # m, radius of an arrow
 _LIMITING, _OTHER = (0.9, 0.25, 0.1), (0.15, 0.55, 0.25)
@@ -116,7 +116,7 @@ def grasps(  # noqa: PLR0913 - keyword arguments
 
 
 class _Query(NamedTuple):
-    """Grasp search with a robot's active manipulator; ``reach`` tells whether the arm must reach the grasps."""
+    """Grasp search of a robot's active manipulator; ``reach`` tells whether the arm has to reach the grasps."""
 
     robot: Robot
     body: KinBody
@@ -124,7 +124,7 @@ class _Query(NamedTuple):
     reach: bool
 
     def run(self, span: tuple[int, int] | None = None, progress: Callable[[int], object] | None = None) -> list[Grasp]:
-        """Test the candidate grasps in a range of indices, by default all."""
+        """Test the candidates in a range of indices, by default all."""
         arm, target = _active(self.robot), self.body.simulation_state
         reach = _reach(self.robot, arm) if self.reach else None
         state = self.robot.simulation_state
@@ -132,7 +132,7 @@ class _Query(NamedTuple):
 
 
 def _searched(query: _Query, processes: int) -> list[Grasp]:
-    """Test all candidate grasps, in this process or in several; return them."""
+    """Test all candidates in this process or in several, and return them."""
     robot, target = query.robot.simulation_state, query.body.simulation_state
     count = count_candidates(robot, _closing(_active(query.robot)), target, query.choices)
     with progress_bar("grasps", count) as show:
@@ -193,7 +193,7 @@ def _radius(body: KinBody) -> float:
 
 
 def _larger_part(wrench: Floats) -> tuple[Floats, tuple[float, float, float]]:
-    """Return the unit direction of a wrench's force or torque, whichever is larger, and its arrow's colour."""
+    """Return the direction of a wrench's force or torque, whichever is larger, and the colour of its arrow."""
     force, torque = wrench[:3], wrench[3:]
     part, colour = (force, _FORCE) if np.linalg.norm(force) >= np.linalg.norm(torque) else (torque, _TORQUE)
     return part / np.linalg.norm(part), colour

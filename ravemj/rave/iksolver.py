@@ -38,9 +38,9 @@ if TYPE_CHECKING:
 
 
 _SAME = 1e-7
-"""Largest difference of joint values that count as equal [rad or m]."""
+"""Maximum difference of joint values [rad or m] that count as equal."""
 _NEAR = 1e-4
-"""Largest squared distance between goal and tool that ``CallFilters`` accepts."""
+"""Maximum squared distance between the goal and the tool that ``CallFilters`` accepts."""
 
 _IGNORE_FILTERS = int(IkFilterOptions.IgnoreCustomFilters)
 _POSE = IkParameterization.Type.Transform6D
@@ -114,7 +114,7 @@ class FilteredSearch(ArmSearch):
 
     @cached_property
     def _goal_of_users(self) -> IkParameterization:
-        """The goal as an ``IkParameterization``, for user filters; cached, because its constructor checks the pose."""
+        """The goal as an ``IkParameterization``, for filters; cached, because its constructor checks the pose."""
         return self._given if isinstance(self._given, IkParameterization) else IkParameterization(self._given, _POSE)
 
     @block
@@ -148,7 +148,7 @@ class FilteredSearch(ArmSearch):
         return bool((np.abs(turned) < _SAME).all(axis=1).any())
 
     def _pass(self, filters: Iterable[Filter], row: Floats) -> bool:
-        """Return whether all filters accept a solution; collect the data that they attach."""
+        """Call filters for a solution and collect the data that they attach; return whether all accept."""
         for filter_ in filters:
             said = self._asked(filter_, row)
             action = IkReturnAction.Reject if said is None else said.GetAction()
@@ -225,7 +225,7 @@ _OF_POSES = {
     _Type.TranslationYAxisAngleXNorm4D,
     _Type.TranslationZAxisAngleYNorm4D,
 }
-"""Goal types whose solvers also accept a pose, of which they use the components of the type."""
+"""Goal types whose solvers also accept a pose and use only the constrained components."""
 
 
 def task_of(kind: IkParameterizationType) -> "Task":
@@ -371,7 +371,7 @@ class IkSolver(Interface):
         return replace(solver, steps=(*steps, *solver.steps[len(steps) :])) if steps else solver
 
     def _free_values(self, solver: "ArmSolutions", shares: ArrayLike | None) -> Floats | None:
-        """Convert free joint values, given as fractions of their ranges, to shape (k,); None means any values."""
+        """Convert free joint values from fractions of their ranges to joint values, shape (k,); None means any."""
         given = np.zeros(0) if shares is None else checked_numbers(shares, "freevalues")
         if not given.size:
             return None
@@ -462,7 +462,7 @@ class IkSolver(Interface):
         return [] if search.ended else answers
 
     def _numbers(self, goal: IkParameterization | Floats) -> Floats:
-        """Return a goal as the solver's input: a pose (4, 4), or the values of the goal type."""
+        """Return a goal as the solver's input: a pose (4, 4), or the values of its type."""
         kind = _Type.Transform6D if isinstance(goal, np.ndarray) else goal.GetType()
         if kind not in GOAL_TYPES:
             raise RavemjError("the goal is empty; give it a value and a type first")

@@ -79,7 +79,7 @@ class Joint(Member):
             return dynamics.joint_velocities(velocities, [self._scene])[0]
 
     def _own(self, values: Floats) -> Floats:
-        """Return this active joint's elements of a vector over all DOFs of the body, shape (axes,)."""
+        """Return this active joint's entries of a vector over all DOFs, shape (axes,)."""
         first = self._state.kinematics.first_dofs[self._index]
         return values[first : first + self.GetDOF()]
 
@@ -496,7 +496,7 @@ class Joint(Member):
         return np.array([getattr(axis, field) for axis in self._scene.axes], dtype=np.float64)
 
     def _set_axes(self, caller: str, **fields: ArrayLike) -> None:
-        """Set fields of all axes of the joint; on an error, none is changed."""
+        """Set fields of the axes; on an error, none is changed."""
         axes = list(self._scene.axes)
         for field, values in fields.items():
             numbers = checked_numbers(values, f"{caller}: values")

@@ -15,7 +15,7 @@ _PLUGINS = """
     basecontrollers basesamplers basesensors bulletrave configurationcache fclrave grasper ikfastsolvers logging oderave
     or_urdf pqprave qtcoinrave qtosgrave rmanipulation rplanners
 """
-"""Plugins of OpenRAVE and or_urdf whose features ravemj includes."""
+"""OpenRAVE's and or_urdf's plugins whose features ravemj includes."""
 
 
 def RaveInitialize(load_all_plugins: bool = True, level: int | None = None) -> int:

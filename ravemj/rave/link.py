@@ -373,7 +373,7 @@ class Link(Member):
             self._state.edit_link(self._index, groups=tuple(groups.items()))
 
     def _set_own_geometries(self, geometries: Sequence[scene.Geometry]) -> None:
-        """Replace the link's geometries, also in the group ``self``."""
+        """Replace the geometries of the link, also in the group ``self``."""
         self._set_groups({name: group for name, group in self._scene.groups if name != scene.OWN_SHAPES})
         self._set_geometries(geometries)
 

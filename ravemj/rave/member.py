@@ -37,7 +37,7 @@ class Member(ApiObject):
         """Description of the link or joint in the present scene."""
 
     def _gone(self, kind: str) -> RavemjError:
-        """Return the error for a link or joint that no longer exists, because its body was initialized again."""
+        """Return the error for a link or joint that no longer exists, since the body was initialized again."""
         return RavemjError(f"'{self._parent.GetName()}' has no {kind} {self._index} any more", ErrorCode.InvalidState)
 
     @abstractmethod

@@ -168,7 +168,7 @@ def _along(motion: BodyMotion) -> Iterator[None]:
 
 
 _ASPECT = 4 / 3
-"""Aspect ratio assumed for the initial camera; pages can have any."""
+"""Aspect ratio for which the initial camera is chosen; pages can have any."""
 
 _LOWEST_FPS, _HIGHEST_FPS = 0.01, 1000
 

@@ -210,7 +210,7 @@ _MAKERS: dict[InterfaceType, tuple[Callable[["Environment", str], object], Seque
     InterfaceType.trajectory: (RaveCreateTrajectory, ("GenericTrajectory",)),
     InterfaceType.viewer: (RaveCreateViewer, ()),
 }
-"""Factory and known names by interface type; the names of viewers are queried when needed."""
+"""Factory and known names of each interface type; the names of viewers are queried."""
 
 
 def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:

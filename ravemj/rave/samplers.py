@@ -151,10 +151,10 @@ class SpaceSampler(Interface):
 
 
 class _Random:
-    """Independent, uniform samples from the standard Mersenne Twister, seeded as in OpenRAVE."""
+    """Independent, uniformly distributed samples of the standard Mersenne Twister, seeded as in OpenRAVE."""
 
     kinds = frozenset(SampleDataType)
-    """Supported kinds of numbers."""
+    """The kinds of numbers."""
 
     def __init__(self) -> None:
         self._generator = np.random.RandomState()  # newer generators seed in another way
@@ -167,7 +167,7 @@ class _Random:
         self._dof = dof
 
     def limits(self) -> tuple[Floats, Floats]:
-        """Return the minimum and maximum of real samples, shape (dof,) each."""
+        """Return the minima and maxima of real numbers, shape (dof,) each."""
         return np.zeros(self._dof), np.ones(self._dof)
 
     def start(self, seed: int) -> None:
@@ -202,7 +202,7 @@ class _Halton(_Random):
 
 
 class _Configurations(_Random):
-    """Random configurations within limits, of all DOFs of a body or of a robot's active DOFs."""
+    """Random configurations within limits: of all DOFs of a body, or of the active DOFs of a robot."""
 
     kinds = frozenset({SampleDataType.Real})
 

@@ -83,16 +83,16 @@ class DescribedSensor(Interface):
             self.attached.edit(**changes)
 
     def _moved(self) -> None:
-        """React to a new pose of a sensor without a robot."""
+        """Handle a new pose of a sensor without a robot."""
 
     def _take_over(self) -> None:
-        """Restart after a change of the sensor's constant properties."""
+        """Restart after a change of the constant properties."""
 
     def take_state(self, other: "DescribedSensor") -> None:
         """Copy the state of another sensor of the same kind."""
 
     def _problem(self) -> str | None:
-        """Return the reason why the sensor cannot measure, or None if it can."""
+        """Return the reason why the sensor cannot measure, or None."""
         description, device = self.description, self.device
         if self.attached is not None and description.link is None:
             return "it is attached to no link"
@@ -237,7 +237,7 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
 """Device classes that viewers can draw, by command: for their measurements, and for their geometry."""
 
 _OFF = 1
-"""Difference between the numbers of an "off" command and its "on" command."""
+"""Offset from the number of an "on" command to that of its "off" command."""
 
 _SWITCH_BITS = 0x30  # the bits of a command's number that select what it switches
 
@@ -499,7 +499,7 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw the sensor geometry if that is switched on; ``anew`` redraws it after a change."""
+        """Draw the sensor geometry if this drawing is on; ``anew`` redraws it after a possible change."""
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
         device = self.device

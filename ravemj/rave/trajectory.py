@@ -405,7 +405,7 @@ class Trajectory(Interface):
         return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT).decode()!r})"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
-        """Print the short text in IPython, where ``repr`` would be long."""
+        """Print the short text in IPython; ``repr`` is long."""
         del cycle
         printer.text(str(self))
 

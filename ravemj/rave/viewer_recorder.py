@@ -23,7 +23,7 @@ _TIMINGS = ("simtime", "realtime", "controller")
 
 
 class _Order(NamedTuple):
-    """Settings of a video, given by the command ``Start``."""
+    """Settings of a video, from the command ``Start``."""
 
     width: int
     height: int
@@ -75,7 +75,7 @@ class ViewerRecorder(Module):
         return self._drawn > before
 
     def _picture(self, width: int, height: int) -> Frame:
-        """Return a frame as viewers draw it, with shadows if OpenGL uses a graphics card."""
+        """Return a frame like those of viewers; it has shadows if OpenGL draws with a graphics card."""
         env = self._env
         return env.renderer.render(env.default_camera(width / height), env.look(), Format(width, height))
 

@@ -81,7 +81,7 @@ def convert_group(
 
 
 def _labels(group: Group) -> Sequence[int | str]:
-    """Return a label for each value of a group, such as its DOF index."""
+    """Return labels that identify the values of a group, such as DOF indices."""
     if group.kind in JOINTS or group.kind in {"joint_torques", "grab"}:
         return joint_indices(group)
     if group.kind == "outputSignals":

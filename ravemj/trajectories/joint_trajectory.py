@@ -18,7 +18,7 @@ ANGLE_OR_LENGTH = "rad or m"
 """Unit of a joint of unknown type, as in ROS's messages."""
 
 _INTERPOLATIONS = ("linear", "cubic", "quintic")
-"""Interpolations that ROS controllers use between points with no, one and two derivatives."""
+"""Interpolations of ROS controllers between points with no, one and two derivatives."""
 
 
 @dataclass(frozen=True, eq=False, init=False, slots=True)

@@ -232,11 +232,7 @@ class _MessagePoint:
 
 
 def _same_for_all(rows: list[list[float]], name: str, source: Source) -> list[list[float]] | None:
-    """Return a field's values at all points; None if no point has the field.
-
-    Raises:
-        SourceError: only some points have the field.
-    """
+    """Return a field's values at all points; None if no point has the field. Raise an error if only some have it."""
     empty = [number for number, row in enumerate(rows) if not row]
     if len(empty) == len(rows):
         return None

@@ -170,7 +170,7 @@ def followed_file(simulation: Simulation, read: MotionFile) -> BodyMotion:
 
 
 def _named_robot(simulation: Simulation, names: Sequence[str]) -> BodyState:
-    """Return the robot that has the most joints in ``names``; of several, the first."""
+    """Return the robot with the most joints in ``names``; the first one if there are several."""
     return max(_robots(simulation), key=lambda robot: len(set(names).intersection(robot.scene.dof_names)))
 
 

@@ -191,11 +191,7 @@ def did_you_mean(name: str, joint_names: Sequence[str]) -> str:
 
 
 def _numbers(file: str, lines: Iterable[tuple[int, list[str]]], width: int, time: int) -> "array[float]":
-    """Return all cells of a table as one array, row by row.
-
-    Raises:
-        SourceError: a row has the wrong width, or times do not increase.
-    """
+    """Return all cells in one array, row by row. Check that all rows have ``width`` cells, and that times increase."""
     numbers = array("d")
     before = -math.inf
     for line, cells in lines:

@@ -141,7 +141,7 @@ class LinkChain:
         return ways
 
     def _first_values(self, values: Floats) -> list[Floats]:
-        """Return the value of the first axis of each joint, shape (N,) each; empty if the body has no mimic joints."""
+        """Return the value of the first axis of each joint, shape (N,) each; empty without mimic joints."""
         mimic = self._kinematics.mimic
         if not mimic.joints:
             return []
@@ -151,7 +151,7 @@ class LinkChain:
 
 
 def _axis_frame(joint: Joint, axis: int) -> Floats:
-    """Return the frame of a joint axis in its parent link, shape (4, 4): at the anchor, with z along the axis."""
+    """Return the frame of a joint's axis in its parent link: at the anchor, with z along the axis, shape (4, 4)."""
     frame = np.eye(4)
     frame[:3, 3] = joint.anchor
     if not joint.is_ball:

@@ -119,6 +119,6 @@ def cross(first: Floats, other: Floats) -> Floats:
 
 
 def _carried(twists: Floats, screws: Floats) -> Floats:
-    """Return the time derivative of screws that move with the given twists."""
+    """Return the time derivative of screws moving with given twists."""
     spin, axis = twists[:, :3], screws[:, :3]
     return np.concatenate((cross(spin, axis), cross(spin, screws[:, 3:]) + cross(twists[:, 3:], axis)), axis=1)

@@ -251,7 +251,7 @@ class Clearances:
         self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
 
     def _measure_triangles(self, cases: _Cases, some: Ints) -> None:
-        """Measure non-convex meshes by their triangles, if their hulls are too close, and raise the gap bounds."""
+        """Measure non-convex meshes whose hulls are too close by their triangles, and raise the bounds."""
         for case in some.tolist():
             self._place(int(cases.rows[case]))
             pair = cases.pairs[case]
@@ -261,7 +261,7 @@ class Clearances:
 
 
 def _middles(cases: Ints, pairs: Ints) -> Ints:
-    """Return, of the undecided cases of each pair, the middle one."""
+    """Return the middle one of each pair's undecided cases."""
     order = np.argsort(pairs[cases], kind="stable")
     _, starts, counts = np.unique(pairs[cases][order], return_index=True, return_counts=True)
     return np.sort(cases[order[starts + counts // 2]])
@@ -317,7 +317,7 @@ def has_supports(model: mujoco.MjModel, geoms: Ints) -> bool:
 
 
 def _hull(model: mujoco.MjModel, mesh: int) -> Floats:
-    """Return the vertices of the convex hull of a mesh, shape (n, 3)."""
+    """Return the vertices of the hull of a mesh, shape (n, 3)."""
     start = int(model.mesh_vertadr[mesh])
     vertices = model.mesh_vert[start : start + int(model.mesh_vertnum[mesh])].astype(float)
     graph = int(model.mesh_graphadr[mesh])

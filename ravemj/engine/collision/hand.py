@@ -154,7 +154,7 @@ class HandTests:
         return None
 
     def _touches(self, pair: Pair) -> bool:
-        """Return whether two geoms, whose hulls overlap, touch."""
+        """Return whether two geoms touch, given that their hulls overlap."""
         if pair not in self._touching:
             self._touching[pair] = self._world.shapes.touch(*pair)
         return self._touching[pair]

@@ -170,7 +170,7 @@ def kept_in_place(body: BodyState) -> Generator[None]:
 
 
 def _bring_links_back(body: BodyState, values: Floats) -> None:
-    """Undo displacements of links: return them to the poses given by the joints."""
+    """Move displaced links back to the poses given by their joints."""
     if len(values) and body.kinematics.displaced:
         body.set_values(body.kinematics.values())
 
@@ -231,7 +231,7 @@ def _apart_from(world: CollisionWorld, pairs: Pairs, others: Pairs) -> Pairs:
 
 
 def _keys(pairs: Ints) -> Ints:
-    """Encode each pair of geoms as one number."""
+    """Encode each pair as a number."""
     return pairs[:, 0] * _KEY + pairs[:, 1]
 
 

@@ -15,7 +15,7 @@ from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
 from ravemj.engine.simulation.world_model import WorldModel
 
 _BODIES_PER_PAIR = 64
-"""Number of bodies whose collision detection by MuJoCo takes as long as one exact pair test."""
+"""Number of bodies for which MuJoCo's collision detection takes as long as one exact pair test."""
 
 # Rows are summed fastest by a product with ``_ONES``, and taken fastest with ``mode="clip"``; all of them are there.
 _ONES = np.ones(3)

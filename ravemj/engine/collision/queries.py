@@ -234,5 +234,5 @@ def _boxes(bodies: Iterable[BodyState]) -> list[Bounds]:
 
 
 def _distance(box: Bounds, point: Floats) -> float:
-    """Return the distance from a point to the farthest corner of a box."""
+    """Return the distance of a point from the farthest corner of a box."""
     return float(np.linalg.norm(np.maximum(np.abs(box.low - point), np.abs(box.high - point))))

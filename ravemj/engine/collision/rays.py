@@ -121,7 +121,7 @@ class RayCaster:
 
 
 def _of_one_start(rays: Floats, chosen: Ints) -> list[Ints]:
-    """Group the chosen rays by common starting point; return their indices."""
+    """Group the chosen rays by start; return their indices."""
     order = chosen[np.lexsort(rays[chosen, :3].T)]
     ends = np.flatnonzero((rays[order[1:], :3] != rays[order[:-1], :3]).any(axis=1)) + 1
     return np.split(order, ends)

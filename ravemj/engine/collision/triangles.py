@@ -143,10 +143,9 @@ class TriangleTests:
         segment: Floats,
         enough: float = -np.inf,
     ) -> float:
-        """Return the smallest distance of the candidates [m], at most ``limit``; they are sorted by lower bound.
+        """Return the smallest distance of the candidates [m], at most ``limit``; they are sorted by their lower bounds.
 
-        Triangles are measured in the scratch model against its geom ``place``, until a distance is at most ``enough``
-        [m].
+        Triangles are measured in the scratch model against its geom ``place``, until one is within ``enough`` [m].
         """
         best, nearest = limit, np.zeros(6)
         for bound, triangle, other in candidates:
@@ -214,7 +213,7 @@ class _Triangles:
         self.tree.endModel()
 
     def near(self, centre: Floats, half: Floats, limit: float) -> Iterable[_Candidate]:
-        """Yield the triangles whose bounding boxes are within ``limit`` of another box, the nearest first.
+        """Yield the triangles whose boxes are within ``limit`` of another box, the nearest first.
 
         ``centre`` and ``half`` are the other box's centre and half extents in the frame of the mesh [m], shape (3,).
         """
@@ -227,7 +226,7 @@ class _Triangles:
 
 
 def _mesh_arrays(model: mujoco.MjModel, mesh: int) -> tuple[Floats, Ints]:
-    """Return vertices and triangles of a mesh, in the frame of geoms that use it."""
+    """Return vertices and triangles of a mesh, in the frame of its geoms."""
     first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
     first_face, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
     vertices = model.mesh_vert[first : first + count].astype(np.float64)

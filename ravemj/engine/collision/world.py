@@ -167,7 +167,7 @@ class CollisionWorld:
         return batch.bind("ncon")[:count] > 0
 
     def _have_contacts_one_by_one(self, masks: Masks, qpos: Floats) -> NDArray[np.bool_]:
-        """Compute ``have_contacts`` in one thread, where a ``Batch`` would be slower, since it computes more."""
+        """Compute ``have_contacts`` in one thread; a ``Batch`` would be slower, since it computes more."""
         model, data, target = self._model, self._data, self._data.qpos
         place, detect = mujoco.mj_kinematics, mujoco.mj_collision
         counts: list[int] = []

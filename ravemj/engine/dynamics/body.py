@@ -236,10 +236,7 @@ class BodyDynamics:
         return qvel
 
     def _set_roots(self, target: Floats, values: Mapping[int, Floats] | Floats) -> None:
-        """Write velocities or accelerations of root links, given by link in world axes.
-
-        MuJoCo expects the angular part in link axes.
-        """
+        """Write velocities or accelerations of roots, by link: linear in world axes, angular in link axes."""
         self._kinematics.place()
         for root, first in zip(self._kinematics.roots, self._kinematics.root_qvel, strict=True):
             target[first : first + 3] = values[root][:3]
@@ -302,7 +299,8 @@ class BodyDynamics:
         """Write velocities and derived quantities into MuJoCo's data, unless they are already there.
 
         Args:
-            velocities: Link velocities, shape (links, 6), in an immutable array; they determine all joint velocities.
+            velocities: Link velocities, shape (links, 6), in an immutable array; they determine those of roots and
+                joints.
             with_roots: Whether to set the velocities of the roots, too.
         """
         kinematics = self._kinematics
@@ -327,7 +325,7 @@ class BodyDynamics:
         mujoco.mj_comVel(self._model, self._data)
 
     def _set_joint_velocities(self) -> None:
-        """Write joint velocities, and the accelerations that coupled joints have at constant DOF velocities."""
+        """Write the joint velocities, and the accelerations of coupled joints at constant DOF velocities."""
         if self._coupling_matrix is not None:
             self._coupling_matrix.dot(self._rates, self._qvel)
             return
@@ -338,7 +336,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write the sum of DOF, velocity-dependent and additional root link accelerations, (6,), into ``qacc``."""
+        """Write the sum of DOF, velocity-dependent and additional root accelerations (6,) into ``qacc``."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0
@@ -375,7 +373,7 @@ class BodyDynamics:
         return self._of_dofs(self._forces)
 
     def _needed(self, forces: Floats) -> None:
-        """Write the generalized forces that cause the motion in MuJoCo's data, shape (nv,), motors included."""
+        """Write the generalised forces that the motion in MuJoCo's data requires, shape (nv,)."""
         mujoco.mj_rne(self._model, self._data, 1, forces)
         if self.motors is not None:
             inner = self._inner
@@ -435,12 +433,12 @@ class BodyDynamics:
         self._gravity[...] = self._free_fall[1]
 
     def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
-        """Add external wrenches on links, at their centres of mass, to the generalized forces."""
+        """Add external wrenches on links, at their centres of mass, to the generalised forces."""
         for link, wrench in external.items():
             body_id = self._body_ids[link]
             mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], self._xipos[body_id], body_id, forces)
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:
-    """Return the acceleration of a link at constant angular velocity, shape (6,): ``w x v`` at its origin, then 0."""
+    """Return the acceleration of a link with constant angular velocity, shape (6,): ``w x v`` of its origin, then 0."""
     return np.concatenate((cross_rows(velocity[3:], velocity[:3]), np.zeros(3)))

@@ -110,7 +110,7 @@ class CouplingMap:
 
 
 class _Partials:
-    """Mimic equation with its symbolic derivatives, computed on first use."""
+    """Mimic equation with its derivatives, computed on first use."""
 
     def __init__(self, expression: "Expression") -> None:
         self.expression = expression
@@ -224,7 +224,7 @@ def _series(square: Floats, first: int) -> tuple[Floats, Floats]:
 
 
 def _crossing(vector: Floats) -> Floats:
-    """Return the skew-symmetric cross product matrix of a vector, shape (3, 3, ...)."""
+    """Return the cross product matrix of a vector, shape (3, 3, ...)."""
     x, y, z = vector
     zero = np.zeros_like(x)
     return np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]])

@@ -46,7 +46,7 @@ class CoordinateTree:
         self.moves = self._moves()
 
     def _moves(self) -> Floats:
-        """Return a matrix, shape (links, count), of 1 if a coordinate moves a link, else 0."""
+        """Return a matrix, shape (links, count), with 1 if a coordinate moves a link, else 0."""
         moves = np.zeros((len(self.last), self.count))
         for link, last in enumerate(self.last):
             index = last

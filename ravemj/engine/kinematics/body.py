@@ -148,7 +148,7 @@ class BodyKinematics:
         ]
 
     def _set_free_passive(self) -> None:
-        """Set the passive joints, except mimic joints, to their initial values; afterwards only physics moves them."""
+        """Set passive joints that are not mimic joints to their first values; afterwards only physics moves them."""
         body, of_passive = self.body, self.joint_qpos[len(self.first_dofs) :]
         for joint, values, places in zip(body.passive_joints, self._passive_values, of_passive, strict=True):
             if joint.mimic is not None or not places:
@@ -184,7 +184,7 @@ class BodyKinematics:
         return ShownValues(self.body.joints, self.first_dofs)
 
     def _find_mimic_joints(self, body: KinBody) -> None:
-        """Find the mimic joints, and those of them that are affine in one DOF."""
+        """Find the mimic joints, and which of them are affine in one DOF."""
         # A body without DOFs has no mimic joints: OpenRAVE never sets a value there.
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self._mimic_qpos = {
@@ -198,7 +198,7 @@ class BodyKinematics:
         self._are_multiples = len(self._multiples) == len(self.mimic.joints)
 
     def _touch(self) -> None:
-        """Update both stamps, after a change of more than joint values."""
+        """Update both stamps after a change of more than joint values."""
         self.stamp += 1
         self.pose_stamp = self.stamp
 
@@ -307,7 +307,7 @@ class BodyKinematics:
         self._touch()
 
     def _undo_displacement(self) -> None:
-        """Undo ``place_links``: let the joints determine the link poses again. Root links do not move."""
+        """Undo ``place_links``: joints determine the link poses again; the roots do not move."""
         self.model.body_pos[:], self.model.body_quat[:] = self._rest
         self.displaced = False
         self._touch()
@@ -412,7 +412,7 @@ class BodyKinematics:
 
 
 def _others(count: int, first: list[int], width: int) -> slice | Ints:
-    """Return the indices below ``count`` that are outside the ranges of length ``width`` starting at ``first``."""
+    """Return the indices below ``count`` that are outside the ranges starting at ``first``, of length ``width``."""
     taken = {index for start in first for index in range(start, start + width)}
     return _index_range(np.array([index for index in range(count) if index not in taken], dtype=int))
 

@@ -50,7 +50,7 @@ def _displace(kinematics: "BodyKinematics", placed: Floats, wanted: Floats) -> N
 
 
 def _inverses(transforms: Floats) -> Floats:
-    """Return the inverses of rigid transforms, shape (n, 4, 4)."""
+    """Return the inverse of each of many rigid transforms, shape (n, 4, 4)."""
     inverses = np.zeros_like(transforms)
     inverses[:, :3, :3] = rotations = transforms[:, :3, :3].transpose(0, 2, 1)
     inverses[:, :3, 3:] = -rotations @ transforms[:, :3, 3:]

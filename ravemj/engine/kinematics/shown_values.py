@@ -70,7 +70,7 @@ class _SingleAxes:
         return R_parent_world @ T_world_links[self._children, :3, :3] @ self._R_child_parent, R_parent_world
 
     def angles(self, T_world_links: Floats) -> Floats:
-        """Return the values of revolute joints [rad], in [-pi, pi]."""
+        """Return the values of revolute joints [rad], within [-pi, pi]."""
         turned, _ = self._turned(T_world_links)
         products = turned.reshape(-1, 9) @ _PRODUCTS + _EYE
         largest = products[:, ::5].argmax(axis=1)  # scaled by the squares, for accuracy

@@ -59,7 +59,7 @@ def compile_document(document: MjcfDocument) -> CompiledModel:
 
 
 def _strip(spec: mujoco.MjSpec, document: MjcfDocument) -> None:
-    """Remove elements that are expensive to compile and do not affect bodies."""
+    """Remove expensive elements that do not affect bodies."""
     spec.compiler.fusestatic = False
     spec.compiler.discardvisual = False
     spec.memory = -1

@@ -28,7 +28,7 @@ _NUMBERS = ("hfield",)
 _COPIES = {"replicate": "count", "composite": "count", "flexcomp": "count"}
 _MOST_COPIES = 100_000
 _MOST_LOOKED_AT = 100
-"""Maximum number of files of a folder that are searched for the model that includes a partial model."""
+"""Maximum number of files in a folder that are searched for the model that includes a partial one."""
 
 
 class StartTag(NamedTuple):
@@ -152,10 +152,10 @@ class MjcfDocument:
         return next((path for path in paths if os.path.isfile(path)), None)
 
     def _read(self, path: str, name: str, tag: StartTag) -> None:
-        """Record a file as read.
+        """Record that a file is read.
 
         Raises:
-            SourceError: the file must not be read.
+            SourceError: it must not be read.
         """
         is_raw = tag.name in _NUMBERS and not path.lower().endswith(".png")
         folder = os.path.abspath(os.path.dirname(self.path))
@@ -188,7 +188,7 @@ class MjcfDocument:
                 MjcfDocument.parse(path, content_of(path, tag.source), self.access)
 
     def _check_counts(self) -> None:
-        """Reject models with too many replicas, before MuJoCo creates them."""
+        """Reject excessive numbers of replicas before MuJoCo creates them."""
         for tag in self.tags:
             total = 1.0
             for word in tag.attributes.get(_COPIES.get(tag.name, ""), "").split():

@@ -20,9 +20,9 @@ _ROUNDING = 1e-9
 
 
 class _Follower(NamedTuple):
-    """Equation of a mimic joint: a polynomial in the displacement of one leader, or linear in those of several.
+    """Equation of a mimic joint: a polynomial in one leader's displacement, or linear in those of several leaders.
 
-    Displacements are relative to MuJoCo's ``ref``.
+    Displacements are relative to ``ref``.
     """
 
     joint: int
@@ -79,7 +79,7 @@ def _followers(model: mujoco.MjModel) -> Iterator[_Follower]:
 
 
 def _of_tendons(model: mujoco.MjModel, first: int, second: int, polynomial: list[float]) -> Iterator[_Follower]:
-    """Yield the equation of a fixed tendon's first joint, if it is linear in the other joints."""
+    """Yield the equation of the first joint of a fixed tendon, if it is linear in the other joints."""
     own = _joints_of(model, first)
     other = {} if second < 0 else _joints_of(model, second)
     if own is None or other is None or not own or (other and any(polynomial[2:])):
@@ -94,7 +94,7 @@ def _of_tendons(model: mujoco.MjModel, first: int, second: int, polynomial: list
 
 
 def _joints_of(model: mujoco.MjModel, tendon: int) -> dict[int, float] | None:
-    """Return the joints of a fixed tendon with their coefficients; None if the tendon is spatial."""
+    """Return the joints of a fixed tendon with their coefficients; None for a spatial one."""
     first = int(model.tendon_adr[tendon])
     wraps = range(first, first + int(model.tendon_num[tendon]))
     if any(model.wrap_type[wrap] != mujoco.mjtWrap.mjWRAP_JOINT for wrap in wraps):
@@ -144,7 +144,7 @@ def _image(model: mujoco.MjModel, tree: BodyTree, follower: _Follower, constant:
 
 
 def _with_room(axis: Axis, low: float, high: float) -> Axis:
-    """Return a mimic joint's axis with limits wide enough for all its values, since MuJoCo does not clamp it."""
+    """Return the axis of a mimic joint with limits that contain all its values, since MuJoCo does not clamp it."""
     if axis.circular or (axis.lower - _ROUNDING <= low and high <= axis.upper + _ROUNDING):
         return axis
     lower, upper = min(axis.lower, low), max(axis.upper, high)

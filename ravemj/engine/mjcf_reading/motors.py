@@ -26,7 +26,7 @@ def joint_torques(model: mujoco.MjModel) -> list[float]:
 
 
 def _strength(model: mujoco.MjModel, index: int) -> float:
-    """Return the maximum torque or force of an actuator on its joint; 0 if it has no limit."""
+    """Return the maximum torque or force of an actuator on its joint; 0 without a limit."""
     gear = float(abs(model.actuator_gear[index, 0]))
     if model.actuator_forcelimited[index]:
         return gear * float(np.abs(model.actuator_forcerange[index]).max())

@@ -152,7 +152,7 @@ class _OwnBody:
         return body
 
     def _pose(self, link: int) -> Pose:
-        """Return the pose of a link in its parent according to the MJCF."""
+        """Return the pose of a link in its parent from the MJCF."""
         return self._reader.pose(self._bodies[link])
 
     def _link(self, index: int, link: Link) -> Link:

@@ -36,7 +36,7 @@ def _geoms(model: mujoco.MjModel, body: int, colliding: set[int]) -> list[int]:
 
 
 def _named_pairs(model: mujoco.MjModel) -> set[tuple[int, int]]:
-    """Return the pairs of bodies whose geoms have an explicit ``<pair>``."""
+    """Return the pairs of bodies whose geoms are named in ``<pair>``."""
     bodies = zip(
         model.geom_bodyid[model.pair_geom1].tolist(), model.geom_bodyid[model.pair_geom2].tolist(), strict=True
     )
@@ -52,7 +52,7 @@ def _meet(first: set[tuple[int, int]], second: set[tuple[int, int]]) -> bool:
 
 
 def _are_filtered(model: mujoco.MjModel, body: int, other: int) -> bool:
-    """Return whether MuJoCo filters two bodies' collisions: they are welded together, or as parent and child."""
+    """Return whether MuJoCo ignores collisions of two bodies: they are fixed together, or parent and child."""
     first, second = int(model.body_weldid[body]), int(model.body_weldid[other])
     if first == second:
         return True

@@ -190,7 +190,7 @@ class GeomReader:
         return Pose(vector(self._model.mesh_pos[number]), quaternion(self._model.mesh_quat[number]))
 
     def _read_mesh(self, number: int, T_file_mesh: Pose) -> tuple[Mesh, MeshFile | None]:
-        """Return a mesh and its file. Files written by ravemj are read again, since MuJoCo's mesh has fewer digits."""
+        """Return a mesh and its file; a file written by ravemj is read, since it has more digits than MuJoCo's mesh."""
         model, written = self._model, self._compiled.spec.meshes[number]
         path = self._compiled.document.paths.get(base_name(written.file))
         own = None if path is None else read_written(path)

@@ -103,7 +103,7 @@ class TreeReader:
         return BodyTree(0, builder, {0: 0})
 
     def _add(self, tree: BodyTree, body: int) -> None:
-        """Add a body to the tree: its joints, the links between them, and its own link; its parent is already there."""
+        """Add a body after its parent: its joints, the links between them, and its own link."""
         model, builder = self._model, tree.builder
         T_parent_body = self.pose(body)
         parent = int(model.body_parentid[body])

@@ -80,7 +80,7 @@ def prove(robot: BodyState, arm: Manipulator, target: BodyState, friction: float
 
 
 class _Experiment:
-    """Simulation of a hand, fixed to the world, and an object that it grasps.
+    """Model of a hand that is fixed to the world, and of an object.
 
     The joints of the arm are removed, so the hand has its pose at joint values of 0. Object and gravity are transformed
     accordingly.
@@ -103,7 +103,7 @@ class _Experiment:
         self._pressed = self._pressing_forces(hand_names)
 
     def _edit(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
-        """Remove the arm's joints, damp the closing joints of the hand, and lock its other joints."""
+        """Remove the joints of the arm, damp the closing joints, and lock the others of the hand."""
         signs = dict(zip(self._arm.gripper_dofs, self._arm.chucking_direction, strict=True))
         removed: set[str] = set()
         dof = 0
@@ -167,7 +167,7 @@ class _Experiment:
         return forces
 
     def run(self, gravity: Floats) -> Proof:
-        """Press with the fingers, then lift and shake; stop early if the object moves too far in the hand."""
+        """Press with the fingers, then lift and shake the object; stop early if it moves too far in the hand."""
         model, data = self._model, self._data
         rotation = self._T_model_world[:3, :3]
         model.opt.gravity[:] = 0.0
@@ -190,7 +190,7 @@ class _Experiment:
 
 
 def _accelerations(gravity: Floats) -> Iterator[Floats]:
-    """Yield the hand's acceleration in the world at each time step, shape (3,): upwards, then back and forth."""
+    """Yield the acceleration of the hand in the world at each time step, shape (3,): up, then back and forth."""
     length = float(np.linalg.norm(gravity))
     up = -gravity / length if length else np.array([0.0, 0.0, 1.0])
     count = round(_LIFTING / _TIMESTEP)
@@ -203,6 +203,7 @@ def _accelerations(gravity: Floats) -> Iterator[Floats]:
 
 
 def _fixed(robot: KinBody) -> KinBody:
+    """Return a robot with a fixed base and without grabbed bodies."""
     return replace(robot, grabs=(), links=(replace(robot.links[0], static=True), *robot.links[1:]))
 
 

@@ -11,7 +11,7 @@ from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.simulation import BodyState
 
 _FREQUENCY = 15.0
-"""Natural frequency of the dragging spring [rad/s]; with it, the spring settles within 0.2 s and sags by 4 cm."""
+"""Natural frequency of the dragging spring [rad/s]: it settles within 0.2 s, and sags by 4 cm."""
 
 
 @dataclass
@@ -75,7 +75,7 @@ class Loads:
 
 
 def _motor_rows(body: PhysicalBody, motor: Motor) -> tuple[Ints, Floats, Floats]:
-    """Return indices in ``qvel``, velocities and maximum torques of the joints driven by a motor."""
+    """Return the indices of the driven joints in ``qvel``, their velocities and maximum torques."""
     kinematics = body.state.kinematics
     coordinates = body.state.dynamics.tree.of_qpos
     places = np.flatnonzero(kinematics.qpos_indices[motor.dofs] != NO_QPOS)

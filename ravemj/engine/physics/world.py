@@ -193,7 +193,7 @@ class Physics:
         return touches
 
     def _body_id(self, state: BodyState, link: int) -> int | None:
-        """Return MuJoCo's index of a link after updating contact forces; None before the first step."""
+        """Return MuJoCo's index of a link, after computing the forces on it; None before the first step."""
         body = self._bodies.get(state)
         if body is None:
             return None
@@ -225,5 +225,6 @@ class Physics:
 
 
 def _columns(pairs: Iterable[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Return the first and the second vectors of pairs, shape (n, 3) each."""
     both = np.array(list(pairs)).reshape(-1, 2, 3)
     return both[:, 0], both[:, 1]

@@ -19,21 +19,21 @@ _LEFT, _RIGHT = 212.0, 62.0
 
 _COLUMN_TOP, _COLUMN_WIDTH, _COLUMN_HEIGHT = 104.0, 44.0, 22.0
 _WHEEL = 180.0
-"""Space below the column of buttons for the camera wheel, its label and the bottom row [points]."""
+"""Margin below the column of buttons for the camera wheel, its label and the bottom row [points]."""
 
 _BAR, _ICON = 26.0, 28.0
 _CLOCK, _SPEED, _PASSED = 110.0, 44.0, 130.0
 _SHORTEST_TRACK = 80.0
 _JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 180.0, 104.0, 84.0
 _NARROWEST = 0.2
-"""Minimum width of names and slider tracks on narrow views, as a fraction of their usual widths."""
+"""Minimum width of names and tracks on narrow views, as a fraction of their usual widths."""
 
 _LETTER = 6.9
 """Typical width of a letter [points]."""
 
 _KNOB, _SCROLL_BAR = 8.0, 4.0
 _LOWEST_VIEW = 420.0
-"""Minimum height of a view that has the column of buttons [points]."""
+"""Minimum height of a view with the column of buttons [points]."""
 
 _Rgba = tuple[float, float, float, float]
 _BACK: _Rgba = (0.15, 0.15, 0.17, 0.8)
@@ -186,7 +186,7 @@ def _time_bar(time: list[Control], size: tuple[int, int], row: int) -> dict[Cont
 
 
 def _around(places: dict[Control, Rect]) -> Rect:
-    """Return the rectangle that encloses the controls of a row."""
+    """Return the rectangle around the controls of a row."""
     first, *_, last = places.values()
     return first._replace(width=last.x + last.width - first.x)
 
@@ -227,14 +227,14 @@ def shortened(labels: list[str], most: int) -> dict[str, str]:
 
 
 def _row_text(text: str, most: int) -> str:
-    """Shorten an indented name to ``most`` letters: first reduce the indentation, then drop the middle."""
+    """Shorten an indented name to ``most`` letters: reduce the indentation, then drop the middle."""
     name = text.lstrip()
     indent = min(len(text) - len(name), most // 3)
     return indent * " " + shortened([name], most - indent)[name]
 
 
 def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[Panel]:
-    """Return what is drawn of a slider: groove, knob, value, and the name for joints."""
+    """Return the panels of a slider: groove, knob and value text, for joints also the name."""
     x, y, width, height = rect
     part = (min(max(control.value, control.lower), control.upper) - control.lower) / (control.upper - control.lower)
     middle, knob = y + height / 2, x + part * (width - _KNOB)
@@ -251,7 +251,7 @@ def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[
 
 
 def _icon(control: Control, rect: Rect) -> list[Panel]:
-    """Return what is drawn of a playback control: its text or an icon, play, pause or step."""
+    """Return the text of a control or its icon: triangle (play), bars (pause), both (step)."""
     x, y = rect.x + rect.width / 2, rect.y + rect.height / 2
     if control.text:
         return [Panel(rect, _CLEAR, control.text)]

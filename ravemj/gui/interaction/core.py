@@ -192,7 +192,7 @@ class Interaction:
             )
 
     def _highlight(self, hit: Hit | None) -> Primitives | None:
-        """Return the highlight of the handle under the pointer, or None."""
+        """Return the highlight of the handle under the pointer; None if there is none."""
         at = self._controller.free_pointer()
         is_fixed = self.mode is Mode.CAMERA or self._selector.is_fixed
         return None if at is None or is_fixed else self._selector.highlight(self.view, at, hit)

@@ -131,7 +131,7 @@ class Cube:
 
 
 def _distance_on_screen(view: Viewpoint, at: tuple[float, float], ends: Floats) -> float:
-    """Return the distance from a screen point to a projected segment [points]; infinite if it is behind the camera."""
+    """Return the distance from a point of the screen to a projected segment [points]; infinite behind the camera."""
     (start, end), depths = view.camera.project(ends, *view.size)
     if (depths <= 0).any():
         return np.inf

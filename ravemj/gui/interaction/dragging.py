@@ -17,10 +17,10 @@ Follow = Callable[[ViewRay], None]
 """Callback of a drag; its argument is the current ray of the pointer."""
 
 _FLATTEST = 0.02
-"""Sine of the angle between ray and plane below which their intersection is not used."""
+"""Sine of the angle between ray and plane below which their intersection is ill-conditioned."""
 
 _ASLANT = 0.3
-"""Sine of the angle between viewing ray and rotation plane below which dragging follows the rim, not the ray."""
+"""Sine of the angle between ray and rotation plane below which the angle follows the pointer's motion along the rim."""
 
 
 def move_by_face(body: BodyState, cube: Cube, grip: Grip) -> Follow:
@@ -115,7 +115,7 @@ class Slide:
 
 
 def _across(vector: Floats, axis: Floats) -> Floats:
-    """Return the component of ``vector`` perpendicular to the unit vector ``axis``."""
+    """Return the component of a vector normal to a unit vector."""
     return vector - float(vector @ axis) * axis
 
 

@@ -21,7 +21,7 @@ _FORCE, _LONGEST_FORCE = 0.15, 1.0
 """Length of the arrow for a force equal to the mean weight of a link, and maximum length [radii of the scene]."""
 
 _SMALLEST_MASS = 1e-9
-"""Mass above which a link's inertia ellipsoid is drawn [kg]."""
+"""Minimum mass of links with an inertia ellipsoid [kg]."""
 
 _RGB = np.array([[0.85, 0.15, 0.15, 1.0], [0.1, 0.6, 0.15, 1.0], [0.15, 0.3, 0.9, 1.0]])
 _JOINT = np.array([0.95, 0.55, 0.0, 1.0])
@@ -75,7 +75,7 @@ def _frames(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _axes(length: float, width: float) -> Primitives:
-    """Return the axes x, y and z of a frame, drawn in red, green and blue."""
+    """Return the x, y and z axes of a frame, in red, green and blue."""
     ends = np.concatenate([[np.zeros(3), axis] for axis in length * np.eye(3)])
     return drawing.line_list(ends, width, np.repeat(_RGB, 2, axis=0))
 
@@ -125,7 +125,7 @@ def _masses(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _ellipsoid(inertial: Inertial) -> Primitives:
-    """Return a drawing of the homogeneous ellipsoid with a link's mass and inertia, in the link frame."""
+    """Return the homogeneous ellipsoid of a link's mass and moments of inertia, in the link frame."""
     moments = principal_moments(inertial)
     squares = 2.5 / inertial.mass * (moments.sum() - 2 * moments)
     half = np.sqrt(np.maximum(squares, 0.0))
@@ -150,7 +150,7 @@ _SPHERE, _FACETS = _sphere()
 
 
 def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
-    """Return drawings of the contacts between bodies: spheres at the deepest points, and forces if there is physics."""
+    """Return a sphere at the deepest point of each contact between bodies; with physics, the contact forces as well."""
     physics = simulation.physics
     if physics is not None:
         return _forces(*physics.contacts(), physics.mean_weight(), radius)
@@ -172,7 +172,7 @@ def _points(points: Floats, radius: float) -> list[Primitives]:
 
 
 def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> list[Primitives]:
-    """Return drawings of the physics engine's contacts, each with an arrow proportional to its force."""
+    """Return the contacts of the physics engine, each with an arrow proportional to its force."""
     sizes = np.linalg.norm(forces, axis=1)
     unit = weight or float(sizes.max(initial=0.0))
     arrows: list[Primitives] = []
@@ -184,7 +184,7 @@ def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> lis
 
 
 def _centers(body: BodyState) -> Floats:
-    """Return the centres of mass of a body's links in the world [m], shape (links, 3)."""
+    """Return the centres of mass of all links in the world [m], shape (links, 3)."""
     T_world_links = body.link_transforms()
     return np.einsum("nij,nj->ni", T_world_links[:, :3, :3], body.inertias.coms) + T_world_links[:, :3, 3]
 

@@ -13,10 +13,10 @@ from ravemj.gui.interaction.joint_handle import joint_and_axis
 from ravemj.model.limits import clamp
 
 _WIDEST = {True: (1.0, "m"), False: (math.pi, "rad")}
-"""Half the slider range and its unit, for joints with much wider limits; by whether the joint is prismatic."""
+"""Half the slider range, and its unit, of joints with much wider limits, by whether the axis is prismatic."""
 
 _MUCH = 4.0
-"""Factor by which limits must exceed ``_WIDEST`` to count as much wider."""
+"""Factor of ``_WIDEST`` above which joint limits are much wider."""
 
 
 _TOOLS = (

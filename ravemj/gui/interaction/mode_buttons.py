@@ -96,6 +96,7 @@ def panels(size: tuple[int, int], chosen: ViewButton) -> tuple[Panel, ...]:
 
 
 def _arrow(rect: Rect) -> list[Panel]:
+    """Return a red arrow like a mouse pointer."""
     head = [Panel(Rect(rect.x + 9, rect.y + 5 + row, 2 + 0.8 * row, 1), _RED) for row in range(18)]
     tail = [Panel(Rect(rect.x + 14 + 0.5 * row, rect.y + 22 + row, 5, 1), _RED) for row in range(9)]
     return head + tail

@@ -26,7 +26,7 @@ _NEAR = 2e-3
 """Distance of the dragged link from the pointer at which the drag has converged [m]."""
 
 _TOLD = 1.5
-"""Display time of the message that names blocking pins or limits [s]."""
+"""Duration of the message that names blocking pins or limits [s]."""
 
 
 class PinnedReach(Reach):

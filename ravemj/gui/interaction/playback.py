@@ -13,7 +13,7 @@ SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 """Speeds through which the button cycles; scripts may set any other."""
 
 _LONGEST_PAUSE = 0.5
-"""Maximum playback step between two frames [s]; if drawing or a script takes longer, the motion falls behind."""
+"""Maximum time step between two frames [s]; if drawing or a script takes longer, the motion is delayed."""
 
 
 class Playback:

@@ -13,7 +13,7 @@ from ravemj.model.drawing import Primitives
 _RGBA = np.array([0.9, 0.15, 0.4, 1.0])
 _WIDTH = 3.0
 _RADIUS = 0.008
-"""Radius of spheres at the ends of the drawn spring, as a fraction of their distance from the camera."""
+"""Radius of the spheres at the ends of the spring, as a fraction of the distance to the camera."""
 
 
 class Pulling:

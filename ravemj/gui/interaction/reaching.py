@@ -32,10 +32,10 @@ _CLOSE = 1e-4
 """Accuracy at which the redundant joint has reached its value [rad or m]."""
 
 _STUCK = 0.1
-"""Motion of the redundant joint, as a fraction of a step, below which other joints' limits block it."""
+"""Minimum motion of the redundant joint, as a fraction of a step; below it, limits of other joints stop the arm."""
 
 _SAME = 0.05
-"""Maximum difference of joint values of solutions drawn as one [rad or m]."""
+"""Maximum difference of joint values [rad or m] of solutions that are drawn as one."""
 
 _GHOST = np.array([0.3, 0.4, 0.75, 0.75])
 _WIDTH = 6.0

@@ -212,7 +212,7 @@ class Selector:
         return JointHandle.at(selection.body, selection.dof, SIZES[selection.size])
 
     def _cube_at(self, view: Viewpoint, at: tuple[float, float], hit: Hit | None) -> tuple[Cube, Grip] | None:
-        """Return the box handle and the grip under the pointer; None if there is none or a body hides it."""
+        """Return the box handle and the grip under the pointer; None beside it, or if another body hides it."""
         cube = self._cube()
         grip = None if cube is None else cube.grip(view, *at)
         if cube is None or grip is None or self._is_hidden(grip.point, view.ray(*at), hit):
@@ -220,7 +220,7 @@ class Selector:
         return cube, grip
 
     def _handle_at(self, ray: ViewRay, hit: Hit | None) -> tuple[JointHandle, Floats] | None:
-        """Return the selected joint's handle and its point under the pointer; None if there is none or it is hidden."""
+        """Return the handle of the selected joint and its point under the pointer; None if it is not visible there."""
         handle = self._handle()
         point = None if handle is None else handle.hit(ray)
         return None if handle is None or point is None or self._is_hidden(point, ray, hit) else (handle, point)

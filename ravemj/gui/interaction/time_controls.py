@@ -11,7 +11,7 @@ from ravemj.gui.interaction.playback import SPEEDS, Playback
 _LOG = logging.getLogger("ravemj")
 
 _OF_TIME = {"play": "run", "forward": "step"}
-"""Controls of simulation time that playback keys operate if there is no motion to play."""
+"""Controls of simulation time that the playback keys operate if there is no motion."""
 
 _MEASURED = 0.5
 """Averaging time of the measured simulation speed [s]."""
@@ -149,5 +149,5 @@ class TimeControls:
 
 
 def _after(speed: float) -> float:
-    """Return the next speed on the button, after the fastest the slowest."""
+    """Return the next speed of the button; the slowest follows the fastest."""
     return next((other for other in SPEEDS if other > speed), SPEEDS[0])

@@ -18,10 +18,10 @@ _STRONGEST = 10.0
 """Maximum absolute natural logarithm of a zoom factor."""
 
 _STRAIGHT = 1e-6
-"""Sine of the angle between viewing direction and world z below which the camera has no defined upright roll."""
+"""Sine of the angle between viewing direction and world z below which the upright direction is undefined."""
 
 _ZOOM = 4.0
-"""Natural logarithm of the zoom factor of a drag over the height of the view."""
+"""Natural logarithm of the zoom factor for a drag over the height of the view."""
 
 
 class ViewRay(NamedTuple):
@@ -157,7 +157,7 @@ def camera_line(camera: Camera) -> str:
 
 
 def _level(rotation: Floats) -> Floats:
-    """Return a camera rotation rolled about the viewing direction so that the image's right side is horizontal."""
+    """Return a camera rotation rolled about the viewing direction, so that image right is level and z is up."""
     z = rotation[:, 2]
     right = np.array([z[1], -z[0], 0.0])  # the cross product with the world's z axis
     length = float(np.linalg.norm(right))

@@ -83,10 +83,10 @@ def _unpacked(path: str, folder: str) -> str:
 
 
 def _models(path: str) -> list[str]:
-    """Return the model files at a path: the file itself, the only URDF in a folder, or the folder's own model files.
+    """Return the models in a path: the file itself, the only URDF of a folder, or the models directly in the folder.
 
     Raises:
-        SourceError: the folder contains several URDFs.
+        SourceError: a folder has several URDFs.
     """
     if not os.path.isdir(path):
         return [path] if Path(path).suffix.lower() in _MODELS else []

@@ -17,7 +17,7 @@ _dispatching = threading.Lock()
 
 
 _FRAME = 40
-"""Height of a window's frame [screen units]."""
+"""Height of a window's frame, in units of the screen."""
 
 
 class GlfwWindow:
@@ -235,14 +235,14 @@ class GlfwWindow:
 
 @in_child
 def _leave_windows() -> None:
-    """Give up the windows in a forked child, as they belong to the parent."""
+    """Disown the windows in a forked child: they belong to the parent."""
     global _is_fork, _dispatching
     _is_fork, _dispatching = _is_fork or _is_used, threading.Lock()
 
 
 @functools.cache
 def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has no types
-    """Return GLFW's X server connection, shared by all windows; None if the system has no X server.
+    """Return GLFW's connection to its X server, which all windows share; None on other systems.
 
     Raises:
         RenderingError: there is no display.
@@ -257,7 +257,7 @@ def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has n
 
 
 def _fitting(glfw: Any, width: int, height: int) -> tuple[int, int]:  # noqa: ANN401 - glfw has no types
-    """Limit a window size so that the window with its frame fits on the screen."""
+    """Clip a size so that the window with its frame fits on the screen."""
     monitor = glfw.get_primary_monitor()
     if not monitor:
         return width, height

@@ -14,10 +14,10 @@ from ravemj.graphics.video import picture_bytes
 _HEIGHT, _LINES = 480, 60  # pixels; the second is that of _ALONE in a narrow cell
 _PROXY = "jupyter_server_proxy"
 _PREFIX = "JUPYTERHUB_SERVICE_PREFIX"
-"""Environment variable with the URL prefix of a JupyterHub user's server."""
+"""Environment variable with the URL prefix of a user's JupyterHub server."""
 
 _ELSEWHERE = (_PREFIX, "SSH_CONNECTION", "VSCODE_IPC_HOOK_CLI", "CODESPACES", "KAGGLE_KERNEL_RUN_TYPE")
-"""Environment variables that show that the browser runs on another machine, which cannot reach ports of this one."""
+"""Environment variables that indicate a browser on another machine, which cannot reach ports of this one."""
 
 _ALONE = (
     "No port of this machine reaches the browser, so this page draws what was there when the cell ran. "

@@ -15,10 +15,10 @@ _QUIET = 1.0
 """Time without changes after which viewers poll less often [s]."""
 
 _SPARE = 0.7
-"""Fraction of the time budget within which a sharper level must be drawn before it is selected (hysteresis)."""
+"""Fraction of the time budget in which a sharper level must be drawn before it is selected (hysteresis)."""
 
 _INERTIA = 0.6
-"""Weight of earlier measurements in the moving average of drawing times."""
+"""Weight of earlier measurements in the moving average of the drawing time."""
 
 
 LEAST_SIDE, LARGEST_SIDE = 16, 4096

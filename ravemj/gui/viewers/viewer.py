@@ -422,11 +422,7 @@ class Viewer(Interactive):
 
 
 def _checked_size(width: float, height: float, caller: str) -> tuple[int, int]:
-    """Return an image size in whole pixels.
-
-    Raises:
-        ArgumentError: the size is out of range.
-    """
+    """Return an image size in whole pixels; raise an ArgumentError if it is out of range."""
     size = checked_vector([width, height], 2, f"{caller}: size")
     if size.min() < 1 or size.max() > _LARGEST:
         limits = f"1 x 1 to {_LARGEST} x {_LARGEST}"

@@ -32,10 +32,10 @@ _SLOW = 1.5 * _PERIOD
 
 _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
-"""Largest possible coordinate on an X screen."""
+"""Largest coordinate on an X screen."""
 
 _running: dict[threading.Thread, tuple[Flag, Flag]] = {}
-"""For each window thread, the flags that request closing and signal its end (Ctrl-C can break ``join``)."""
+"""Two flags for each window thread: request to close, and end of the thread (Ctrl-C can break ``join``)."""
 
 
 class WindowViewer(Viewer):
@@ -154,7 +154,7 @@ class WindowViewer(Viewer):
         return painter.update_view(self.interaction, surface, line, self._simulation.published) or window.is_lost
 
     def _surface(self, window: GlfwWindow) -> DrawTarget | None:
-        """Return the target for drawing in a window; None while the window is minimized."""
+        """Return the drawing target; None while the window is minimised."""
         width, height = window.pixels
         return (
             DrawTarget(self.look, self._choices.shadows, (width, height), window.pixel_ratio)
@@ -195,7 +195,7 @@ class WindowViewer(Viewer):
         window.swap()
 
     def _serve(self, window: GlfwWindow) -> None:
-        """Perform requested actions, and add dropped files to the environment."""
+        """Perform requested actions, and add dropped files."""
         for request in self.interaction.controls.pop_requests():
             self._grant(request, window)
         if window.dropped:
@@ -217,7 +217,7 @@ class WindowViewer(Viewer):
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:
-    """Run a viewer's window, and signal its end."""
+    """Run a viewer's window, and set the flag of its end."""
     try:
         _show(reference)
     finally:
@@ -226,7 +226,7 @@ def _run(reference: "weakref.ref[WindowViewer]") -> None:
 
 
 def _show(reference: "weakref.ref[WindowViewer]") -> None:
-    """Run a viewer's window until it is closed or the viewer is collected; waiting holds no strong reference."""
+    """Run a viewer's window until it is closed or the viewer is collected; waiting keeps no reference to the viewer."""
     viewer = reference()
     window = None if viewer is None else viewer.open_window()
     if window is None:
@@ -250,7 +250,7 @@ def _show(reference: "weakref.ref[WindowViewer]") -> None:
 
 
 def _end(thread: threading.Thread) -> None:
-    """Close the window of a thread, and wait for the thread."""
+    """Close a window and wait for its thread."""
     closing, ended = _running.get(thread, (None, None))
     if closing is not None and ended is not None and thread.ident is not None:
         closing.set()

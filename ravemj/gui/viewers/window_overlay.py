@@ -19,7 +19,7 @@ _GLASS = (0.09, 0.1, 0.12, 0.82)
 _WHITE, _DARK = (255, 255, 255), (32, 36, 44)
 _HALO = (255, 255, 255)
 _BUTTONS = 60.0
-"""Width of the mode buttons at the right of the window [points]."""
+"""Width of the mode buttons at the right [points]."""
 
 _Rgb = tuple[int, int, int]
 
@@ -147,7 +147,7 @@ def blend(image: NDArray[np.uint8], x: int, y: int) -> None:
 
 @functools.cache
 def _gl() -> Callable[..., None]:
-    """Return a function that calls OpenGL functions by name, in GLFW's current context."""
+    """Return a function that calls OpenGL by function name, in the current context of GLFW."""
     import glfw  # noqa: PLC0415 - loads the libraries of the display
 
     glfw_module: Any = glfw

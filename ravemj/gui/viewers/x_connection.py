@@ -13,7 +13,7 @@ _NORTH_WEST = 1
 
 
 class _WindowAttributes(ctypes.Structure):
-    """First fields of Xlib's ``XSetWindowAttributes``; changes of others are masked out."""
+    """The first fields of Xlib's ``XSetWindowAttributes``; the mask of changes excludes the others."""
 
     _fields_ = (
         ("background_pixmap", ctypes.c_ulong),
@@ -70,5 +70,5 @@ class XConnection:
 
 
 def _ignore(_display: object) -> int:
-    """Handle Xlib errors by doing nothing, instead of ending the process."""
+    """Suppress Xlib's error message."""
     return 0

@@ -208,10 +208,10 @@ def _nearest(first: Screw, other: Screw) -> Floats:
 
 
 def _crossing(screws: Screws) -> tuple[int | None, str]:
-    """Find a direction in which neither the prismatic middle joint nor one of the outer joints moves points.
+    """Find a direction along which neither the prismatic middle joint nor the first or third joint moves points.
 
     Returns:
-        The index of the outer joint, 0 or 2, and ``along`` (the direction of its axis) or ``across``
+        The index of the first or third joint, 0 or 2, and ``along`` (the direction of its axis) or ``across``
         (perpendicular to both axes); None and an empty string if there is no such direction.
     """
     middle = screws[1]

@@ -87,10 +87,7 @@ class General:
 
 
 def _left(screws: Sequence[Screw]) -> Floats:
-    """Return the coefficients of the 14 left sides, shape (N, 14, 27).
-
-    They are polynomials in the half-angle tangents of joints 3, 4 and 5, with powers up to 2 of each.
-    """
+    """Return the left sides' coefficients, (N, 14, 27): powers up to 2 of joint 3, 4 and 5's half-angle tangents."""
     turns = [turn_of((_GRID + origin).reshape(3, 1)) for origin in _ORIGINS]
     places = np.indices((3, 3, 3)).reshape(3, 27)
     values = _carried(screws, [turn[:, place] for turn, place in zip(turns, places, strict=True)])
@@ -108,10 +105,7 @@ def _carried(screws: Sequence[Screw], turns: Sequence[Floats]) -> Floats:
 
 
 def _right(screws: Sequence[Screw], motion: Transform) -> Floats:
-    """Return the coefficients of the 14 right sides, shape (N, 14, 9).
-
-    They belong to 1, c2, s2, c1, c1 c2, c1 s2, s1, s1 c2, s1 s2: cosines and sines of joints 1 and 2.
-    """
+    """Return the right sides' coefficients of 1, c2, s2, c1, c1 c2, c1 s2, s1, s1 c2, s1 s2, shape (N, 14, 9)."""
     first, second = (turn_of(_GRID.reshape(3, 1))[:, place] for place in np.indices((3, 3)).reshape(2, 9))
     line, point = motion.turned(screws[5].axis), motion.moved(screws[5].point)
     line = screws[1].turned_back(second, screws[0].turned_back(first, line))
@@ -121,7 +115,7 @@ def _right(screws: Sequence[Screw], motion: Transform) -> Floats:
 
 
 def _numbers(line: Floats, point: Floats) -> Floats:
-    """Stack l, p, p·p, p·l, p x l and (p·p) l - 2 (p·l) p, which are 14 equations, for directions l and points p."""
+    """Stack l, p, p·p, p·l, p x l and (p·p) l - 2 (p·l) p for directions l and points p: 14 rows."""
     line, point = np.broadcast_arrays(line, point)
     square, along = dot(point, point), dot(point, line)
     return np.concatenate(

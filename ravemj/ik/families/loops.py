@@ -151,7 +151,7 @@ class _Around:
         return self._motion(self._goal, self._rest, self._pairs, Screw.turned_back, Screw.moved_back)
 
     def opposite(self) -> RigidMotion:
-        """Return the inverse of the motion that the block must make."""
+        """Return the inverse of the motion B that the block of joints has to make."""
         return self._motion(self._rest, self._goal, self._pairs[::-1], Screw.turned, Screw.moved)
 
     def _motion(

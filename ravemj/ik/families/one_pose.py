@@ -129,7 +129,7 @@ class OnePose:
         return (c * cosine - s * sine, s * cosine + c * sine), (c * cosine + s * sine, s * cosine - c * sine)
 
     def _ends(self, two: Turn, tip: Vector, side: Vector) -> tuple[Turn, Turn, Turn]:
-        """Return cosine and sine of the three wrist joints for a solution ``two`` of the middle one."""
+        """Return cosine and sine of the three wrist joints, given the middle one."""
         first, middle, last = self._wrist
         (along, across, later), (cosine, sine) = self._tips, two
         start = (
@@ -201,7 +201,7 @@ def _about(line: tuple[Vector, Vector], cosine: float, sine: float, point: Vecto
 
 
 def _between(axis: Vector, start: Vector, end: Vector) -> Turn:
-    """Return the turn about an axis that brings ``start`` nearest to ``end``, as ``subproblems.turn_between``."""
+    """Return the turn about an axis that carries ``start`` nearest to ``end`` (``subproblems.turn_between``)."""
     hx, hy, hz = axis
     height = _dot(axis, start)
     x, y, z = start[0] - height * hx, start[1] - height * hy, start[2] - height * hz

@@ -152,7 +152,7 @@ class Pair:
     def _one_by_one(
         self, factors: tuple[Floats, Floats], rest: Floats, side: int, equation: int
     ) -> tuple[Floats, Floats]:
-        """Solve two equations, the given ``equation``, which contains only the joint ``side``, before the other."""
+        """Solve the equation with one unknown, substitute its solutions into the other equation, and solve that."""
         first = self._single(side, equation, factors[side][equation], rest[equation])
         known = factors[side][1 - equation]
         left = rest[1 - equation] - (known[0] * first[0] + known[1] * (first[1] if len(first) > 1 else first[0] ** 2))
@@ -187,10 +187,7 @@ class Pair:
         return (distance + tile(slope[1], turns.shape[-2]) * turns[1])[None], turns
 
     def _two_turns(self, one: Floats, three: Floats, rest: Floats) -> tuple[Floats, Floats]:
-        """Solve A x + C y = rest for unit vectors x and y, the cosine and sine of two revolute joints.
-
-        Eliminating x leaves |adj(A) (rest - C y)|² = det(A)².
-        """
+        """Solve A x + C y = rest for unit vectors x and y, by |adj(A) (rest - C y)|² = det(A)² for y."""
         adjugate = np.array([np.array([one[1, 1], -one[0, 1]]), np.array([-one[1, 0], one[0, 0]])])
         determinant = one[0, 0] * one[1, 1] - one[0, 1] * one[1, 0]
         scale = np.abs(one).max(axis=(0, 1))

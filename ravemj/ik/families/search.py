@@ -196,5 +196,5 @@ def _inserted(arm: Arm, place: int, screws: Sequence[Screw]) -> Arm:
 
 
 def _generic(count: int) -> Floats:
-    """Return one or two vectors in generic directions, so that added axes are neither parallel nor intersecting."""
+    """Return vectors in no special direction, so that added axes are neither parallel nor intersecting."""
     return np.array([[0.37, -0.29, 0.41], [-0.23, 0.43, 0.31]])[:count]

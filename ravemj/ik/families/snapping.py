@@ -26,7 +26,7 @@ def nominal(chain: Chain) -> Chain:
 
 
 def _aligned(axes: Floats) -> Floats:
-    """Make nearly parallel axes parallel, and each axis perpendicular to the last one to which it nearly is."""
+    """Make nearly parallel axes parallel, and nearly perpendicular neighbouring axes perpendicular."""
     done = np.eye(3)[:0]
     for axis in axes:
         parallel = [other for other in done if np.linalg.norm(np.cross(axis, other)) < TOLERANCE]

@@ -37,7 +37,7 @@ _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
 _BOUNCE = 1e-7
-"""Displacement above which a step that reverses the previous one counts as oscillation, as near unreachable targets."""
+"""Displacement above which a step that reverses the last one counts as oscillation, as near unreachable targets."""
 _WINDOW, _LITTLE = 40, 1e-6
 """Convergence test: the number of steps, and the relative decrease of the cost over them."""
 _MINOR = 1e-3
@@ -86,7 +86,7 @@ class DescentResult:
 
 
 class _State(NamedTuple):
-    """Errors and Jacobians of the tasks, and the inequalities, in one configuration."""
+    """Errors and Jacobians of tasks, and inequalities, in one configuration."""
 
     measured: Sequence[tuple[WeightedTask, TaskRows]]
     inequalities: Sequence[Inequality]
@@ -173,7 +173,7 @@ class Descent:
                 break
 
     def _restore_contacts(self, longest: float) -> None:
-        """Close contacts that an unreachable target has pulled open, as far as the limits allow."""
+        """Close contacts that a target out of reach has pulled open, as far as the limits allow."""
         for _ in range(_TURNS * _TURNS):
             nothing = np.zeros(len(self.limits.lower))
             bounds = self.limits.reachable(self._mechanism.values(), longest)
@@ -195,7 +195,7 @@ class Descent:
         return _State(self._measured(), self._mechanism.inequalities())
 
     def _advance(self, state: _State, damping: float, bounds: tuple[Floats, Floats]) -> Floats:
-        """Move by the best displacement within bounds, and correct contact errors; return the total displacement."""
+        """Move by the best displacement within bounds, then correct the contacts; return the total displacement."""
         lower, upper = bounds
         x = self._displacement(state, damping, lower, upper)
         self._mechanism.move(x)
@@ -226,7 +226,7 @@ class Descent:
         return _on_equalities(problem, gradient, x, jacobian[:first], error[:first])
 
     def _levels(self, measured: Sequence[tuple[WeightedTask, TaskRows]]) -> list[TaskRows]:
-        """Return weighted errors and Jacobians by priority; exact contacts precede other tasks of their priority."""
+        """Return weighted errors and Jacobians by priority; exact contacts come first within their priority."""
 
         def level(task: tuple[WeightedTask, TaskRows]) -> tuple[int, bool]:
             return task[0].priority, not (task[0].is_contact and self.exact_contacts)
@@ -272,7 +272,7 @@ def _on_equalities(problem: BoxProblem, gradient: Floats, x: Floats, jacobian: F
 
 
 def _length(error: Floats) -> float:
-    """Return the Euclidean norm of an error; it does not depend on the directions of the world's axes."""
+    """Return the Euclidean norm, which does not depend on the directions of the world's axes."""
     return math.sqrt(float(error.dot(error)))
 
 
@@ -301,7 +301,7 @@ def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> 
 
 
 def _least_norm(jacobian: Floats, error: Floats) -> Floats:
-    """Return the shortest x with ``jacobian @ x = error``; slight damping allows dependent rows."""
+    """Return the shortest x with ``jacobian @ x = error``, slightly damped for dependent rows."""
     square, multipliers = jacobian.dot(jacobian.T), np.empty(len(error))
     diagonal = square.ravel()[:: len(error) + 1]
     diagonal += 1e-9 * float(diagonal.sum()) / len(error) + 1e-300

@@ -20,7 +20,7 @@ _RANK = 1e-9
 _SOLVED = 1
 """Exit flag of daqp for an optimal solution."""
 _CAUTION = 1e-2
-"""Damping of the correction of violated inequalities, whose rows may vanish near the maximum distance."""
+"""Damping of the recovery from violated inequalities, whose rows may vanish near the maximum distance."""
 _SETTINGS = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 2000}
 
 
@@ -87,11 +87,7 @@ _Room = tuple[Floats, Floats, Floats]
 
 
 def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, basis: Floats) -> _Room:
-    """Return a matrix, lower and upper bounds: the constraints on a change z in null-space coordinates.
-
-    They keep ``x + basis @ z`` within the box and the inequalities; violated ones may not get worse, so z = 0 is
-    allowed.
-    """
+    """Return matrix, lower and upper bounds that constrain z so that ``x + basis @ z`` is feasible, as for z = 0."""
     below = np.concatenate([np.minimum(lower - x, 0.0), np.minimum(least - rows @ x, 0.0)])
     above = np.concatenate([np.maximum(upper - x, 0.0), np.full(len(least), 1e30)])
     matrix = np.vstack([basis, rows @ basis])
@@ -123,7 +119,7 @@ def _solve(
 
 
 def _null_space(jacobian: Floats) -> Floats:
-    """Return an orthonormal basis, shape (n, k), of the null space of a Jacobian."""
+    """Return an orthonormal basis of the null space of the rows, shape (n, k)."""
     _, sizes, rows = np.linalg.svd(jacobian)
     rank = int((sizes > _RANK * max(float(sizes.max(initial=0.0)), 1e-12)).sum())
     return rows[rank:].T

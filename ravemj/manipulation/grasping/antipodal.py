@@ -26,9 +26,10 @@ _INSIDE = 1e-5
 _ROUNDING = 1e-9
 
 _AROUND = 8
-"""Number of lines tried around a surface normal, at each of two angles from it."""
+"""Number of lines to try around a normal, at each of two angles from it."""
 
 _SAME = 1e-3
+"""Tolerance of equal points [m]."""
 
 
 class Jaws(NamedTuple):
@@ -151,7 +152,7 @@ def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
 
 
 def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bool) -> tuple[NDArray[np.bool_], Floats]:
-    """Return which lines leave the object within ``width``, and the nearest or farthest exit points."""
+    """Return the mask of lines that leave the object within ``width``, and the nearest or farthest exit points."""
     if near:
         return cast(np.hstack([rows[:, :3] + _INSIDE * lines, (width - _INSIDE) * lines]))
     hit, points = cast(np.hstack([rows[:, :3] + width * lines, -width * lines]))

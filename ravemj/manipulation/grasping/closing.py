@@ -27,10 +27,10 @@ _TEXTS: Mapping[Kind, str] = {
 }
 
 _BACK = 0.05
-"""Step by which a hand that touches the target is moved back before the approach [m]; OpenRAVE's."""
+"""Step by which a hand in contact with the target is moved back before the approach [m]; OpenRAVE's."""
 
 _FINER = 16.0
-"""Ratio of the fine step to the tolerance of contact positions."""
+"""Ratio of the fine step to the tolerance of contacts."""
 
 _PARALLEL = 1e-9
 """Cosine of the angle between a stop plane's normal and the approach below which the hand never reaches the plane."""
@@ -356,7 +356,7 @@ class _ClosingSimulation:
         return hit - max(self._approach.standoff, hidden) if self._approach.standoff > 0 else hit
 
     def _close_finger(self, finger: Finger) -> Reason | None:
-        """Move a finger to its contact or limit; return the reason of a failure, or None."""
+        """Move a finger to its contact or limit; return the reason if that fails, else None."""
         if not finger.side:
             return None
         side, factor = float(np.sign(finger.side)), self._steps.per_radian if finger.is_slider else 1.0
@@ -390,13 +390,13 @@ def _unit(vector: Floats) -> Floats:
 
 
 def _range(finger: Finger, value: float) -> float:
-    """Return the distance from a joint value to the limit in the closing direction; 2 pi if there is no limit."""
+    """Return the distance from a joint value to the limit in the closing direction; 2 pi without limit [rad or m]."""
     most = (finger.limits[1] - value) if finger.side > 0 else (value - finger.limits[0])
     return max(most, 0.0) if np.isfinite(most) else 2 * np.pi
 
 
 def _contact(touches: Callable[[float], bool], start: float, end: float, step: float, tolerance: float) -> float | None:
-    """Return the first position in contact, at most ``tolerance`` too far; None if there is no contact."""
+    """Return the first position in contact, at most ``tolerance`` beyond the exact one; None if there is none."""
     if touches(start):
         return start
     free = start

@@ -103,11 +103,7 @@ def _moved(values: Floats, gripper: list[int], arm: Manipulator) -> Floats:
 
 
 def _reach(robot: BodyState, links: Sequence[int] | NDArray[np.int_], T_tool_links: Floats, axis: Floats) -> float:
-    """Return the largest coordinate of links along an axis in the tool frame [m].
-
-    Raises:
-        ArgumentError: the links have no shapes.
-    """
+    """Return the largest coordinate of links' shapes along an axis in the frame of the tool [m]."""
     side = np.eye(3)[int(np.abs(axis).argmin())]
     side = np.cross(axis, side) / np.linalg.norm(np.cross(axis, side))
     T = np.eye(4)

@@ -109,7 +109,7 @@ def _finger(body: BodyState, dof: int, side: float) -> Finger:
 
 
 def _ball(bodies: Sequence[BodyState]) -> Ball:
-    """Return a bounding sphere of bodies in the world frame."""
+    """Return a bounding sphere of bodies, in the world."""
     boxes = [body.bounds.at(body.link_transforms(), [True] * len(body.scene.links)) for body in bodies]
     known = [box for box in boxes if box is not None]
     if not known:

@@ -123,11 +123,11 @@ def _nearest(points: Floats, noise: float) -> Facet | None:
 
 
 class _CycleError(ArithmeticError):
-    """Error of a point that is added twice; rounding errors made nearly coplanar facets inconsistent."""
+    """A point was added twice, since rounding errors make nearly coplanar facets inconsistent."""
 
 
 def _joggled(points: Floats, noise: float) -> Floats:
-    """Return points displaced randomly by up to ``noise`` times the largest coordinate, against coplanar facets."""
+    """Return points with random displacements, ``noise`` times the largest coordinate, which avoid coplanar facets."""
     if not noise:
         return points
     return points + noise * np.abs(points).max() * np.random.default_rng(2).uniform(-1, 1, points.shape)
@@ -139,13 +139,13 @@ def missing_direction(points: Floats) -> Floats:
 
 
 def _sorted(points: Floats) -> tuple[Floats, Ints]:
-    """Return the points in lexicographic order, and their former indices; of equally far points, the first wins."""
+    """Return the points in lexicographic order, and their former indices; the first of equally far ones is a vertex."""
     order = np.lexsort(points.T[::-1])
     return points[order], order
 
 
 class _HullGrowth:
-    """Incremental convex hull of points, as simplices."""
+    """Convex hull of a growing set of points, as simplices."""
 
     def __init__(self, points: Floats, simplex: Ints, tolerance: float) -> None:
         self.points = points
@@ -217,10 +217,7 @@ class _HullGrowth:
         return True
 
     def _planes(self, facets: Ints) -> tuple[Floats, Floats]:
-        """Return outward unit normals and offsets of facets.
-
-        The center is inside the hull, so each plane is the solution of n·(x - center) = 1 for its corners.
-        """
+        """Return outward unit normals and offsets; the center is inside, so each plane is ``n.(x - center) = 1``."""
         corners = self.points[facets] - self.center
         ones = np.ones((len(facets), corners.shape[2], 1))
         scaled: Floats = np.asarray(np.linalg.solve(corners, ones), float)[:, :, 0]
@@ -229,7 +226,7 @@ class _HullGrowth:
         return normals, 1 / lengths + normals @ self.center
 
     def volume(self) -> float:
-        """Return the volume of the hull, once complete."""
+        """Return the volume of the complete hull."""
         return float(np.abs(np.linalg.det(self.points[self.facets] - self.center)).sum()) / factorial(
             self.points.shape[1]
         )

@@ -182,5 +182,5 @@ def directions(level: int) -> Floats:
 
 
 def _least_rotation(axis: Floats) -> Floats:
-    """Return the smallest rotation, shape (3, 3), that turns z to ``axis``."""
+    """Return the least rotation from z to an axis, shape (3, 3)."""
     return rotationMatrixFromQuat(quatRotateDirection([0, 0, 1], axis))

@@ -34,7 +34,7 @@ _FREE = 1e-4
 """Retreat of the open hand from its grasp, at which reachability is tested without contact [m]."""
 
 _BACK = 0.1
-"""Length of the straight approach of jaws [m]."""
+"""Length of the straight line by which jaws approach [m]."""
 
 _STEP = 0.01  # m, between tested poses on that line
 _STANDOFFS = (0.0, 0.025)
@@ -238,7 +238,7 @@ def proved(robot: BodyState, arm: Manipulator, target: BodyState, grasp: Grasp, 
 
 @contextmanager
 def _at_origin(body: BodyState) -> Generator[None]:
-    """Context manager that moves a body to the world's origin, and restores its configuration afterwards."""
+    """Context manager that moves a body to the origin of the world, and restores its pose afterwards."""
     saved = body.configuration()
     body.set_transform(np.eye(4))
     try:
@@ -249,7 +249,7 @@ def _at_origin(body: BodyState) -> Generator[None]:
 
 @contextmanager
 def _opened(robot: BodyState, arm: Manipulator) -> Generator[None]:
-    """Context manager that opens the gripper to its limits, and restores the robot's configuration afterwards."""
+    """Context manager that opens the gripper to its limits, and restores the robot afterwards."""
     saved = robot.configuration()
     try:
         _open(robot, arm)
@@ -284,7 +284,7 @@ _Make = Callable[[HandTests], _Candidate]
 
 
 class _CandidateSearch:
-    """Grasp search for one robot and one object."""
+    """Search for grasps by one robot of one object."""
 
     def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> None:
         self._robot, self._arm, self._target, self._choices = robot, arm, target, choices
@@ -336,7 +336,7 @@ class _CandidateSearch:
         return judged
 
     def _surface(self) -> Floats:
-        """Return points and outward normals of the object's surface in its frame, shape (n, 6)."""
+        """Return points of the surface and outward normals in the object's frame, shape (n, 6)."""
         rays = box_rays((self._low + self._high) / 2, (self._high - self._low) / 2, self._choices.delta).numbers()
         hit, rows = self._cast(rays)
         return rows[hit & ((rows[:, 3:] * rays[:, 3:]).sum(axis=1) < 0)]
@@ -373,7 +373,7 @@ class _CandidateSearch:
         return _Candidate(self._T_world_target @ inverse(self._hand.T_base_tool), np.zeros(3), None, reason)
 
     def _close_jaws(self, T_target_tool: Floats, tool_direction: Floats, tests: HandTests) -> _Candidate:
-        """Move the open jaws to a pose along a straight line, and close them."""
+        """Move the jaws to a pose along a straight line, and close them."""
         T_world_base = self._T_world_target @ T_target_tool @ inverse(self._hand.T_base_tool)
         along = T_target_tool[:3, :3] @ tool_direction
         hits = self._approach(T_world_base, self._T_world_target[:3, :3] @ along, tests)
@@ -418,7 +418,7 @@ class _CandidateSearch:
         )
 
     def _stuck(self, values: Floats, candidate: _Candidate, tests: HandTests) -> str:
-        """Return a reason of rejection if a finger that did not move touches the object, else an empty string."""
+        """Return a reason for rejection if an unmoved finger touches the object; else an empty string."""
         for finger in self._hand.fingers:
             is_open = finger.side and values[finger.dof] == self._hand.values[finger.dof]
             if is_open and tests(finger.links, candidate.T_world_base, values, "target"):
@@ -426,7 +426,7 @@ class _CandidateSearch:
         return ""
 
     def _reached(self, grasp: Grasp, reach: Reach) -> Grasp:
-        """Return a grasp with the arm's joint values, or with the reason why the arm does not reach it."""
+        """Return a grasp with joint values of the arm, or with the reason why the arm does not reach it."""
         T_world_tool = self._T_world_target @ grasp.pose
         T_world_tool[:3, 3] -= _FREE * self._T_world_target[:3, :3] @ grasp.approach
         reached = reach(T_world_tool)

@@ -18,7 +18,7 @@ EDGES = 8
 """The number of edges of a friction cone in OpenRAVE."""
 
 _ROUNDING = 1e-12
-"""Distance from the hull's boundary below which the origin counts as on the boundary."""
+"""Distance from the boundary of the hull below which the origin counts as on it."""
 
 
 @dataclass(frozen=True)

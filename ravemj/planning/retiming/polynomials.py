@@ -337,7 +337,7 @@ def _changes(profile: tuple[float, float, float, float], duration: float) -> Flo
 
 
 def _states(changes: Floats, way: float, duration: float, times: Floats) -> tuple[Floats, Floats, Floats] | None:
-    """Return a joint's values, velocities and accelerations at times, shape (len(times),) each.
+    """Return values, velocities and accelerations of a joint at times, shape (len(times),) each.
 
     None means that the motion is so short that its distance is rounded to 0.
     """

@@ -190,11 +190,7 @@ def retime(
 
 
 def _duration(needed: float, given: float | None, time_step: float) -> float:
-    """Return the duration of a segment [s]: the given one, or the minimum rounded up to whole time steps.
-
-    Raises:
-        RetimingError: the given duration is too short, or a joint cannot move.
-    """
+    """Return the duration of a segment [s]: the given one, or the minimum rounded up to whole time steps."""
     if not needed < _LONGEST:
         raise RetimingError("a joint moves whose velocity or acceleration limit is 0, or nearly so")
     if given is not None:
@@ -219,7 +215,7 @@ def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: fl
 
 
 class _TimedRows:
-    """Timed path under construction, segment by segment."""
+    """Timed path under construction."""
 
     def __init__(self, profile: Profile, first: Floats, velocity: Floats) -> None:
         self._profile = profile

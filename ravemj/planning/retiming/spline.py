@@ -10,10 +10,10 @@ from ravemj.planning.retiming.cubics import at_rest, corners_of, timed_cubics
 from ravemj.planning.retiming.segments import PathLimits, RetimingError, Timed
 
 _SHARE = 0.5
-"""Fraction of the acceleration limits used by curvature; the rest is left for changes of speed."""
+"""Fraction of the acceleration limits reserved for curvature; the rest is for changes of speed."""
 
 _SAME = 1e-9
-"""Distance of waypoints that count as equal [rad or m]."""
+"""Tolerance of equal waypoints [rad or m]."""
 
 
 _ROUNDING = 1e-6

@@ -52,7 +52,7 @@ class ToppRa:
 
 
 def _fastest(corners: Floats, moving: Ints, limits: PathLimits) -> "_Rows":
-    """Return the time-optimal motion along a spline through waypoints, sampled at TOPP-RA's grid points."""
+    """Return the time-optimal motion along the spline through waypoints, sampled at grid points."""
     toppra, constraint = (importlib.import_module(f"toppra{part}") for part in ("", ".constraint"))
     bounds = [np.stack([-bound[moving], bound[moving]], axis=1) for bound in (limits.velocity, limits.acceleration)]
     places = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1)))
@@ -74,7 +74,7 @@ def _fastest(corners: Floats, moving: Ints, limits: PathLimits) -> "_Rows":
 
 
 class _Rows(NamedTuple):
-    """Values and velocities at m grid points, time differences, shape (m - 1,), and a mask of waypoints."""
+    """Values and velocities at m grid points, time differences, shape (m - 1,), and which points are waypoints."""
 
     values: Floats
     velocities: Floats

@@ -132,7 +132,7 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Accept a viewer that is already attached to this environment; raise an error for any other object."""
+        """Accept a viewer of this environment, which is already attached; raise an error for any other object."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
@@ -258,7 +258,7 @@ class Contents(EnvironmentPart):
         return body is not None and self.Remove(body)
 
     def _remove_other(self, interface: object) -> bool:
-        """Remove a module, a sensor or a viewer; return whether the environment contained it."""
+        """Remove a module, a sensor or a viewer, and return whether it was in the environment."""
         if not isinstance(interface, Interface) and not hasattr(interface, "GetCameraTransform"):  # a viewer
             kind = "None" if interface is None else f"something of type {type(interface).__name__}"
             code = ErrorCode.Failed if interface is None else ErrorCode.InvalidArguments

@@ -191,7 +191,7 @@ class Description(Contents):
 
     @property
     def _metre(self) -> float:
-        """Length of one metre in the environment's unit."""
+        """One metre in the environment's unit of length."""
         return GetLengthUnitStandardValue(self._units.lengthUnit)
 
     def ExtractInfo(self) -> EnvironmentBaseInfo:
@@ -296,7 +296,7 @@ class Description(Contents):
         return True
 
     def _read_json(self, info: EnvironmentBaseInfo, content: Json) -> None:
-        """Set the fields of an info from JSON, converted to the environment's unit of length."""
+        """Set the fields of an info from JSON, in the environment's unit of length."""
         info._unitInfo = self.GetUnitInfo()
         info.DeserializeJSON({"unitInfo": content.get("unitInfo", {})})
         scale = self._metre / GetLengthUnitStandardValue(info._unitInfo.lengthUnit)

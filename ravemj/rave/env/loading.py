@@ -179,7 +179,7 @@ class Loading(Description):
         return f"{missing[0]}{others}" if missing else ""
 
     def _try_elsewhere(self, path: str) -> None:
-        """Load a JSON file into a temporary environment first, so that an error in it leaves this one unchanged."""
+        """Load a JSON file into a temporary environment, so that errors in it leave this one unchanged."""
         trial = type(self)()
         try:
             trial._load_json(path)
@@ -345,7 +345,7 @@ class Loading(Description):
             return None
 
     def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a JSON file without adding it; ``into`` is a body to rebuild, or None."""
+        """Return the first body of a file without adding it; ``into`` is a body to rebuild, or None."""
         content = self._json_content(path)
         info = EnvironmentBaseInfo()
         with placed_errors(path):

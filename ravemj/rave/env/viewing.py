@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 _DEFAULT_COLOR = (1.0, 0.5, 0.5, 1.0)  # OpenRAVE's pink
 _LABEL_POINT = 4.0
-"""Size of the point drawn beside a label [pixels]."""
+"""Size of the point beside a label [pixels]."""
 
 
 def _checked_lines(points: ArrayLike, width: float, colors: ArrayLike | None) -> tuple[Floats, float, Floats]:
@@ -54,7 +54,7 @@ def _checked_points(points: ArrayLike) -> Floats:
 
 
 def _checked_colors(colors: ArrayLike | None, count: int) -> Floats:
-    """Return a colour with alpha for each of ``count`` elements, shape (count, 4)."""
+    """Return a colour with alpha for each element, (count, 4)."""
     numbers = np.atleast_2d(checked_numbers(_DEFAULT_COLOR if colors is None else colors, "colors"))
     if numbers.ndim > 2 or numbers.shape[1] not in (3, 4) or len(numbers) not in (1, count):
         message = f"colors: has shape {numbers.shape}, and should be one colour or {count}, of 3 or 4 numbers each"
@@ -85,7 +85,7 @@ def _checked_triangles(indices: ArrayLike | None, count: int) -> Ints:
 
 
 def _checked_texture(texture: ArrayLike) -> Floats:
-    """Return an image as colours with alpha from 0 to 1, shape (H, W, 4)."""
+    """Convert an image to colours with alpha, (H, W, 4), from 0 to 1."""
     numbers = checked_numbers(texture, "texture")
     if np.issubdtype(np.asarray(texture).dtype, np.integer):
         numbers /= 255

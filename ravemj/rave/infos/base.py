@@ -185,7 +185,7 @@ def infos(kind: Callable[[], Described], robot: Callable[[], Described] | None =
 
 
 class _Called:
-    """Ordered list of infos with look-up by id and name."""
+    """List of infos with look-up by id and name."""
 
     def __init__(self, infos: Sequence[Described]) -> None:
         self._place_of: dict[int, int] = {}  # includes removed infos that may be added again, by identity
@@ -202,7 +202,7 @@ class _Called:
             self._called.setdefault(key, set()).add(place)
 
     def remove(self, info: Described) -> None:
-        """Remove an info; its id and name must be the same as when it was added."""
+        """Remove an info, whose id and name have not changed since it was added."""
         place = self._place_of[id(info)]
         del self._at[place]
         for key in _calls("_", vars(info)):
@@ -300,7 +300,7 @@ def info_class(cls: type[T]) -> type[T]:
 
 
 def _camel(name: str) -> str:
-    """Return the JSON key of a Python field: ``gearRatio`` for ``gear_ratio``, empty for ``_name``."""
+    """Return the JSON key of a field: ``gearRatio`` for ``gear_ratio``, empty for ``_name``."""
     first, *rest = name.split("_")
     return first and first + "".join(word.capitalize() for word in rest)
 
@@ -310,7 +310,7 @@ class Info(ApiObject):
     """Base class of infos. Infos are equal if their fields are; ``repr`` is an expression that creates the info."""
 
     _called: ClassVar[str]
-    """Class name in ``repr`` and error messages; by default ``__name__``."""
+    """Name of the class for ``repr`` and error messages; by default ``__name__``."""
     _entries: ClassVar[tuple[Entry, ...]]
     """Conversions of all fields to JSON keys."""
     _internal: ClassVar[tuple[str, ...]] = (
@@ -442,7 +442,7 @@ def _default(field_: Field[Any]) -> object:
 
 
 _ROUNDING = 1e-14
-"""Tolerance of equal matrices, as JSON converts rotations to quaternions."""
+"""Tolerance of equal matrices after a conversion of their rotations to quaternions, as in JSON."""
 
 
 def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put into fields
@@ -462,7 +462,7 @@ def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put
 
 
 def _written(value: object) -> str:
-    """Return a value as a Python expression that needs no imports; arrays become lists."""
+    """Return a Python expression for a value that needs no imports; arrays are written as lists."""
     if isinstance(value, Enum):
         return f"{type(value).__name__}.{value.name}"
     if isinstance(value, np.ndarray | np.generic):

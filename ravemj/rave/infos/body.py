@@ -365,7 +365,7 @@ class RobotBaseInfo(KinBodyInfo):
 
 
 def _alike(first: object, second: object) -> bool:
-    """Return whether two JSON values are equal, with a tolerance for numbers rounded in a file."""
+    """Return whether two JSON values are equal, with a tolerance for numbers that went through a file."""
     if first == second:
         return True
     if isinstance(first, dict) and isinstance(second, dict):

@@ -190,7 +190,7 @@ class GeometrySizes(IdentifiedInfo):
 
 
 def _first(numbers: ArrayLike) -> Floats:
-    """Return the first three numbers, with 0 for missing ones."""
+    """Return the first three numbers; missing ones are 0."""
     return np.array([*np.ravel(np.asarray(numbers, dtype=float)), 0.0, 0.0, 0.0])[:3]
 
 
@@ -204,7 +204,7 @@ _EXTENTS = Form(
 
 
 def _number(place: int) -> Form:
-    """Return the JSON conversion of one element of a vector field, at index ``place``."""
+    """Return the JSON conversion of one element of a vector field."""
 
     def read(value: float, scale: float, present: Any) -> Floats:  # noqa: ANN401 - what users put into the field
         numbers = np.array([*_first(present), 0.0])
@@ -377,7 +377,7 @@ class GeometryInfo(GeometrySizes):
         return info
 
     def _take(self, shape: scene.Shape) -> None:
-        """Set the size fields from a shape; each vector size has its field, all scalar sizes share the first."""
+        """Set the size fields from a shape: one field per vector size; the first field has all scalar sizes."""
         vectors, numbers = iter(VECTORS), list[float]()
         for size in shape.sizes():
             value = getattr(shape, size.name)

@@ -404,7 +404,7 @@ class JointInfo(ParameterFields):
 _DEFAULTS = {
     entry.field: float(next(iter(getattr(JointInfo(), entry.field)), 0.0)) for entry in JointInfo._entries if entry.of
 }
-"""Default values of axis fields in new infos."""
+"""Default values of new infos for each axis."""
 
 
 _REPORTED = {"max_torque": "own_torque"}
@@ -412,7 +412,7 @@ _REPORTED = {"max_torque": "own_torque"}
 
 
 def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:
-    """Return an axis's motor as an equivalent one with gear ratio 1; None if the axis has no motor."""
+    """Return the motor of an axis as an equivalent motor with gear ratio 1; None if the axis has no motor."""
     if not (axis.armature or axis.speed_torques or axis.joint_torque is not None):
         return None
     turn = 1.0 if is_slider else 2 * math.pi

@@ -24,7 +24,7 @@ PINHOLE = {"fx": (0, 0), "fy": (1, 1), "cx": (0, 2), "cy": (1, 2)}
 
 
 def _number_of_matrix(place: tuple[int, int]) -> Form:
-    """Return the JSON conversion of one matrix element, at ``place`` (row, column)."""
+    """Return the JSON conversion of one element of a matrix."""
 
     def read(value: float, scale: float, present: Any) -> Floats:  # noqa: ANN401 - what users put into the field
         del scale
@@ -272,7 +272,7 @@ _DESCRIBED: Mapping[type, type[SensorGeometry]] = {
     scene.JointEncoder: JointEncoderGeomData,
     scene.Tactile: TactileGeomData,
 }
-"""Info class by device class."""
+"""Info class of each device class."""
 
 _OTHER_NAMES = {
     "correction_matrix": "correction",
@@ -343,7 +343,7 @@ def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[st
 
 
 def _is_angle(field: str, kind: Any) -> bool:  # noqa: ANN401 - a type
-    """Return whether an info field has angles about two axes, of which the device has only the first."""
+    """Return whether a field has angles about two axes, of which the device has only the first."""
     return kind is float and field in {"min_angle", "max_angle", "resolution"}
 
 

@@ -842,7 +842,7 @@ class BodyConfiguration(BodyPart):
 
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
-    """Return a Jacobian's columns, along its last axis, for DOF indices; an invalid index gives zeros."""
+    """Return the columns of a Jacobian for DOF indices, along its last axis; zeros for an invalid index."""
     if indices is None:
         return jacobian
     chosen = checked_whole_numbers(indices, "indices")
@@ -858,7 +858,7 @@ def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
 
 
 def _both_columns(hessian: Floats, indices: "ArrayLike | None") -> Floats:
-    """Return a Hessian's elements for DOF indices, along its first and last axis; see ``_columns``."""
+    """Return the columns of a Hessian for DOF indices, along its first and last axis; see ``_columns``."""
     return hessian if indices is None else _columns(_columns(hessian, indices).T, indices).T
 
 

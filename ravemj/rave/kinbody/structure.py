@@ -316,7 +316,7 @@ class BodyPart(ApiObject):
         return [links[index] for index in checked_indices(indices, len(links), "indices").tolist()]
 
     def _all_links(self) -> tuple[Link, ...]:
-        """Return the links, each created once, as they only store an index."""
+        """Return the links. They are created once, since they only store an index."""
         count = len(self._state.scene.links)
         if len(self._links) != count:
             self._links = tuple(Link(self._body, self._state, index) for index in range(count))
@@ -344,7 +344,7 @@ class BodyPart(ApiObject):
         return [joints[index] for index in checked_indices(indices, len(joints), "indices").tolist()]
 
     def _all_joints(self) -> tuple[Joint, ...]:
-        """Return the active joints, then the passive ones, each created once."""
+        """Return the active joints, then the passive ones; created once, like the links."""
         body = self._state.scene
         count = len(body.joints) + len(body.passive_joints)
         if len(self._joints) != count:
@@ -800,18 +800,14 @@ class BodyPart(ApiObject):
 
 
 _ARCHIVE = ".zae"
-"""File name suffix of archives of COLLADA documents."""
+"""Suffix of archives with COLLADA documents."""
 
 _NO_FILES = frozenset({FROM_SCRIPT.file, "data"})
-"""Source names of bodies that were not read from a file; readers of strings use ``data``."""
+"""Source names of bodies that were not read from a file; readers of text use the name ``data``."""
 
 
 def _rows(numbers: ArrayLike, widths: tuple[int, ...], name: str) -> Floats:
-    """Return numbers as rows of one of the given widths.
-
-    Raises:
-        RavemjError: the shape is wrong, or a number is not finite.
-    """
+    """Return numbers as rows of one of the given widths; raise an error if a shape or number is invalid."""
     rows = checked_numbers(numbers, name)
     wanted = " or ".join(f"(n, {width})" for width in widths)
     if rows.ndim != 2:

@@ -36,7 +36,7 @@ Target = ArrayLike | IkParameterization | CollisionReport | None
 
 
 def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floats | None, CollisionReport | None]:
-    """Return tool pose and report. The pose is None if none was given, or a report in its place."""
+    """Return tool pose and report; the pose is None if none was given, or the report in its place."""
     if isinstance(transform, IkParameterization):
         return transform.GetTransform6D(), report
     if transform is None or isinstance(transform, CollisionReport):
@@ -45,7 +45,7 @@ def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floa
 
 
 _SAME = 1e-12
-"""Largest difference of equal tool poses or directions."""
+"""The tolerance within which two tool poses or directions are equal."""
 
 
 class Manipulator(ArmIk):

@@ -43,7 +43,7 @@ WITH_DIRECTION = {
 """Goal types that depend on the direction of the tool."""
 
 _GONE = 1 << 30
-"""Index that marks a removed manipulator, larger than any valid one."""
+"""Index of a removed manipulator, larger than any valid one."""
 
 
 class IkBatch(NamedTuple):
@@ -127,7 +127,7 @@ class ArmIk(ApiObject):
     GetEndEffectorTransform = GetGraspTransform = GetTransform
 
     def _tool(self) -> Tool:
-        """Return tool and arm joints as arrays, cached until the manipulator's description changes."""
+        """Return the tool and the joints as arrays, cached until the description changes."""
         arm = self._scene
         if self._known is None or self._known.arm is not arm:
             self._known = Tool.for_arm(arm)

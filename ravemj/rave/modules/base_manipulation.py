@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 _SAME = 1e-9
-"""Largest difference of equal configurations [rad or m]."""
+"""Tolerance of equal configurations [rad or m]."""
 
 NO_SETS = MotionSets()
 
@@ -189,7 +189,7 @@ class Manipulation:
         raise PlanningError(status.description, status=status)
 
     def _warn_of_limits(self, conditions: Conditions, space: Space, goals: Sequence[Floats]) -> None:
-        """Warn of the first value of a goal that is outside its limits."""
+        """Warn of the first goal value that is outside its limits."""
         assert conditions.bodies is not None, "something moves"
         for goal in goals:
             away = np.abs(space.clamp(goal) - goal)
@@ -265,7 +265,7 @@ def _check(goals: Sequence[Floats], starts: Sequence[Floats], dof: int) -> None:
 
 
 def _unreached(manip: Manipulator, goals: Sequence[IkParameterization]) -> str:
-    """Describe how far the first goal is out of reach, or that it collides."""
+    """Describe by how much the first goal is out of reach, or that it collides."""
     shortfall = manip.search(goals[0], _CHECKED).shortfall()
     if not shortfall:
         return "without collisions for any of the goals"
@@ -489,11 +489,11 @@ _CAUSES = {
     IkReturnAction.RejectSelfCollision: Cause.SELF_COLLISION,
     IkReturnAction.RejectCustomFilter: Cause.FILTER,
 }
-"""Failure causes by OpenRAVE's codes; all other codes are collisions with other bodies."""
+"""Failure causes by OpenRAVE's codes; all others are collisions with other bodies."""
 
 
 def _without_solutions(manip: Manipulator, goals: Sequence[IkParameterization]) -> PlanningError:
-    """Return an error with the number of goals without IK solution per cause, and one pair of colliding links."""
+    """Return an error that counts the goals without IK solution by cause, and names two colliding links."""
     tally, pairs = Tally([""]), Counter[str]()
     for goal in goals:
         failures: list[IkFailureInfo] = []

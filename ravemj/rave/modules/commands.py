@@ -422,7 +422,7 @@ def _pose(tokens: Tokens) -> Floats:
 
 
 def _several(reader: Reader) -> Reader:
-    """Return a reader of a list of values, preceded by their count."""
+    """Return a reader of a list, preceded by its count."""
     return lambda tokens: [reader(tokens) for _ in range(tokens.count())]
 
 
@@ -449,7 +449,7 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
     "rotation": lambda tokens: IkParameterization(tokens.numbers(4), _KIND.Rotation3D),
     "ikparam": lambda tokens: IkParameterization.take(tokens.words),
 }
-"""Readers of the options that give one tool goal."""
+"""Readers of options with one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
 """Options that give several tool goals, and the option for one goal whose reader they repeat."""

@@ -39,7 +39,7 @@ _CLOSED = 1e-9
 """Minimum distance to the boundary of the wrench hull at which the fast test suffices; OpenRAVE's value."""
 
 _BLOCK = 32
-"""Number of candidate grasps per task of a worker process."""
+"""Number of candidates per task of a worker process."""
 
 _CHECKED = int(IkFilterOptions.CheckEnvCollisions)
 
@@ -321,7 +321,7 @@ class GraspSimulation(Manipulation):
 
 
 def _sweep_part(content: bytes, span: tuple[int, int]) -> list[tuple[int, Found]]:
-    """Simulate a range of candidate grasps in a worker process; return the accepted ones without their targets."""
+    """Simulate a range of candidates in a worker process; return the accepted grasps without their target."""
     robot, candidates, request, sweep = _unpickled(content)
     simulation = GraspSimulation(robot.GetEnv())
     simulation.choose(robot.GetName())

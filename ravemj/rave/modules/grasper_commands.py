@@ -207,7 +207,7 @@ def _parameters(grasper: GraspSimulation, options: Options, avoided: list[str]) 
 
 
 def _rows(contacts: Floats, links: Ints | None) -> str:
-    """Return a text line per contact, with the index of its link if ``links`` is given."""
+    """Return a line for each contact, with the index of its link if given."""
     ends = ["" for _ in contacts] if links is None else [str(link) for link in links.tolist()]
     return "".join(f"{_text(row)}{end}\n" for row, end in zip(contacts, ends, strict=True))
 

@@ -47,7 +47,7 @@ def ikfast_module(env: Environment, xmlid: str) -> Module:
 
 
 def _type(word: str) -> IkParameterizationType:
-    """Return the goal type with a number or name."""
+    """Return the goal type of a number or a name."""
     for kind in GOAL_TYPES:
         if word in {kind.name, str(int(kind))}:
             return kind

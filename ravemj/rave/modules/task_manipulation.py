@@ -124,11 +124,11 @@ def _goal(T_world_tool: Floats) -> IkParameterization:
 
 
 _STEP = 0.01
-"""Step of joint motions between collision checks [rad or m]."""
+"""Step size of joint motions between two collision checks [rad or m]."""
 
 
 _ANY = np.array([0.0, 0.0, 1.0])
-"""Approach direction passed if the hand does not move."""
+"""Placeholder for the approach direction if the hand does not move."""
 
 
 def _check_motion(directions: Floats, step: float) -> None:
@@ -227,7 +227,7 @@ class TaskManipulation(Manipulation):
         return final, self._motion(dofs, final)
 
     def _fingers(self, dofs: Sequence[int], directions: Floats, steps: Steps, approach: Approach) -> Floats:
-        """Simulate closing fingers, one after the other; return the joint values at which they stop."""
+        """Simulate fingers that move one after the other; return the joint values at which they stop."""
         _check_motion(directions, min(steps))
         manip, state = self.robot.GetActiveManipulator(), self.robot.simulation_state
         assert manip is not None, "it has a gripper"
@@ -258,7 +258,7 @@ class TaskManipulation(Manipulation):
         return self.straight(np.stack([self.robot.GetDOFValues(dofs), final]), dofs)
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
-        """Simulate joints that move until contact or to their limits; return the joint values at which they stop."""
+        """Simulate joints that move until contact or to their limits; return the values at which they stop."""
         _check_motion(directions, step)
         return move_until_contact(
             self.bodies_of(dofs),
@@ -269,7 +269,7 @@ class TaskManipulation(Manipulation):
         )
 
     def _touches(self, dof: int) -> bool:
-        """Return whether a link moved by a DOF touches another body, or a link that the DOF does not move."""
+        """Return whether a link moved by a DOF touches another body, or a link not moved by that DOF."""
         state, simulation = self.robot.simulation_state, self.env.simulation
         moved = MovedBy((dof,))
         with simulation.lock:

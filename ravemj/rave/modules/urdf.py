@@ -60,10 +60,10 @@ def _given(srdf: list[str]) -> dict[str, str]:
 
 
 def _file(uri: str) -> str:
-    """Return the file path of a URI; paths are returned unchanged.
+    """Return the file of a URI; a path stays as it is.
 
     Raises:
-        SourceError: the ROS package does not exist.
+        SourceError: the package does not exist.
     """
     if "://" not in uri:
         return uri

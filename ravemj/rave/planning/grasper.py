@@ -294,7 +294,7 @@ def _link(robot: Robot, name: str) -> int:
 
 
 def _body(robot: Robot, word: str) -> KinBody | None:
-    """Return a body by its name or environment index; None for 0 or an empty text."""
+    """Return a body by its name or its index in the environment; None for 0 or an empty text."""
     if word in {"", "0"}:
         return None
     body = robot.GetEnv().GetKinBody(word)

@@ -25,7 +25,7 @@ from ravemj.trajectories import extraction
 from ravemj.trajectories.groups import AFFINE
 
 _MOST_GOALS = 100_000
-"""Maximum number of goals along a hand trajectory; each takes half a millisecond, so these take a minute."""
+"""Maximum number of goals of a hand trajectory. At half a millisecond each, these take a minute."""
 
 _REACHED = 1e-6
 """Largest distance from a grasp at which it counts as reached [m and rad]."""
@@ -109,7 +109,7 @@ class WorkspaceTrajectoryTracker(Planner):
     def _solutions(
         self, values: Values, hand: Hand, goal: IkParameterization, near: Floats, *, check: bool
     ) -> list[Floats]:
-        """Return configurations that reach a goal, nearest to ``near`` first; only one in a greedy search."""
+        """Return the configurations that reach a goal, nearest to ``near`` first; for greedy searches only one."""
         hand.tool.bodies.move(near)
         solutions: list[Floats] = []
         for row in hand.manip.FindIKSolutions(goal, 0):
@@ -200,7 +200,7 @@ class GraspGradient(PathPlanner):
         super()._check(values)
 
     def _grasps(self, values: Values) -> list[Floats]:
-        """Return the tool poses ``T_world_tool`` of the given grasps."""
+        """Return ``T_world_tool`` of each grasp."""
         name = values.tags.get("target", "")
         target = self._env.GetKinBody(name)
         if target is None:

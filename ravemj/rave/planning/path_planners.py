@@ -27,7 +27,7 @@ _ITERATIONS = 10000
 """OpenRAVE's default for the maximum number of iterations."""
 
 _SPACING = 10
-"""Maximum distance between waypoints of a path without post-processing, in units of the step length."""
+"""Maximum distance between waypoints of a path without post-processing, in step lengths."""
 
 
 _STRICT_ITERATIONS, _STRICT_EFFORT = 50, 4
@@ -39,7 +39,7 @@ class PathPlanner(Planner):
 
     _needs_goal: ClassVar[bool] = True
     _samples_roots: ClassVar[bool] = False
-    """Whether the planner samples starts and goals during the search."""
+    """Whether starts and goals are sampled during the search."""
 
     def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - passed on
         super().__init__(*arguments)
@@ -61,11 +61,11 @@ class PathPlanner(Planner):
         return problem if isinstance(problem, PlannerStatus) else None
 
     def _check(self, values: Values) -> None:
-        """Check all parameters except starts and goals."""
+        """Check the parameters except for starts and goals."""
         values.check()
 
     def _stated(self, values: Values, enough: int) -> Problem | PlannerStatus:
-        """Return the problem, or a failure status if no start or no goal is valid. Call within ``conditions.kept``.
+        """Return the problem, or the failure status if no start or no goal is valid. Call within ``conditions.kept``.
 
         ``enough`` is the number of starts and of goals to sample from regions.
         """
@@ -144,7 +144,7 @@ class PathPlanner(Planner):
         return status
 
     def _completed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
-        """Write the path of a search into a trajectory, and post-process it."""
+        """Write a found path into a trajectory, and post-process it."""
         assert search.path is not None, "it was found"
         traj.set_waypoints(Waypoints(values.groups, search.path))
         status = self._processed(values, traj, search)
@@ -153,10 +153,7 @@ class PathPlanner(Planner):
         return self._told(values, status)
 
     def _certified(self, values: Values, traj: Trajectory, status: PlannerStatus) -> PlannerStatus:
-        """Certify a motion, or replace it by another one that can be certified.
-
-        If neither succeeds, the status fails only if a certificate is required.
-        """
+        """Certify a motion, or replace it by one that can be certified; fail only if a certificate is required."""
         search = self._search_made
         if traj.is_certified():
             return status
@@ -200,7 +197,7 @@ class PathPlanner(Planner):
         return status
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
-        """Run the configured smoothers and retimers on a path."""
+        """Run the smoothers and retimers of the parameters on a path."""
         problem = post_process(self._env, values, traj)
         if problem is not None:
             return problem
@@ -209,7 +206,7 @@ class PathPlanner(Planner):
         return self._solved(f"found after {search.iterations} iterations")
 
     def _ends(self) -> tuple[int, int]:
-        """Return the indices of start and goal of the last path found; -1 if there is none."""
+        """Return the indices of the start and the goal of the last path; -1 without a path."""
         return (-1, -1) if self._search_made is None else (self._search_made.start, self._search_made.goal)
 
     _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {

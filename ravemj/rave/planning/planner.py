@@ -178,9 +178,9 @@ class Planner(Interface):
     _interface_type = InterfaceType.planner
     _internal = ("run",)
     _takes_text: ClassVar[bool] = False
-    """Whether parameters may be text. Texts do not name bodies, so only retimers and smoothers accept them."""
+    """Whether the planner accepts parameters as text. Texts do not name bodies, so only retimers and smoothers do."""
     _defaults: ClassVar[Mapping[str, str]] = {}
-    """Default values of planner-specific parameters, as texts by XML tag."""
+    """Default texts of the planner-specific parameters, by tag."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         super().__init__(env, xmlid)

@@ -51,7 +51,7 @@ _CONSTRAINTS: Mapping[str, str] = {
     "minswitchtime": "0.2",
     "nshortcutcycles": "1",
 }
-"""Further parameters of OpenRAVE's smoothers and their defaults; they have no effect here."""
+"""Further parameters of OpenRAVE's smoothers, with its defaults. They have no effect here."""
 
 
 class Retimer(Planner):
@@ -156,7 +156,7 @@ def _curved(
 
 
 def _is_allowed(curve: Waypoints, values: Values, find_body: FindBody) -> bool:
-    """Return whether the middles of a motion's cubic segments keep the constraint; there, the deviation is largest."""
+    """Return whether a motion's cubic segments keep the constraint at their middles, where the deviation is largest."""
     groups = list(values.groups)
     points, rates = (curve.as_layout(curve.data, some, find_body) for some in (groups, derived(groups, 1)))
     deltas = np.diff(curve.times())[:, None]

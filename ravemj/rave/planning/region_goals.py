@@ -31,16 +31,16 @@ _PROJECTED = 0.1
 """Error at which a projection stops, as a fraction of the tolerance, so that rounding does not reject its result."""
 
 _TRIES = 4
-"""Number of random configurations projected onto a region if the arm has no IK solver."""
+"""Number of random configurations to project onto a region if the arm has no IK solver."""
 
 _STEPS = 20
 """Maximum number of steps of a projection onto a region."""
 
 _MOST_ROWS = 16
-"""Maximum number of IK solutions tested per pose; arms with ranges of several turns may have hundreds."""
+"""Maximum number of IK solutions that are tested for a pose; arms with ranges of several turns may have hundreds."""
 
 _SAME = 1e-9
-"""Largest difference of equal values [rad or m]."""
+"""Tolerance of equal values [rad or m]."""
 
 _FULL_POSE = 6
 """Minimum number of arm joints that reach a full pose."""
@@ -158,7 +158,7 @@ class _PoseSolver:
         self.solves_poses = self._given is not None or manip.GetArmDOF() >= _FULL_POSE
 
     def solve(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
-        """Return all IK solutions of a pose in a region, including those that differ by full turns.
+        """Return all IK solutions for a pose of a region, including those that differ by full turns.
 
         Solvers of other goal types leave a part of the pose free; their solutions are projected onto the region.
         """
@@ -181,7 +181,7 @@ class _PoseSolver:
         return PoseSolutions(self._moved(region, rows, self._space), Cause.REGION)
 
     def _accepted(self, solver: IkSolver, goal: Floats) -> tuple[Floats, bool]:
-        """Return the IK solutions of a goal that user filters accept, and whether the solver has filters."""
+        """Return the solutions of a goal that user filters accept, and whether there are filters."""
         asked = IkParameterization()
         if goal.ndim == 1:
             asked.SetValues(goal, solver.kind)
@@ -189,7 +189,7 @@ class _PoseSolver:
         return np.array(search.every()).reshape(-1, self._manip.GetArmDOF()), search.asks_users
 
     def _cause(self, kind: _Type, goal: Floats, *, asked: bool) -> Cause:
-        """Return why a goal has no solution; ``asked`` tells whether user filters were called."""
+        """Return the reason why a goal has no solution; ``asked`` tells whether user filters were called."""
         from ravemj.ik.candidates import shortfall
 
         solver = self._manip.ik_solver(kind)
@@ -245,7 +245,7 @@ def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
 
 
 def _repaired(values: Values, error: Error, row: Floats) -> Floats | None:
-    """Return a configuration projected onto both the constraint and a region; None if that fails."""
+    """Project a configuration onto both the constraint and a region; None if that fails."""
     manifold = values.conditions.manifold
     if manifold is None:
         return None

@@ -54,7 +54,7 @@ CERTIFIED_CHAIN = "parabolicsmoother", _SECOND
 """Default post-processing of certified motions: without ``linearsmoother``, since its shortcuts are not undone."""
 
 _SAME = 1e-9
-"""Largest difference of equal configuration values [rad or m]."""
+"""Tolerance of equal configuration values [rad or m]."""
 
 _ROOT = "plannerparameters"
 _POSTPROCESSING = "_postprocessing"
@@ -141,7 +141,7 @@ def _elements(text: str) -> "Sequence[Element]":
 
 
 def _inner(element: "Element") -> str:
-    """Return the content of an XML element as text."""
+    """Return the content of an element as XML text."""
     from xml.sax.saxutils import escape, quoteattr  # noqa: PLC0415 - imports urllib, which is slow
 
     parts = [escape((element.text or "").strip())]

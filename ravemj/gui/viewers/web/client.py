@@ -28,7 +28,7 @@ from ravemj.gui.viewers.window_renderer import appearance
 _LOG = logging.getLogger("ravemj")
 _PERIOD = 1 / 60
 _HALF = 0.5
-"""Maximum resolution during motion on slow connections, relative to the view's resolution."""
+"""Maximum resolution while moving on slow connections, relative to the view's."""
 
 _MOST_PIXELS = 1920 * 1440
 _MOST_AT_ONCE = 100

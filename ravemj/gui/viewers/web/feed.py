@@ -36,13 +36,13 @@ FRAME, DRAWINGS, FIGURES = range(3)
 
 _UNIT = 32767
 _DIGITS = 6
-"""Decimals of sent positions [m]; smaller movements are not sent."""
+"""Decimals of positions [m]; smaller movements are not sent."""
 
 _VALUE_DIGITS = 4
-"""Decimals of sent slider values [rad, m or s], finer than a pixel."""
+"""Decimals of slider values [rad, m or s], finer than a pixel."""
 
 _LEVEL = 1
-"""Compression level of drawings; low, since they may change every frame."""
+"""Compression level of drawings: low, since they may change with every frame."""
 
 
 class Stage(NamedTuple):
@@ -136,7 +136,7 @@ class Feed:
         return messages
 
     def _news(self, stage: Stage) -> tuple[NDArray[np.intp], NDArray[np.intp]] | None:
-        """Return the indices of bodies that moved and shapes that changed colour; None if there are none."""
+        """Return the indices of moved bodies and recoloured shapes; None if there are none."""
         before = self._stage
         if before is None or before.scene.name != stage.scene.name:
             return np.arange(len(stage.positions)), np.arange(len(stage.colours))
@@ -156,7 +156,7 @@ def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
 
 
 def _difference(control: Control, before: Control) -> dict[str, object]:
-    """Return the name and the changed fields of a control."""
+    """Return the changed fields of a control, and its name."""
     old, new = asdict(before), asdict(control)
     new["value"] = round(control.value, _VALUE_DIGITS)
     return {name: value for name, value in new.items() if name == "name" or value != old[name]}

@@ -5,13 +5,13 @@ from collections import deque
 from collections.abc import Callable
 
 _UNDER_WAY = 2
-"""Maximum number of frames sent but not acknowledged; with 2, one is drawn while the page shows the other."""
+"""Maximum number of unacknowledged frames, so that one is drawn while the page shows the previous one."""
 
 _SLOW, _FAST = 0.15, 0.05
 """Excess over the minimum round-trip time [s] above which the quality is lowered, and below which it is raised."""
 
 _STALLED = 0.5
-"""Round-trip time [s] after which a page counts as stalled, as a hidden tab is; scripts do not wait for it."""
+"""Round-trip time [s] after which a page counts as stalled, like a hidden tab; scripts do not wait for it."""
 
 _DROP, _RISE = 0.7, 0.05
 _WORST, _BEST = 25, 85

@@ -35,11 +35,11 @@ _LARGEST = 8192
 _LONGEST_NAME = 20
 _MOST_BRACKETS = 8
 _FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
-"""Pattern of permitted names of uploaded files, which exclude paths to other folders."""
+"""Pattern of permitted names of uploaded files; none of them names another folder."""
 
 _DEEPEST = 10  # maximum depth of folders of an uploaded file
 _MOST_BYTES = 255
-"""Maximum length of a file name on most file systems [bytes]; longer names are cut before the suffix."""
+"""Maximum length of file names on most file systems [bytes]; longer names are cut before their suffix."""
 
 _LONGEST_SUFFIX = 20
 
@@ -140,11 +140,7 @@ def _name(kind: str) -> Callable[[object], str]:
 
 
 def _file_path(path: object) -> str:
-    """Return the checked path of an uploaded file, which may include folders.
-
-    Raises:
-        ValueError: the path is not permitted.
-    """
+    """Return the checked path of an uploaded file, which may include folders."""
     parts = path.split("/") if isinstance(path, str) else []
     if not 0 < len(parts) <= _DEEPEST:
         raise ValueError("there are no such files")
@@ -186,7 +182,7 @@ _KINDS: dict[str, tuple[Callable[..., Message], dict[str, Callable[[object], obj
     "ready": (Ready, {}),
     "draws": (DrawingSide, {"itself": _flag}),
 }
-"""Class of each kind of message, and converters of its fields in the constructor's order."""
+"""For each kind of message its class, and converters of its fields in the order of the constructor."""
 
 
 class Rejections:

@@ -17,7 +17,7 @@ PREFIX = "scene-"
 """Prefix of scene names in URLs."""
 
 _MOST = 8
-"""Maximum number of cached scenes, beyond which the oldest are removed."""
+"""Maximum number of cached scenes; the oldest are removed."""
 
 _LEVEL = 6
 

@@ -36,14 +36,14 @@ _FOREVER = "private, max-age=31536000, immutable"
 
 _TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")
 _MAY_REPEAT = {"forwarded", "via", "x-forwarded-for", "x-forwarded-port", "x-forwarded-proto"}
-"""Names of headers that may occur more than once, since each proxy may add one."""
+"""Headers that may be repeated, since each proxy may add one."""
 
 _METHOD = re.compile(rb"([A-Za-z]{1,16})(?: |$)")
 _HANDSHAKE = 5.0
-"""Time limit for a request on an unauthenticated connection [s]."""
+"""Time limit for a request of an unauthenticated connection [s]."""
 
 _FAREWELL = 1.0
-"""Time limit for pages to disconnect when the viewer closes [s]."""
+"""Time limit for pages to disconnect when the viewer is closed [s]."""
 
 _servers: "weakref.WeakSet[PageServer]" = weakref.WeakSet()
 
@@ -152,7 +152,7 @@ class PageServer:
                 os.close(each.detach())
 
     def _accept(self) -> None:
-        """Accept connections, each in its own thread; ``Server.serve_forever`` would wait for them without limit."""
+        """Accept connections, a thread for each: ``Server.serve_forever`` would wait for its threads without limit."""
         while not self.closed.is_set():
             try:
                 connection, address = self._listening.accept()
@@ -216,7 +216,7 @@ class PageServer:
         return _page(page, policy, may_compress="gzip" in headers.get("Accept-Encoding", ""))
 
     def _open(self, headers: Headers) -> Response | None:
-        """Return a response that refuses a WebSocket connection, or None to accept it."""
+        """Return a refusal of a WebSocket connection, or None to accept it."""
         origin, thread = headers.get("Origin", ""), threading.current_thread()
         if not self._is_our_page(origin, headers):
             self.complain("a page of another site is refused", origin)
@@ -243,7 +243,7 @@ class PageServer:
         return self._any_name or host in {f"{_bracketed(name)}:{self.port}" for name in _LOCAL_NAMES}
 
     def _is_our_page(self, origin: str, headers: Headers) -> bool:
-        """Return whether the Origin header is that of this server, which other sites cannot forge in a browser."""
+        """Return whether the Origin header is this server's; other sites cannot forge it in a browser."""
         names, schemes = [headers.get("Host", "")], ["http"]
         if self._any_name:
             names.append(headers.get("X-Forwarded-Host", "").partition(",")[0].strip())
@@ -261,7 +261,7 @@ def _close_all() -> None:
 
 @in_child
 def _forget_all() -> None:
-    """Close the servers' sockets in a forked child, so that the parent can free the ports."""
+    """Close the sockets in a forked child, so that the ports are free when the parent closes them."""
     for server in _servers.copy():
         server.forget()
     _servers.clear()
@@ -298,7 +298,7 @@ def _bracketed(name: str) -> str:
 
 
 def _is_refused(connection: socket.socket) -> bool:
-    """Wait for a request's method; unless it is GET, answer with a refusal, close, and return True.
+    """Wait for the method of a request; if it is not GET, answer with a refusal, close, and return True.
 
     ``websockets`` would close the connection without an answer if the request has a body.
     """

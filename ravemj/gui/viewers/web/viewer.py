@@ -33,7 +33,7 @@ from ravemj.gui.viewers.web.uploads import PageUploads, UploadQuota
 _LOG = logging.getLogger("ravemj")
 _LONGEST_SYNC, _SYNC_STEP = 0.5, 0.005
 _MOST_TABS = 64
-"""Number of browser tabs whose views are kept after they disconnect."""
+"""Number of tabs whose views are kept after a lost connection."""
 
 
 class WebViewer(Viewer):
@@ -136,7 +136,7 @@ class WebViewer(Viewer):
             _LOG.warning("the viewer is at %s", self.url)
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        """Return what notebooks show: the viewer's page if the server can be reached, and a picture."""
+        """Return the notebook display of the viewer: its page if the server answers, and a picture."""
         try:
             picture = self.render()
         except RavemjError:  # no renderer works here, or MuJoCo refuses a body
@@ -196,7 +196,7 @@ class WebViewer(Viewer):
         return client.patience
 
     def _add_chunks(self, client: Client, uploads: PageUploads) -> None:
-        """Add received chunks to the uploads, and completed uploads to the environment."""
+        """Add the received chunks to uploads, and complete uploads to the environment."""
         notices = client.interaction.controls.notices
         while client.chunks:
             trouble = uploads.add(client.chunks.popleft())
@@ -221,7 +221,7 @@ class WebViewer(Viewer):
             _LOG.info("%s", request)
 
     def _keep_video(self, interaction: Interaction, name: str, content: bytes) -> None:
-        """Store a video for the page that requested it, or for any page if that one has disconnected."""
+        """Store a video for the page that requested it, or for another page if that has disconnected."""
         with self._lock:
             self._videos.append((interaction, name, content))
 
@@ -253,7 +253,7 @@ def _first_scene(reference: "weakref.ref[WebViewer]") -> str:
 
 
 def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) -> None:
-    """Serve a page until it disconnects, or the viewer is closed or collected; waiting holds no strong reference."""
+    """Serve a page until it disconnects or the viewer is closed or collected; waiting holds no strong reference."""
     viewer = reference()
     if viewer is None:
         return
@@ -279,7 +279,7 @@ def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) ->
 
 
 def _tab(connection: ServerConnection) -> str:
-    """Return the browser tab's name from the page's request, or a new one."""
+    """Return the tab name that a page sends, or a new one."""
     request = connection.request
     match = None if request is None else re.search(r"\?tab=([A-Za-z0-9-]{1,40}(?:\.\d{1,3})?)$", request.path)
     return match[1] if match else f"#{id(connection)}"
