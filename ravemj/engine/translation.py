@@ -214,7 +214,7 @@ def translate(scene: Scene, diagnostics: Diagnostics, choices: TranslationChoice
 
 
 def _scene_text(scene: Scene, excluded: Sequence[tuple[str, str]]) -> XmlLines:
-    """Return ravemj's text of scene properties that belong to no body, which it reads again from the document."""
+    """Return scene properties that belong to no body, as text from which ravemj reads them again."""
     content = XmlLines(2)
     content.text_element(SCENE, scene_text(scene, excluded))
     return content

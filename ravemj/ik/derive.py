@@ -102,7 +102,6 @@ def derive(
 
 
 def _prove(solver: ClosedForm) -> Validation | None:
-    """Validate a solver, first with few configurations; return the validation if it succeeds, else None."""
     try:
         if certify(solver, count=_FEW).holds:
             certificate = certify(solver)

@@ -199,7 +199,7 @@ class ArmSearch:
         return not asks or self.accepts(row, before_collisions=False)
 
     def _collides(self, row: Floats) -> bool:
-        """Return whether the robot collides at its present joint values, as far as the collision checks ask."""
+        """Return whether the robot collides at its present joint values, according to ``self.checks``."""
         if not (self.checks.others or self.checks.itself):
             return False
         checks, body, arm, world = self.checks, self.body, self.arm, self._checker.world()

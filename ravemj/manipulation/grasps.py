@@ -240,7 +240,7 @@ class GraspSearch:
         return _unit(direction)
 
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
-        """Return the arm's IK solutions before the straight approach, if the approach to the grasp is possible."""
+        """Return the arm's IK solutions at the start of the straight approach from which it reaches the grasp."""
         start = T_world_tool.copy()
         start[:3, 3] -= self._options.approachoffset * direction
         rows: list[Floats] = []

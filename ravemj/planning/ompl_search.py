@@ -129,7 +129,7 @@ def _nearest(space: Space, configurations: Sequence[Floats], configuration: Floa
 
 
 def _apply(solver: Ompl, settings: Mapping[str, str]) -> None:
-    """Set parameters by OMPL's setters, ``goal_bias`` by ``setGoalBias``, to integers, floats or booleans."""
+    """Set OMPL parameters by their setters, as ``goal_bias`` by ``setGoalBias``, parsed as numbers or booleans."""
     for name, text in settings.items():
         setter = getattr(solver, "set" + "".join(map(str.capitalize, name.split("_"))), None)
         if name in _NO_SETTINGS or setter is None:

@@ -203,7 +203,7 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
 
 
 def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_start: bool) -> list[float]:
-    """Return for each pair the time [s] nearest to the motion's start or end with the distance ``APART``."""
+    """Return the time [s] at which each pair's distance first reaches ``APART``, searched from start or end."""
     begin, finish = curves[0].start, curves[-1].end
     times = np.linspace(begin, finish, _SEARCH + 1) if is_start else np.linspace(finish, begin, _SEARCH + 1)
     times_apart, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)
@@ -300,7 +300,7 @@ def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof)
 
 
 def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
-    """Return the intervals with the smallest lower bounds, as many as can be refined, and the least of the others."""
+    """Return the intervals with the smallest bounds, as many as can be refined, and the least bound of the others."""
     most, proved = _REFINEMENTS * _REFINED, list[_Proved]()
     for (times, control), cases, _, bounds, _ in every:
         least = np.full(len(times), np.inf)
@@ -313,7 +313,7 @@ def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
 
 
 def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
-    """Return parts of the intervals ``near``; lower bounds of pairs below ``wanted`` [m] are computed again."""
+    """Return the parts of intervals, with new lower bounds for pairs whose bounds are below ``wanted`` [m]."""
     whole = Intervals(np.array([interval.times for interval in near]), np.array([each.control for each in near]))
     parts, origins = whole.parts(np.full(len(near), _CUTS))
     known = np.full((len(origins), spaces.pair_count), np.inf)

@@ -17,7 +17,7 @@ from ravemj.planning.retiming.segments import PathLimits
 from ravemj.planning.space import Space
 
 _WORTH = 3e-3
-"""Minimum saving of a shortcut, as a fraction of the path length, because collision checks dominate the time."""
+"""Minimum saving of a shortcut, as a fraction of the path length; smaller ones are not worth their collision checks."""
 
 _MOST_ENDS = 32
 """Maximum number of waypoints to which a straight line from one waypoint is tried."""

@@ -331,7 +331,7 @@ class IdealController(Controller):
             self._desired, self._is_done = None, True
 
     def _play(self, path: _Path, timestep: float) -> None:
-        """Move the robot to the path at the controller's time, then advance that time.
+        """Move the robot to the path's point at the controller's time, then advance that time.
 
         In this order, as in OpenRAVE, the first step sets the first waypoint.
         """

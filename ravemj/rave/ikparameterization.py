@@ -51,7 +51,7 @@ _ROTATION_SIZES = {
     _Type.TranslationLocalGlobal6D: 3,
     **dict.fromkeys(_ANGLES, 1),
 }
-"""Number of stored values before the point, by goal type, in place of OpenRAVE's quaternion; 0 for other types."""
+"""Number of values of a goal that OpenRAVE stores in place of its quaternion, by goal type; 0 for other types."""
 
 _SET = """Set the goal to a point and the {angle}.
 

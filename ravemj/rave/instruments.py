@@ -188,8 +188,6 @@ class TactileSensorData(SensorData):
 
 
 class _ActuatorState(NamedInt):
-    """Motion state of an actuator."""
-
     Undefined = 0
     Idle = 1
     Moving = 2

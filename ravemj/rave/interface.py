@@ -325,7 +325,6 @@ class Interface(ReadableInterface):
         raise RavemjError(message + ", ".join(["help", *commands]), ErrorCode.CommandNotSupported)
 
     def _known_commands(self) -> Mapping[str, Command]:
-        """Return the command handlers by name."""
         return {name: partial(run, self) for name, run in self._commands.items()}
 
     def _help(self) -> str:

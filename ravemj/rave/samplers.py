@@ -154,7 +154,7 @@ class _Random:
     """Independent, uniformly distributed samples of the standard Mersenne Twister, seeded as in OpenRAVE."""
 
     kinds = frozenset(SampleDataType)
-    """The kinds of numbers."""
+    """Kinds of numbers that the sampler generates."""
 
     def __init__(self) -> None:
         self._generator = np.random.RandomState()  # newer generators seed in another way

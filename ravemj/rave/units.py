@@ -99,7 +99,7 @@ def _written(unit: NamedInt) -> str:
 
 
 def _read(kind: type[Unit], text: str, default: Unit) -> Unit:
-    """Return the unit with a name; the default for an empty text."""
+    """Return the unit named ``text``; the default for an empty text."""
     if not checked_kind(text, str, f"{kind.__name__}: the unit", "a text"):
         return default
     name = _OTHER_WORDS.get(kind, {}).get(text, text)

@@ -251,7 +251,7 @@ class Clearances:
         self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
 
     def _measure_triangles(self, cases: _Cases, some: Ints) -> None:
-        """Measure non-convex meshes whose hulls are too close by their triangles, and raise the bounds."""
+        """Measure non-convex meshes by their triangles if their hulls are too close, and raise the gap bounds."""
         for case in some.tolist():
             self._place(int(cases.rows[case]))
             pair = cases.pairs[case]

@@ -401,7 +401,7 @@ class BodyDynamics:
     def _write_parts_of_joints(self) -> None:
         """Write the forces due to acceleration, velocity and gravity, if only joints without motors move.
 
-        MuJoCo can omit accelerations; without gravity, only velocity effects remain.
+        Without accelerations and gravity, ``mj_rne`` returns only the effects of velocity.
         """
         by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
         mujoco.mj_rne(self._model, self._data, 1, by_acceleration)

@@ -170,7 +170,7 @@ def _value(expression: "Expression", named: dict[str, Floats], values: Floats) -
 
 
 def _add_spherical(coupling: Coupling, joint: SphericalJoint, coordinate: int, vector: Floats, *, second: bool) -> None:
-    """Add a spherical joint's entries; MuJoCo's coordinates are angular velocities about the child link's axes."""
+    """Add a spherical joint to a coupling; its MuJoCo velocities are about the axes of the child link."""
     rest = np.array(rows_from_wxyz(joint.joint.T_parent_child.wxyz)).T
     rate, changes = rotation_rate(vector)
     first = joint.dofs.start

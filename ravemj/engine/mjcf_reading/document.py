@@ -28,7 +28,7 @@ _NUMBERS = ("hfield",)
 _COPIES = {"replicate": "count", "composite": "count", "flexcomp": "count"}
 _MOST_COPIES = 100_000
 _MOST_LOOKED_AT = 100
-"""Maximum number of files in a folder that are searched for the model that includes a partial one."""
+"""Maximum number of files of a folder that are searched for the model that includes a partial model."""
 
 
 class StartTag(NamedTuple):

@@ -73,7 +73,6 @@ def _unit(numbers: Floats) -> Floats:
 
 
 def _move(tree: BodyTree, T_world_root: Pose) -> None:
-    """Move a body so that its root reaches a pose."""
     moved = T_world_root @ tree.builder.links[0].pose.inverse()
     for index, link in enumerate(tree.builder.links):
         link.pose = moved @ link.pose if index else T_world_root

@@ -177,7 +177,7 @@ class _OwnBody:
         )
 
     def _geometries(self, index: int, link: Link) -> tuple[Geometry, ...]:
-        """Return a link's shapes: the text's if they match the MJCF's geoms, else shapes made from the geoms."""
+        """Return a link's shapes: those of ravemj's text if they match the geoms, else shapes made from the geoms."""
         model, number = self._model, self._bodies[index]
         first, count = int(model.body_geomadr[number]), int(model.body_geomnum[number])
         if self._names.decomposed:

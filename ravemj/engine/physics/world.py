@@ -77,7 +77,7 @@ class Physics:
         self._give_back()
 
     def _drive(self, applied: Floats) -> None:
-        """Apply the joint forces ``applied``, with the motors' added, in the next time step."""
+        """Apply the joint forces ``applied`` and the motors' forces in the next time step."""
         driven = [state for state, loads in self._loads.items() if loads.motor is not None and state in self._bodies]
         if driven:
             self._data.qfrc_applied[:] = applied

@@ -186,7 +186,6 @@ def _time_bar(time: list[Control], size: tuple[int, int], row: int) -> dict[Cont
 
 
 def _around(places: dict[Control, Rect]) -> Rect:
-    """Return the rectangle around the controls of a row."""
     first, *_, last = places.values()
     return first._replace(width=last.x + last.width - first.x)
 

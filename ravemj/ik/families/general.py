@@ -87,7 +87,7 @@ class General:
 
 
 def _left(screws: Sequence[Screw]) -> Floats:
-    """Return the left sides' coefficients, (N, 14, 27): powers up to 2 of joint 3, 4 and 5's half-angle tangents."""
+    """Return the left sides of the 14 loop equations, (N, 14, 27), as coefficients of three half-angle tangents."""
     turns = [turn_of((_GRID + origin).reshape(3, 1)) for origin in _ORIGINS]
     places = np.indices((3, 3, 3)).reshape(3, 27)
     values = _carried(screws, [turn[:, place] for turn, place in zip(turns, places, strict=True)])

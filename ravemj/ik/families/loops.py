@@ -147,11 +147,11 @@ class _Around:
         self._goal, self._rest = goal, rest
 
     def needed(self) -> RigidMotion:
-        """Return the motion B that the block must make: K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W."""
+        """Return the motion that the block must make: rest⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ goal."""
         return self._motion(self._goal, self._rest, self._pairs, Screw.turned_back, Screw.moved_back)
 
     def opposite(self) -> RigidMotion:
-        """Return the inverse of the motion B that the block of joints has to make."""
+        """Return the inverse of the motion that the block must make."""
         return self._motion(self._rest, self._goal, self._pairs[::-1], Screw.turned, Screw.moved)
 
     def _motion(

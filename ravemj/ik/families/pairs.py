@@ -187,7 +187,7 @@ class Pair:
         return (distance + tile(slope[1], turns.shape[-2]) * turns[1])[None], turns
 
     def _two_turns(self, one: Floats, three: Floats, rest: Floats) -> tuple[Floats, Floats]:
-        """Solve A x + C y = rest for unit vectors x and y, by |adj(A) (rest - C y)|² = det(A)² for y."""
+        """Solve A x + C y = rest for unit vectors; eliminating x leaves |adj(A) (rest - C y)|² = det(A)²."""
         adjugate = np.array([np.array([one[1, 1], -one[0, 1]]), np.array([-one[1, 0], one[0, 0]])])
         determinant = one[0, 0] * one[1, 1] - one[0, 1] * one[1, 0]
         scale = np.abs(one).max(axis=(0, 1))

@@ -32,7 +32,7 @@ _NEWTON = 1e-5
 _TURNS = 3
 """Maximum number of multiplier updates, and of Newton steps on contacts."""
 _EXACTLY = 1e-6
-"""Largest contact error after a displacement that counts as removed, as a fraction of the error before."""
+"""Fraction of a contact error up to which the error after a displacement counts as removed."""
 _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3

@@ -226,7 +226,6 @@ class _HullGrowth:
         return normals, 1 / lengths + normals @ self.center
 
     def volume(self) -> float:
-        """Return the volume of the complete hull."""
         return float(np.abs(np.linalg.det(self.points[self.facets] - self.center)).sum()) / factorial(
             self.points.shape[1]
         )

@@ -284,8 +284,6 @@ _Make = Callable[[HandTests], _Candidate]
 
 
 class _CandidateSearch:
-    """Search for grasps by one robot of one object."""
-
     def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> None:
         self._robot, self._arm, self._target, self._choices = robot, arm, target, choices
         sides = dict(zip(arm.gripper_dofs, arm.chucking_direction, strict=True))

@@ -77,7 +77,7 @@ def timed_cubics(
 
 
 def _check_values(values: Floats, cubics: "_Cubics", limits: PathLimits) -> None:
-    """Raise a RetimingError if the cubics leave the limits of the values between the waypoints."""
+    """Raise a RetimingError if values leave their limits between the waypoints."""
     for extreme in cubics.extremes():
         beyond = values[:-1] + extreme
         for row, column in np.argwhere(limits.coordinates.outside(beyond, limits.lower, limits.upper)):

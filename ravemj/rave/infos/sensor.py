@@ -343,7 +343,7 @@ def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[st
 
 
 def _is_angle(field: str, kind: Any) -> bool:  # noqa: ANN401 - a type
-    """Return whether a field has angles about two axes, of which the device has only the first."""
+    """Return whether an info field has angles about two axes; devices have only the first."""
     return kind is float and field in {"min_angle", "max_angle", "resolution"}
 
 

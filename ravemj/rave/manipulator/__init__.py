@@ -365,7 +365,7 @@ class Manipulator(ArmIk):
         report: CollisionReport | None,
         T_world_tool: Floats | None,
     ) -> bool:
-        """Test the geom pairs from ``find`` for collisions, with the tool at a goal, or at its present pose if None."""
+        """Test the geom pairs that ``find`` selects, with the tool at ``T_world_tool``; None is its present pose."""
         checker = self._robot.GetEnv().GetCollisionChecker()
         with self._state.simulation.lock:
             world = checker.world()

@@ -43,7 +43,7 @@ _SAME = 1e-9
 """Tolerance of equal values [rad or m]."""
 
 _FULL_POSE = 6
-"""Minimum number of arm joints that reach a full pose."""
+"""Minimum number of joints of an arm that can reach full poses."""
 
 _Type = IkParameterization.Type
 _NO_COLLISIONS = int(IkFilterOptions.IgnoreSelfCollisions)
