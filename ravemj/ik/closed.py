@@ -28,7 +28,7 @@ _SAME = 1e-5
 _STEPS = 12
 """Maximum number of Newton steps."""
 _MOST_GROWTH = 2.0
-"""Error growth at which Newton's method stops, relative to the family's error, if the closed form is accurate.
+"""Ratio of the error to that of an accurate closed form above which Newton's method stops.
 
 The error grows more beyond the border of the reach, where the family returns a double solution with an error.
 """

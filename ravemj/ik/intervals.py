@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.ik.solver import ArmSolutions
 
 _STEEP = 1.0
-"""Maximum ratio of a minimum of the excess to the rise beside it, if the excess can reach 0 near the minimum."""
+"""Ratio of a minimum of the excess to the rise beside it, up to which the excess may reach 0 between samples."""
 _CLOSE, _VERY_CLOSE = 0.5, 0.05
 """Maximum excess from which a descent is started: from minima of the excess, and from other samples."""
 _ENOUGH = 32

@@ -37,7 +37,7 @@ ALL = 0xFFFF
 """All tests that a configuration of a path has to pass."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
-"""Axis fields of values without limits: IK goals, and poses without a body."""
+"""Limits and other axis properties of values without a joint: IK goals, and poses without a body."""
 
 _NO_BODY = "__dummy__"
 """Body name that ``RaveGetAffineConfigurationSpecification`` uses without a body."""

@@ -80,7 +80,7 @@ _PATIENCE = 20
 """Number of consecutive failures to grow the smaller tree after which the other tree grows."""
 
 _WHOLE_LINES = 50
-"""Number of blocked edges after which trees grow in steps, up to an obstacle, instead of whole edges or nothing.
+"""Number of blocked edges after which trees keep the part of an edge before an obstacle, instead of discarding it.
 
 In open space, trees of long edges connect sooner, since a blocked edge takes few tests. Narrow passages need steps.
 """

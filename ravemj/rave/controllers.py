@@ -484,7 +484,7 @@ class VelocityController(Controller):
 
 
 class _PathPart(NamedTuple):
-    """One controller of a ``MultiController``, and the indices of its DOFs in the values of all."""
+    """One controller of a ``MultiController``, and the indices of its DOFs in the values of all controllers."""
 
     controller: Controller
     places: Ints

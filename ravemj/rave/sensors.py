@@ -86,7 +86,7 @@ class DescribedSensor(Interface):
         """Handle a new pose of a sensor without a robot."""
 
     def _take_over(self) -> None:
-        """Restart after a change of the constant properties."""
+        """Restart after a change of the sensor's constant properties."""
 
     def take_state(self, other: "DescribedSensor") -> None:
         """Copy the state of another sensor of the same kind."""

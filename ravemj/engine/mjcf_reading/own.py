@@ -89,7 +89,7 @@ class _GeomRecorder(XmlLines):
 
 
 class _OwnBody:
-    """Body as ravemj's own text in an MJCF file describes it, compared with the MJCF, which users may have edited.
+    """Body that ravemj stored as text in an MJCF file, to be compared with the MJCF, which users may have edited.
 
     Attributes:
         roots: MuJoCo's indices of its root bodies.

@@ -160,7 +160,7 @@ class ControlLayout(NamedTuple):
 
 
 def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the rectangles of the playback controls; narrow views omit clock and speed, or all."""
+    """Return the rectangles of the playback controls; narrow views omit clock and speed, or all controls."""
     room = size[0] - _LEFT - _RIGHT
     is_wide = room >= 3 * _ICON + _SHORTEST_TRACK + _CLOCK + _SPEED
     if not playing or room < 3 * _ICON + _SHORTEST_TRACK:

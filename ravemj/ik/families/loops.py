@@ -138,7 +138,7 @@ Step = Callable[[Screw, Floats, Floats], Floats]
 
 
 class _Around:
-    """Three joints F1 F2 F3 around a block, with their values. They give its motion B: B⁻¹ = W⁻¹ F1 F2 F3 K."""
+    """Joints F1, F2, F3 around a block, with their values; for the block's motion B, B⁻¹ = goal⁻¹ F1 F2 F3 rest."""
 
     def __init__(
         self, screws: Sequence[Screw], values: Sequence[Floats], goal: Transform | None, rest: Transform | None

@@ -100,7 +100,7 @@ class OnePose:
         return turns_found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
-        """Return both invariants of the middle joint, as in ``Side``, for a point that the joint on ``line`` moves."""
+        """Return the two invariants of a point that a joint moves; they do not change if the middle joint moves."""
         axis, at = line
         one, centre = self._measure
         arm = _minus(point, at)

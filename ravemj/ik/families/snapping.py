@@ -42,7 +42,7 @@ def _aligned(axes: Floats) -> Floats:
 
 
 def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
-    """Return points on the axes after moving each revolute axis to intersect the ones before if it nearly does."""
+    """Return points on the axes, moved so that each revolute axis intersects earlier axes that it nearly intersects."""
     points = points.copy()
     screws: list[Screw] = []
     for index, axis in enumerate(axes):

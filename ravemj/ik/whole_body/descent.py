@@ -163,7 +163,7 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Reduce errors of all priorities but the lowest; strong damping keeps the lowest from moving the mechanism."""
+        """Correct the drift of all priorities but the lowest, whose effect is removed by strong damping."""
         for _ in range(_TURNS):
             saved = self._mechanism.saved()
             moved = self._advance(state, _MOST_DAMPING, self.limits.reachable(self._mechanism.values(), longest))

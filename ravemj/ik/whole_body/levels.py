@@ -87,7 +87,7 @@ _Room = tuple[Floats, Floats, Floats]
 
 
 def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, basis: Floats) -> _Room:
-    """Return matrix, lower and upper bounds that constrain z so that ``x + basis @ z`` is feasible, as for z = 0."""
+    """Return a matrix and bounds of its product with z that keep ``x + basis @ z`` feasible; z = 0 satisfies them."""
     below = np.concatenate([np.minimum(lower - x, 0.0), np.minimum(least - rows @ x, 0.0)])
     above = np.concatenate([np.maximum(upper - x, 0.0), np.full(len(least), 1e30)])
     matrix = np.vstack([basis, rows @ basis])

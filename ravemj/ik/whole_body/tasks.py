@@ -11,7 +11,7 @@ from ravemj.ik.residuals import rotation_between
 from ravemj.ik.vectors import Floats
 
 _HALF_TURN = 1e-6
-"""Sine of a rotation angle below which the axis comes from the symmetric part of the matrix, as near half turns."""
+"""Sine below which a rotation by about pi is computed from the symmetric part of its matrix."""
 
 
 class TaskRows(NamedTuple):

@@ -139,7 +139,7 @@ def missing_direction(points: Floats) -> Floats:
 
 
 def _sorted(points: Floats) -> tuple[Floats, Ints]:
-    """Return the points in lexicographic order, and their former indices; the first of equally far ones is a vertex."""
+    """Return the points in lexicographic order, which decides between equally far points, and their former indices."""
     order = np.lexsort(points.T[::-1])
     return points[order], order
 

@@ -31,7 +31,7 @@ from ravemj.model.scene import Manipulator
 Method = Literal["fly", "antipodal"]
 
 _FREE = 1e-4
-"""Retreat of the open hand from its grasp, at which reachability is tested without contact [m]."""
+"""Distance before the grasp at which IK is tested, so that the open hand touches nothing [m]."""
 
 _BACK = 0.1
 """Length of the straight line by which jaws approach [m]."""

@@ -334,7 +334,7 @@ def _described(device: scene.Device) -> type[SensorGeometry]:
 
 
 def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[str, str, Any]]:
-    """Yield, for each property of both an info and a device, its name in each, and its type in the device."""
+    """Yield the names, in info and device, of each property that both have, and its type in the device."""
     types = {field.name: field.type for field in fields(device)}
     for field in fields(geometry):
         name = _OTHER_NAMES.get(field.name, field.name)
