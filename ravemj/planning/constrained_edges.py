@@ -130,7 +130,7 @@ class ConstrainedEdges(Edges):
         return self.space.steps(step) == 1 and self._manifold.off(start + step / 2) <= most
 
     def _middle(self, start: Floats, end: Floats) -> Floats | None:
-        """Return the middle of an edge projected onto the constraint; None if that fails or is far from an end."""
+        """Return the middle of an edge, projected onto the constraint; None if that fails or leads far away."""
         step = self.space.difference(end, start)
         middle = self.onto(start + step / 2)
         farther = max(self._far(start, middle), self._far(middle, end))
